@@ -15,7 +15,7 @@ OTHER_TABLES = {
     "src/dataset/src/class_tables.cpp": "classes of public data sets as those write them",
     "src/view/src/labels.cpp": "classes of segmentation as files and Python write them",
     "src/training/src/triplet.cpp": "targets as CholecT50 writes them",
-    "src/app/src/patient_list.cpp": "parameters of a generated patient whose findings a list shows",
+    "src/presenter/src/patient_list.cpp": "parameters of a generated patient whose findings a list shows",
     "src/anatomy/src/patient_parameters.cpp": "parameters of a generated patient, one of which asks for a subvesical duct",
 }
 

@@ -11,7 +11,7 @@ cd "$repository"
 
 "$list_texts" >"$work/tables.pot"
 # of calls: Translate("..."), the title of a card, and both texts of its lines
-mapfile -t sources < <(ls src/{app,gui,centre,editor}/{src,widgets}/*.cpp src/cli/src/*.cpp 2>/dev/null)
+mapfile -t sources < <(ls src/{presenter,app,gui,centre,editor}/{src,widgets}/*.cpp src/cli/src/*.cpp 2>/dev/null)
 xgettext -L C++ --from-code=UTF-8 -k -kTranslate -kCard:1 -kAddLine:1 -o "$work/calls.pot" "${sources[@]}" 2>/dev/null
 xgettext -L C++ --from-code=UTF-8 -k -kAddLine:2 -o "$work/tips.pot" "${sources[@]}" 2>/dev/null
 msgcat --use-first "$work/tables.pot" "$work/calls.pot" "$work/tips.pot" -o "$work/all.pot"

@@ -6,14 +6,14 @@
 #include <string>
 #include <string_view>
 
-#include "trocar/app/home.h"
-#include "trocar/app/replay_commands.h"
-#include "trocar/app/settings_form.h"
-#include "trocar/app/simulator_commands.h"
 #include "trocar/centre/centre_commands.h"
 #include "trocar/core/error_codes.h"
 #include "trocar/editor/contour_commands.h"
 #include "trocar/editor/patient_commands.h"
+#include "trocar/presenter/home.h"
+#include "trocar/presenter/replay_commands.h"
+#include "trocar/presenter/settings_form.h"
+#include "trocar/presenter/simulator_commands.h"
 
 namespace {
 
@@ -49,18 +49,18 @@ int main() {
   using namespace trocar;
   std::puts("msgid \"\"\nmsgstr \"\"\n\"Content-Type: text/plain; charset=UTF-8\\n\"");
   for (const core::ErrorEntry& entry : core::ErrorTable()) Print(entry.meaning);
-  PrintCommands(app::SimulatorCommands());
-  PrintCommands(app::ReplayCommands());
+  PrintCommands(presenter::SimulatorCommands());
+  PrintCommands(presenter::ReplayCommands());
   PrintCommands(centre::CentreCommands());
   PrintCommands(editor::ContourCommands());
   PrintCommands(editor::PatientCommands());
   // what a button says in its other state
   Print("Pause");
-  for (const app::SettingRow& row : app::SettingRows()) {
+  for (const presenter::SettingRow& row : presenter::SettingRows()) {
     for (const char* text : {row.group, row.label, row.tooltip}) Print(text);
   }
-  for (const app::SolverChoice& choice : app::SolverChoices()) Print(choice.label);
-  for (const app::HomeEntry& entry : app::HomeEntries()) {
+  for (const presenter::SolverChoice& choice : presenter::SolverChoices()) Print(choice.label);
+  for (const presenter::HomeEntry& entry : presenter::HomeEntries()) {
     Print(entry.title);
     Print(entry.about);
   }

@@ -19,7 +19,7 @@ void SetWrapped(Gtk::Label& label, const char* style) {
 
 }  // namespace
 
-FoundCard::FoundCard(DevicePresenter& presenter) : gui::Card("DEVICES", kSpacing) {
+FoundCard::FoundCard(presenter::DevicePresenter& presenter) : gui::Card("DEVICES", kSpacing) {
   auto* scrolled = Gtk::make_managed<Gtk::ScrolledWindow>();
   scrolled->set_child(found_);
   scrolled->set_min_content_height(kListHeight);
@@ -53,24 +53,26 @@ void FoundCard::ShowFound(const std::vector<std::string>& devices) {
   if (devices.empty()) found_.append(*Gtk::make_managed<Gtk::Label>("nothing but mouse and keyboard"));
 }
 
-void FoundCard::Show(const DevicePageState& state) {
+void FoundCard::Show(const presenter::DevicePageState& state) {
   if (spec_.get_text().raw() != state.spec) spec_.set_text(state.spec);
 }
 
-CalibrationCard::CalibrationCard(DevicePresenter& presenter) : gui::Card("HAND AND CALIBRATION", kSpacing) {
+CalibrationCard::CalibrationCard(presenter::DevicePresenter& presenter)
+    : gui::Card("HAND AND CALIBRATION", kSpacing) {
   hand_.set_model(Gtk::StringList::create({"Left hand", "Right hand", "Laparoscope"}));
   hand_.property_selected().signal_changed().connect(
       [this, &presenter] { presenter.ChooseHand(static_cast<device::Channel>(hand_.get_selected())); });
   swap_.set_tooltip_text("The left hand's sensor becomes the right hand's, and the other way round; kept");
   swap_.signal_clicked().connect([&presenter] { presenter.SwapHands(); });
   append(gui::MakeRow(kSpacing, {&hand_, &swap_}));
-  const auto step = [&presenter](Gtk::Button& button, CalibrationStep which, const char* tip) {
+  const auto step = [&presenter](Gtk::Button& button, presenter::CalibrationStep which, const char* tip) {
     button.set_tooltip_text(tip);
     button.signal_clicked().connect([&presenter, which] { presenter.Begin(which); });
   };
-  step(tip_, CalibrationStep::kTip, "Where the tip is, seen from its sensor: swing the handle about the tip");
-  step(trocar_, CalibrationStep::kTrocar, "Where the trocar is: swing the instrument in it");
-  step(jaw_, CalibrationStep::kJaw, "What the jaw sensor reads closed and open");
+  step(tip_, presenter::CalibrationStep::kTip,
+       "Where the tip is, seen from its sensor: swing the handle about the tip");
+  step(trocar_, presenter::CalibrationStep::kTrocar, "Where the trocar is: swing the instrument in it");
+  step(jaw_, presenter::CalibrationStep::kJaw, "What the jaw sensor reads closed and open");
   append(gui::MakeRow(kSpacing, {&tip_, &trocar_, &jaw_}));
   SetWrapped(hint_, "name");
   SetWrapped(result_, "value");
@@ -79,14 +81,14 @@ CalibrationCard::CalibrationCard(DevicePresenter& presenter) : gui::Card("HAND A
   append(result_);
 }
 
-void CalibrationCard::Show(const DevicePageState& state) {
+void CalibrationCard::Show(const presenter::DevicePageState& state) {
   progress_.set_fraction(state.progress);
   gui::SetText(hint_, state.hint);
   gui::SetText(result_, state.result);
   for (Gtk::Button* button : {&tip_, &trocar_, &jaw_, &swap_}) button->set_sensitive(state.can_measure);
 }
 
-UseCard::UseCard(DevicePresenter& presenter) : gui::Card("IN THE OPERATION", kSpacing) {
+UseCard::UseCard(presenter::DevicePresenter& presenter) : gui::Card("IN THE OPERATION", kSpacing) {
   use_.set_tooltip_text("The device above holds the instruments; the mouse keeps what it does not see");
   use_.signal_clicked().connect([&presenter] { presenter.Use(); });
   append(use_);
@@ -106,7 +108,7 @@ UseCard::UseCard(DevicePresenter& presenter) : gui::Card("IN THE OPERATION", kSp
   append(haptics_);
 }
 
-void UseCard::Show(const DevicePageState& state) {
+void UseCard::Show(const presenter::DevicePageState& state) {
   check_pose_.set_sensitive(state.has_haptics);
   force_.set_sensitive(state.has_haptics);
   gui::SetText(haptics_, state.haptics);

@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "trocar/app/device_presenter.h"
 #include "trocar/gui/card.h"
+#include "trocar/presenter/device_presenter.h"
 
 namespace trocar::app {
 
 /// What is plugged in, and which device is tried.
 class FoundCard : public gui::Card {
  public:
-  explicit FoundCard(DevicePresenter& presenter);
+  explicit FoundCard(presenter::DevicePresenter& presenter);
   void ShowFound(const std::vector<std::string>& devices);
-  void Show(const DevicePageState& state);
+  void Show(const presenter::DevicePageState& state);
 
  private:
   Gtk::ListBox found_;
@@ -28,8 +28,8 @@ class FoundCard : public gui::Card {
 /// Which hand, and what is measured of it.
 class CalibrationCard : public gui::Card {
  public:
-  explicit CalibrationCard(DevicePresenter& presenter);
-  void Show(const DevicePageState& state);
+  explicit CalibrationCard(presenter::DevicePresenter& presenter);
+  void Show(const presenter::DevicePageState& state);
 
  private:
   Gtk::DropDown hand_;
@@ -41,8 +41,8 @@ class CalibrationCard : public gui::Card {
 /// Which device holds the hands of the running operation, and its force.
 class UseCard : public gui::Card {
  public:
-  explicit UseCard(DevicePresenter& presenter);
-  void Show(const DevicePageState& state);
+  explicit UseCard(presenter::DevicePresenter& presenter);
+  void Show(const presenter::DevicePageState& state);
 
  private:
   Gtk::Button use_{"Hold the instruments"};

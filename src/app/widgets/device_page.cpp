@@ -14,7 +14,7 @@ constexpr unsigned kSettleTime = 300;  // before a picture is taken [ms]
 
 }  // namespace
 
-DevicePage::DevicePage(const Options& options, SessionControl* control)
+DevicePage::DevicePage(const presenter::Options& options, presenter::SessionControl* control)
     : presenter_(options, device::FindDeviceStore(), control, *this) {
   set_title("Trocar: devices");
   add_css_class("trocar");
@@ -59,13 +59,14 @@ void DevicePage::MakeContent() {
 }
 
 bool DevicePage::OnTime() {
-  const DevicePageRun::Step step = presenter_.Advance(since_start_.Seconds());
-  const bool is_over = step == DevicePageRun::Step::kSave || step == DevicePageRun::Step::kGiveUp;
+  const presenter::DevicePageRun::Step step = presenter_.Advance(since_start_.Seconds());
+  const bool is_over =
+      step == presenter::DevicePageRun::Step::kSave || step == presenter::DevicePageRun::Step::kGiveUp;
   if (is_over) Glib::signal_timeout().connect_once([this] { EndDeviceRun(*this, presenter_); }, kSettleTime);
   return !is_over;  // what is photographed holds still
 }
 
-void DevicePage::Show(const DevicePageState& state) {
+void DevicePage::Show(const presenter::DevicePageState& state) {
   found_.Show(state);
   calibration_.Show(state);
   if (use_) use_->Show(state);

@@ -9,17 +9,17 @@
 
 #include "device_cards.h"
 #include "device_plot.h"
-#include "trocar/app/device_presenter.h"
 #include "trocar/core/clock.h"
 #include "trocar/gui/tips.h"
+#include "trocar/presenter/device_presenter.h"
 
 namespace trocar::app {
 
-class DevicePage : public Gtk::ApplicationWindow, private DeviceScreen {
+class DevicePage : public Gtk::ApplicationWindow, private presenter::DeviceScreen {
  public:
   /// \param control  of the running operation, which a device may hold the hands of; outlives this; or nullptr: devices
   ///                 are only tried and calibrated
-  DevicePage(const Options& options, SessionControl* control);
+  DevicePage(const presenter::Options& options, presenter::SessionControl* control);
   ~DevicePage() override;
 
   /// What went wrong in a run that is not attended.
@@ -30,14 +30,14 @@ class DevicePage : public Gtk::ApplicationWindow, private DeviceScreen {
   bool OnTime();
 
   // DeviceScreen
-  void Show(const DevicePageState& state) override;
+  void Show(const presenter::DevicePageState& state) override;
   void ShowFound(const std::vector<std::string>& devices) override { found_.ShowFound(devices); }
-  void ShowPlot(const std::deque<DeviceBench::Point>& points, const std::deque<ForcePoint>& forces,
-                device::Channel hand, double now) override {
+  void ShowPlot(const std::deque<presenter::DeviceBench::Point>& points,
+                const std::deque<presenter::ForcePoint>& forces, device::Channel hand, double now) override {
     plot_.Show(points, forces, hand, now);
   }
 
-  DevicePresenter presenter_;
+  presenter::DevicePresenter presenter_;
   core::Stopwatch since_start_;
   gui::Tips tips_;
   FoundCard found_{presenter_};

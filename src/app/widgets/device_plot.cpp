@@ -40,8 +40,8 @@ DevicePlot::DevicePlot() {
   set_draw_func(sigc::mem_fun(*this, &DevicePlot::Draw));
 }
 
-void DevicePlot::Show(const std::deque<DeviceBench::Point>& points, const std::deque<ForcePoint>& forces,
-                      device::Channel hand, double now) {
+void DevicePlot::Show(const std::deque<presenter::DeviceBench::Point>& points,
+                      const std::deque<presenter::ForcePoint>& forces, device::Channel hand, double now) {
   points_ = &points, forces_ = &forces, hand_ = hand, now_ = now;
   queue_draw();
 }
@@ -53,7 +53,7 @@ void DevicePlot::Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width, int
   if (points_ == nullptr) return;
   const double lane_height = static_cast<double>(height) / kLaneCount;
   const auto column = [&](double time) {
-    return kLeft + (width - kLeft - 8) * (1.0 - (now_ - time) / DeviceBench::kHistory);
+    return kLeft + (width - kLeft - 8) * (1.0 - (now_ - time) / presenter::DeviceBench::kHistory);
   };
   for (int i = 0; i < kLaneCount; ++i) {
     const Lane& lane = kLanes[i];
@@ -86,12 +86,12 @@ void DevicePlot::Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width, int
       newest = value;
     };
     if (lane.value != nullptr) {
-      for (const DeviceBench::Point& point : *points_) {
+      for (const presenter::DeviceBench::Point& point : *points_) {
         const HandSample& hand = point.hands[static_cast<std::size_t>(hand_)];
         add(point.time, lane.value(hand), hand.is_valid);
       }
     } else {
-      for (const ForcePoint& point : *forces_) add(point.time, point.force, true);
+      for (const presenter::ForcePoint& point : *forces_) add(point.time, point.force, true);
     }
     cairo->stroke();
     cairo->select_font_face("sans-serif", Cairo::ToyFontFace::Slant::NORMAL,

@@ -6,7 +6,7 @@
 
 #include <deque>
 
-#include "trocar/app/device_presenter.h"
+#include "trocar/presenter/device_presenter.h"
 
 namespace trocar::app {
 
@@ -15,14 +15,14 @@ class DevicePlot : public Gtk::DrawingArea {
   DevicePlot();
   /// \param points, forces  live as long as the widget is drawn
   /// \param now             right edge [s]
-  void Show(const std::deque<DeviceBench::Point>& points, const std::deque<ForcePoint>& forces,
-            device::Channel hand, double now);
+  void Show(const std::deque<presenter::DeviceBench::Point>& points,
+            const std::deque<presenter::ForcePoint>& forces, device::Channel hand, double now);
 
  private:
   void Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width, int height) const;
 
-  const std::deque<DeviceBench::Point>* points_ = nullptr;
-  const std::deque<ForcePoint>* forces_ = nullptr;
+  const std::deque<presenter::DeviceBench::Point>* points_ = nullptr;
+  const std::deque<presenter::ForcePoint>* forces_ = nullptr;
   device::Channel hand_ = device::kLeftHand;
   double now_ = 0;  // [s]
 };

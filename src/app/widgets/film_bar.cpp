@@ -3,10 +3,10 @@
 
 #include <utility>
 
-#include "trocar/app/replay_presenter.h"
 #include "trocar/core/log.h"
 #include "trocar/core/translate.h"
 #include "trocar/gui/labels.h"
+#include "trocar/presenter/replay_presenter.h"
 
 namespace trocar::app {
 namespace {
@@ -38,12 +38,12 @@ FilmBar::~FilmBar() {
   timer_.disconnect();
 }
 
-void FilmBar::Start(FilmRequest request) {
+void FilmBar::Start(presenter::FilmRequest request) {
   if (job_.IsRunning()) return say_(core::Translate("A video is being made already; cancel it first."), true);
   request_ = std::move(request);
   is_cancelled_ = false;
   progress_.Set("Reading", 0);
-  job_.Start([this, request = request_] { return MakeFilm(request, progress_, is_cancelled_); });
+  job_.Start([this, request = request_] { return presenter::MakeFilm(request, progress_, is_cancelled_); });
   set_visible(true);
   ShowProgress();
   timer_ = Glib::signal_timeout().connect([this] { return ShowProgress(); }, kPeriod);
@@ -59,9 +59,9 @@ bool FilmBar::ShowProgress() {
 void FilmBar::Finish() {
   timer_.disconnect();
   set_visible(false);
-  const core::Result<Film> status = job_.Take();
+  const core::Result<presenter::Film> status = job_.Take();
   if (status.ok())
-    return say_(core::Translate("Saved ") + FormatClock(status->until - status->from) +
+    return say_(core::Translate("Saved ") + presenter::FormatClock(status->until - status->from) +
                     core::Translate(" min:s in ") + request_.video.string(),
                 false);
   if (status.error().code == core::ErrorCode::kCancelled)

@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-#include "trocar/app/film_job.h"
+#include "trocar/presenter/film_job.h"
 
 namespace trocar::app {
 
@@ -20,7 +20,7 @@ class FilmBar : public Gtk::Box {
   ~FilmBar() override;
 
   /// Nothing while another is being made, which is said.
-  void Start(FilmRequest request);
+  void Start(presenter::FilmRequest request);
 
  private:
   void Finish();
@@ -32,10 +32,10 @@ class FilmBar : public Gtk::Box {
   Gtk::Button cancel_;
   Glib::Dispatcher done_;
   sigc::connection timer_;
-  FilmRequest request_;
+  presenter::FilmRequest request_;
   gui::JobProgress progress_;
   std::atomic<bool> is_cancelled_ = false;
-  gui::BackgroundJob<core::Result<Film>> job_;  // ends before what it uses
+  gui::BackgroundJob<core::Result<presenter::Film>> job_;  // ends before what it uses
 };
 
 }  // namespace trocar::app

@@ -12,7 +12,7 @@ ForceBar::ForceBar() {
   set_draw_func(sigc::mem_fun(*this, &ForceBar::Draw));
 }
 
-void ForceBar::Show(double force, const ForceThresholds& thresholds) {
+void ForceBar::Show(double force, const presenter::ForceThresholds& thresholds) {
   // a pixel is about 0.05 N: less than that is not worth a redraw
   if (std::fabs(force - force_) < 0.02 && thresholds.warning == thresholds_.warning) return;
   force_ = force;
@@ -21,18 +21,20 @@ void ForceBar::Show(double force, const ForceThresholds& thresholds) {
 }
 
 void ForceBar::Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width, int height) const {
-  const auto column = [width](double force) { return width * std::clamp(force / kForceBarEnd, 0.0, 1.0); };
+  const auto column = [width](double force) {
+    return width * std::clamp(force / presenter::kForceBarEnd, 0.0, 1.0);
+  };
   cairo->set_source_rgb(0.17, 0.195, 0.225);
   cairo->rectangle(0, 0, width, height);
   cairo->fill();
-  switch (JudgeForce(force_, thresholds_)) {
-    case ForceLevel::kCalm:
+  switch (presenter::JudgeForce(force_, thresholds_)) {
+    case presenter::ForceLevel::kCalm:
       cairo->set_source_rgb(0.36, 0.76, 0.50);
       break;
-    case ForceLevel::kWarning:
+    case presenter::ForceLevel::kWarning:
       cairo->set_source_rgb(1.00, 0.74, 0.25);
       break;
-    case ForceLevel::kDanger:
+    case presenter::ForceLevel::kDanger:
       cairo->set_source_rgb(0.95, 0.35, 0.30);
       break;
   }

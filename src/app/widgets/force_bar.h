@@ -5,20 +5,20 @@
 
 #include <gtkmm.h>
 
-#include "trocar/app/read_outs.h"
+#include "trocar/presenter/read_outs.h"
 
 namespace trocar::app {
 
 class ForceBar : public Gtk::DrawingArea {
  public:
   ForceBar();
-  void Show(double force, const ForceThresholds& thresholds);
+  void Show(double force, const presenter::ForceThresholds& thresholds);
 
  private:
   void Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width, int height) const;
 
   double force_ = 0;
-  ForceThresholds thresholds_;
+  presenter::ForceThresholds thresholds_;
 };
 
 }  // namespace trocar::app

@@ -11,18 +11,18 @@ namespace trocar::app {
 namespace {
 
 /// The pedal whose key it is, or nothing.
-std::optional<Pedal> FindPedal(Action action) {
+std::optional<presenter::Pedal> FindPedal(presenter::Action action) {
   switch (action) {
-    case Action::kHoldCut:
-      return Pedal::kCut;
-    case Action::kHoldCoagulate:
-      return Pedal::kCoagulate;
-    case Action::kHoldRinse:
-      return Pedal::kRinse;
-    case Action::kHoldAspirate:
-      return Pedal::kAspirate;
-    case Action::kHoldClutch:
-      return Pedal::kClutch;
+    case presenter::Action::kHoldCut:
+      return presenter::Pedal::kCut;
+    case presenter::Action::kHoldCoagulate:
+      return presenter::Pedal::kCoagulate;
+    case presenter::Action::kHoldRinse:
+      return presenter::Pedal::kRinse;
+    case presenter::Action::kHoldAspirate:
+      return presenter::Pedal::kAspirate;
+    case presenter::Action::kHoldClutch:
+      return presenter::Pedal::kClutch;
     default:
       return std::nullopt;
   }
@@ -111,13 +111,13 @@ std::vector<std::string> HandEvents::SetKeys(const std::map<std::string, device:
     if (keyval == GDK_KEY_VoidSymbol || keyval == GDK_KEY_Escape) {
       refused.push_back(name);
     } else {
-      own_keys_[keyval] = FindAction(act);
+      own_keys_[keyval] = presenter::FindAction(act);
     }
   }
   return refused;
 }
 
-KeyMeaning HandEvents::FindMeaning(guint keyval, bool control) const {
+presenter::KeyMeaning HandEvents::FindMeaning(guint keyval, bool control) const {
   const auto own = own_keys_.find(gdk_keyval_to_lower(keyval));
   if (own != own_keys_.end() && !control) return {own->second, device::Motion::kCount};
   return bindings_.Find(keyval, control);
@@ -138,26 +138,26 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
   }
   if ((state & (ModifierType::ALT_MASK | ModifierType::SUPER_MASK)) != ModifierType{}) return false;
   const bool has_control = (state & ModifierType::CONTROL_MASK) != ModifierType{};
-  const KeyMeaning meaning = FindMeaning(keyval, has_control);
-  if (meaning.action == Action::kNone) return false;
-  if (!has_control && IsFocusInPanel() && !WorksInPanel(meaning.action)) return false;
+  const presenter::KeyMeaning meaning = FindMeaning(keyval, has_control);
+  if (meaning.action == presenter::Action::kNone) return false;
+  if (!has_control && IsFocusInPanel() && !presenter::WorksInPanel(meaning.action)) return false;
   const bool is_letter = !has_control && gdk_keyval_to_unicode(keyval) > ' ';
   if (is_letter && IsTyping()) return false;
   const bool is_repeat = std::find(held_.begin(), held_.end(), keyval) != held_.end();
   if (is_repeat) return true;
   held_.push_back(keyval);
-  if (const std::optional<Pedal> pedal = FindPedal(meaning.action)) {
+  if (const std::optional<presenter::Pedal> pedal = FindPedal(meaning.action)) {
     if (control_ != nullptr) control_->SetPedal(*pedal, true);
     return true;
   }
   switch (meaning.action) {
-    case Action::kMove:
+    case presenter::Action::kMove:
       if (control_ != nullptr && !control_->IsPaused()) control_->Device().SetKey(meaning.motion, true);
       break;
-    case Action::kHoldLaparoscope:
+    case presenter::Action::kHoldLaparoscope:
       if (control_ != nullptr) control_->HoldLaparoscope(true);
       break;
-    case Action::kReleasePointer:
+    case presenter::Action::kReleasePointer:
       ReleasePointer();
       [[fallthrough]];
     default:
@@ -168,11 +168,12 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
 
 void HandEvents::OnKeyReleased(guint keyval, guint, Gdk::ModifierType) {
   std::erase(held_, keyval);
-  const KeyMeaning meaning = FindMeaning(keyval, false);
+  const presenter::KeyMeaning meaning = FindMeaning(keyval, false);
   if (control_ == nullptr) return;
-  if (const std::optional<Pedal> pedal = FindPedal(meaning.action)) control_->SetPedal(*pedal, false);
-  if (meaning.action == Action::kMove) control_->Device().SetKey(meaning.motion, false);
-  if (meaning.action == Action::kHoldLaparoscope) control_->HoldLaparoscope(false);
+  if (const std::optional<presenter::Pedal> pedal = FindPedal(meaning.action))
+    control_->SetPedal(*pedal, false);
+  if (meaning.action == presenter::Action::kMove) control_->Device().SetKey(meaning.motion, false);
+  if (meaning.action == presenter::Action::kHoldLaparoscope) control_->HoldLaparoscope(false);
 }
 
 void HandEvents::OnMotion(double x, double y) {
@@ -191,8 +192,8 @@ bool HandEvents::OnPicturePointer(const Glib::RefPtr<const Gdk::Event>& event) {
 void HandEvents::OnButton(guint button, bool is_down) {
   if (is_down) picture_.grab_focus();
   if (control_ == nullptr || button < kFirstButton || button > kLastButton) return;
-  const auto act = bindings_.ActOf(static_cast<MouseButton>(button));
-  if (act == ButtonAct::kLook) {
+  const auto act = bindings_.ActOf(static_cast<presenter::MouseButton>(button));
+  if (act == presenter::ButtonAct::kLook) {
     control_->HoldLaparoscope(is_down);
     return;
   }
@@ -206,8 +207,8 @@ void HandEvents::OnButton(guint button, bool is_down) {
     return;
   }
   if (control_->IsPaused()) is_down = false;
-  if (act == ButtonAct::kCloseJaws) control_->Device().SetKey(device::Motion::kCloseJaw, is_down);
-  if (act == ButtonAct::kOpenJaws) control_->Device().SetKey(device::Motion::kOpenJaw, is_down);
+  if (act == presenter::ButtonAct::kCloseJaws) control_->Device().SetKey(device::Motion::kCloseJaw, is_down);
+  if (act == presenter::ButtonAct::kOpenJaws) control_->Device().SetKey(device::Motion::kOpenJaw, is_down);
 }
 
 }  // namespace trocar::app

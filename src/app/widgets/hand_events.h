@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "pointer_lock.h"
-#include "trocar/app/key_bindings.h"
-#include "trocar/app/session_control.h"
-#include "trocar/app/simulator_commands.h"
+#include "trocar/presenter/key_bindings.h"
+#include "trocar/presenter/session_control.h"
+#include "trocar/presenter/simulator_commands.h"
 
 namespace trocar::app {
 
@@ -25,13 +25,13 @@ class HandEvents {
  public:
   HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& panel);
 
-  void SetControl(SessionControl* control) { control_ = control; }
+  void SetControl(presenter::SessionControl* control) { control_ = control; }
   /// Gives keys an act in place of what they do otherwise: foot pedals that are keyboards.
   /// \param keys  by name, as GDK has it: "F13", "b"
   /// \return the names that are no key, or Escape, which always stops the force
   std::vector<std::string> SetKeys(const std::map<std::string, device::HandAct>& keys);
   /// What keys and buttons do.
-  void SetBindings(const KeyBindings& bindings) { bindings_ = bindings; }
+  void SetBindings(const presenter::KeyBindings& bindings) { bindings_ = bindings; }
   /// The next key that is pressed is told to the function and does nothing else; Esc tells 0.
   void AskKey(std::function<void(std::uint32_t)> told);
   bool IsPointerTaken() const { return is_taken_; }
@@ -41,7 +41,7 @@ class HandEvents {
   /// The pointer is free while the simulation is paused, and held again when it goes on. Once a frame.
   void FollowPause();
   /// Everything but motion.
-  sigc::signal<void(Action)>& SignalAction() { return signal_action_; }
+  sigc::signal<void(presenter::Action)>& SignalAction() { return signal_action_; }
   /// A click into the picture has taken the pointer.
   sigc::signal<void()>& SignalTaken() { return signal_taken_; }
 
@@ -54,19 +54,19 @@ class HandEvents {
   void ReleaseAll();
   bool IsFocusInPanel() const;
   bool IsTyping() const;
-  KeyMeaning FindMeaning(guint keyval, bool control) const;
+  presenter::KeyMeaning FindMeaning(guint keyval, bool control) const;
 
   Gtk::Window& window_;
   Gtk::Widget& picture_;
   Gtk::Widget& panel_;
-  SessionControl* control_ = nullptr;
-  KeyBindings bindings_;
+  presenter::SessionControl* control_ = nullptr;
+  presenter::KeyBindings bindings_;
   std::function<void(std::uint32_t)> asked_;  // waits for a key; may be empty
   PointerLock lock_;
   bool is_taken_ = false, is_held_wanted_ = false;
   std::vector<guint> held_;  // key symbols, so that repeats toggle nothing
-  std::map<guint, Action> own_keys_;
-  sigc::signal<void(Action)> signal_action_;
+  std::map<guint, presenter::Action> own_keys_;
+  sigc::signal<void(presenter::Action)> signal_action_;
   sigc::signal<void()> signal_taken_;
 };
 

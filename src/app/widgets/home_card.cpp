@@ -59,7 +59,7 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   scroller->set_max_content_height(kMostHeight);
   scroller->set_child(*entries);
   append(*scroller);
-  for (const HomeEntry& entry : HomeEntries()) {
+  for (const presenter::HomeEntry& entry : presenter::HomeEntries()) {
     Row row{Gtk::make_managed<Gtk::Button>(), Gtk::make_managed<Gtk::Label>(core::Translate(entry.title)),
             Gtk::make_managed<Gtk::Label>(core::Translate(entry.about))};
     row.title->add_css_class("key-text");
@@ -77,20 +77,20 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   }
 }
 
-void HomeCard::Show(const HomePage& page) {
+void HomeCard::Show(const presenter::HomePage& page) {
   gui::SetTextOrHide(who_, page.who.empty() ? "" : core::Translate("You are: ") + page.who);
   gui::SetTextOrHide(patient_,
                      page.patient.empty() ? "" : core::Translate("Operations are on ") + page.patient);
   gui::SetTextOrHide(problem_, page.problem ? "\u26a0 " + page.problem->Text() : "");
-  rows_[HomeChoice::kContinue].button->set_visible(!page.last.empty());
-  rows_[HomeChoice::kContinue].about->set_text(page.last);
-  rows_[HomeChoice::kTutorial].title->set_text(core::Translate("Tutorial: ") + page.tutorial);
-  gui::SetClass(*rows_[HomeChoice::kTutorial].button, "primary", page.is_tutorial_suggested);
-  gui::SetClass(*rows_[HomeChoice::kContinue].button, "primary", !page.is_tutorial_suggested);
+  rows_[presenter::HomeChoice::kContinue].button->set_visible(!page.last.empty());
+  rows_[presenter::HomeChoice::kContinue].about->set_text(page.last);
+  rows_[presenter::HomeChoice::kTutorial].title->set_text(core::Translate("Tutorial: ") + page.tutorial);
+  gui::SetClass(*rows_[presenter::HomeChoice::kTutorial].button, "primary", page.is_tutorial_suggested);
+  gui::SetClass(*rows_[presenter::HomeChoice::kContinue].button, "primary", !page.is_tutorial_suggested);
 }
 
 void HomeCard::FocusFirst() {
-  for (const HomeEntry& entry : HomeEntries()) {
+  for (const presenter::HomeEntry& entry : presenter::HomeEntries()) {
     Gtk::Button* button = rows_[entry.choice].button;
     if (!button->get_visible()) continue;
     button->grab_focus();

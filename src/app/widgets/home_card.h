@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "trocar/app/home.h"
+#include "trocar/presenter/home.h"
 
 namespace trocar::app {
 
@@ -14,10 +14,10 @@ class HomeCard : public Gtk::Box {
  public:
   HomeCard();
 
-  void Show(const HomePage& page);
+  void Show(const presenter::HomePage& page);
   /// Gives the keyboard to the first thing that can be chosen, not to the name.
   void FocusFirst();
-  sigc::signal<void(HomeChoice)>& SignalChosen() { return signal_chosen_; }
+  sigc::signal<void(presenter::HomeChoice)>& SignalChosen() { return signal_chosen_; }
   /// Name or pseudonym that was typed.
   sigc::signal<void(std::string)>& SignalPerson() { return signal_person_; }
 
@@ -28,8 +28,8 @@ class HomeCard : public Gtk::Box {
   };
   Gtk::Label who_, patient_, problem_;
   Gtk::Entry name_;
-  std::map<HomeChoice, Row> rows_;
-  sigc::signal<void(HomeChoice)> signal_chosen_;
+  std::map<presenter::HomeChoice, Row> rows_;
+  sigc::signal<void(presenter::HomeChoice)> signal_chosen_;
   sigc::signal<void(std::string)> signal_person_;
 };
 

@@ -11,7 +11,7 @@ namespace trocar::app {
 namespace {
 
 constexpr int kListWidth = 660, kKeyWidth = 130;  // [pixels]
-constexpr std::array<const char*, kButtonActs.size()> kActTexts = {
+constexpr std::array<const char*, presenter::kButtonActs.size()> kActTexts = {
     "close the jaws, hold the button", "open the jaws, hold the button", "look round, hold the button"};
 
 }  // namespace
@@ -27,62 +27,63 @@ KeyCard::KeyCard(KeyCardServices services) : gui::ListCard(kListWidth), services
 
 void KeyCard::MakeRows() {
   AddTitle("Mouse");
-  for (const ButtonAct act : kButtonActs) AddButton(act);
+  for (const presenter::ButtonAct act : presenter::kButtonActs) AddButton(act);
   AddTitle("Keys: press a button here, then the new key. Esc keeps the old one.");
-  for (const SimulatorCommand& command : SimulatorCommands()) {
-    if (KeyBindings::CanChange(command)) AddCommand(command);
+  for (const presenter::SimulatorCommand& command : presenter::SimulatorCommands()) {
+    if (presenter::KeyBindings::CanChange(command)) AddCommand(command);
   }
 }
 
-void KeyCard::AddButton(ButtonAct act) {
+void KeyCard::AddButton(presenter::ButtonAct act) {
   auto* choice = Gtk::make_managed<Gtk::DropDown>();
   choice->set_model(Gtk::StringList::create({"left button", "middle button", "right button"}));
   const auto index = static_cast<std::size_t>(act);
   gui::SetAccessibleName(*choice, kActTexts[index]);
   choice->property_selected().signal_changed().connect([this, act, choice] {
-    if (!is_showing_) services_.change_button(act, static_cast<MouseButton>(choice->get_selected() + 1));
+    if (!is_showing_)
+      services_.change_button(act, static_cast<presenter::MouseButton>(choice->get_selected() + 1));
   });
   buttons_[index] = choice;
   AddRow(kActTexts[index], "", {choice});
 }
 
-void KeyCard::AddCommand(const SimulatorCommand& command) {
+void KeyCard::AddCommand(const presenter::SimulatorCommand& command) {
   Row row;
   row.conflict = gui::MakeLabel("", "conflict");
   row.button = Gtk::make_managed<Gtk::Button>();
   row.button->set_size_request(kKeyWidth, -1);
   row.button->signal_clicked().connect([this, &command] { AskFor(command); });
   rows_of_[command.id] = row;
-  AddRow(DescribeCommand(command), "", {row.conflict, row.button});
+  AddRow(presenter::DescribeCommand(command), "", {row.conflict, row.button});
 }
 
-void KeyCard::AskFor(const SimulatorCommand& command) {
+void KeyCard::AskFor(const presenter::SimulatorCommand& command) {
   asked_ = command.id;
   rows_of_[asked_].button->set_label("Press a key …");
   services_.ask_key([this, id = asked_](std::uint32_t key) {
     asked_.clear();
     if (key == 0 || !services_.change_key(id, key).ok()) {
-      for (const SimulatorCommand& one : SimulatorCommands()) {
+      for (const presenter::SimulatorCommand& one : presenter::SimulatorCommands()) {
         if (id == one.id) rows_of_[id].button->set_label(gui::KeyText({shown_.KeyOf(one)}));
       }
     }
   });
 }
 
-void KeyCard::Show(const KeyBindings& bindings, bool can_undo) {
+void KeyCard::Show(const presenter::KeyBindings& bindings, bool can_undo) {
   shown_ = bindings;
   is_showing_ = true;
-  for (const ButtonAct act : kButtonActs) {
+  for (const presenter::ButtonAct act : presenter::kButtonActs) {
     buttons_[static_cast<std::size_t>(act)]->set_selected(static_cast<guint>(bindings.ButtonOf(act)) - 1);
   }
   is_showing_ = false;
-  for (const SimulatorCommand& command : SimulatorCommands()) {
+  for (const presenter::SimulatorCommand& command : presenter::SimulatorCommands()) {
     const auto found = rows_of_.find(command.id);
     if (found == rows_of_.end() || asked_ == command.id) continue;
     const std::string text = gui::KeyText({bindings.KeyOf(command)});
     const Row& row = found->second;
     if (row.button->get_label().raw() != text) row.button->set_label(text);
-    gui::SetAccessibleName(*row.button, DescribeCommand(command) + ": " + text);
+    gui::SetAccessibleName(*row.button, presenter::DescribeCommand(command) + ": " + text);
     const std::string conflict = bindings.ConflictOf(command);
     gui::SetTextOrHide(*row.conflict, conflict.empty() ? "" : "\u26a0 " + conflict);
   }

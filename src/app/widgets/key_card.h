@@ -9,8 +9,8 @@
 #include <map>
 #include <string>
 
-#include "trocar/app/key_bindings.h"
 #include "trocar/gui/list_card.h"
+#include "trocar/presenter/key_bindings.h"
 
 namespace trocar::app {
 
@@ -19,7 +19,7 @@ struct KeyCardServices {
   /// The next key that is pressed is told to the function, and does nothing else; 0: Esc, none is wanted.
   std::function<void(std::function<void(std::uint32_t)>)> ask_key;
   std::function<core::Status(const std::string& id, std::uint32_t key)> change_key;
-  std::function<void(ButtonAct, MouseButton)> change_button;
+  std::function<void(presenter::ButtonAct, presenter::MouseButton)> change_button;
   std::function<void()> restore, undo;
 };
 
@@ -27,7 +27,7 @@ class KeyCard : public gui::ListCard {
  public:
   explicit KeyCard(KeyCardServices services);
 
-  void Show(const KeyBindings& bindings, bool can_undo);
+  void Show(const presenter::KeyBindings& bindings, bool can_undo);
 
  private:
   struct Row {
@@ -35,16 +35,16 @@ class KeyCard : public gui::ListCard {
     Gtk::Label* conflict = nullptr;
   };
   void MakeRows();
-  void AddCommand(const SimulatorCommand& command);
-  void AddButton(ButtonAct act);
-  void AskFor(const SimulatorCommand& command);
+  void AddCommand(const presenter::SimulatorCommand& command);
+  void AddButton(presenter::ButtonAct act);
+  void AskFor(const presenter::SimulatorCommand& command);
 
   KeyCardServices services_;
   std::map<std::string, Row> rows_of_;  // by the command's id
-  std::array<Gtk::DropDown*, kButtonActs.size()> buttons_{};
+  std::array<Gtk::DropDown*, presenter::kButtonActs.size()> buttons_{};
   std::string asked_;        // id of the command whose new key is waited for
   bool is_showing_ = false;  // the choice changes by the program, not by a person
-  KeyBindings shown_;
+  presenter::KeyBindings shown_;
   Gtk::Button restore_{"As at first"}, undo_{"Undo"};
 };
 

@@ -17,7 +17,6 @@
 #include "device_page.h"
 #include "replay_window.h"
 #include "simulator_window.h"
-#include "trocar/app/options.h"
 #include "trocar/centre/centre_window.h"
 #include "trocar/core/log.h"
 #include "trocar/core/partial_path.h"
@@ -27,6 +26,7 @@
 #include "trocar/gui/composition.h"
 #include "trocar/gui/look.h"
 #include "trocar/gui/window_screenshot.h"
+#include "trocar/presenter/options.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::app {
@@ -35,11 +35,11 @@ namespace {
 /// The window that the command line asks for, and those that it opens. It opens with the application and ends with it.
 class Program {
  public:
-  explicit Program(const CommandLine& command) : command_(command) {}
+  explicit Program(const presenter::CommandLine& command) : command_(command) {}
 
   /// Who operates, and where attempts go. \return what the person has to change
   core::Status FindStore() {
-    const Options& options = command_.options;
+    const presenter::Options& options = command_.options;
     access_.place = store::FindPlace(options.store);
     // one that nobody attends keeps an attempt only where it is told to
     const bool keeps = !options.recordings.empty() && (options.run.IsAttended() || !options.store.empty());
@@ -92,7 +92,7 @@ class Program {
   }
 
   void Open() {
-    const Options& options = command_.options;
+    const presenter::Options& options = command_.options;
     if (!command_.contours.images.empty()) {
       Use(std::make_unique<editor::ContourWindow>(command_.contours, since_start_));
     } else if (options.is_device_page) {
@@ -100,7 +100,8 @@ class Program {
     } else if (!command_.patient_editor.patient.empty()) {
       Use(std::make_unique<editor::PatientEditorWindow>(command_.patient_editor));
     } else if (!options.replay.empty()) {
-      Use(std::make_unique<ReplayWindow>(options, [this](Branch branch) { Simulate(std::move(branch)); }));
+      Use(std::make_unique<ReplayWindow>(options,
+                                         [this](presenter::Branch branch) { Simulate(std::move(branch)); }));
     } else if (!options.page.empty()) {
       auto centre = MakeCentre();
       OpenPage(*centre);
@@ -112,7 +113,7 @@ class Program {
 
   int Threads() const {
     return command_.options.threads > 0 ? command_.options.threads
-                                        : ChooseThreads(std::thread::hardware_concurrency());
+                                        : presenter::ChooseThreads(std::thread::hardware_concurrency());
   }
 
   // simulators
@@ -151,9 +152,9 @@ class Program {
   /// Goes on in a window beside what is there, or in the simulator that is open.
   void Simulate(SimulatorWindow::Beginning beginning) {
     SimulatorWindow* open = OpenSimulator();
-    if (open != nullptr && !std::holds_alternative<Branch>(beginning)) {
+    if (open != nullptr && !std::holds_alternative<presenter::Branch>(beginning)) {
       if (const auto* start = std::get_if<centre::Start>(&beginning)) open->Presenter().Open(*start);
-      if (const auto* task = std::get_if<TaskRequest>(&beginning)) open->Presenter().Open(*task);
+      if (const auto* task = std::get_if<presenter::TaskRequest>(&beginning)) open->Presenter().Open(*task);
       return open->present();
     }
     simulators_.push_back(MakeSimulator(std::move(beginning)));
@@ -175,18 +176,18 @@ class Program {
     centre::CentreServices services;
     services.start = [this](const centre::Start& start) { Simulate(start); };
     services.start_task = [this](const std::string& task, const std::string& level) {
-      TaskRequest request;
+      presenter::TaskRequest request;
       request.task = task;
       if (!level.empty()) request.choice.level = level;
       Simulate(request);
     };
     services.replay = [this](const std::filesystem::path& recording, double time) {
-      Options options = command_.options;
+      presenter::Options options = command_.options;
       options.replay = recording;
       options.replay_beside.clear();
       options.replay_at = time;
-      replay_ =
-          std::make_unique<ReplayWindow>(options, [this](Branch branch) { Simulate(std::move(branch)); });
+      replay_ = std::make_unique<ReplayWindow>(
+          options, [this](presenter::Branch branch) { Simulate(std::move(branch)); });
       application_->add_window(*replay_);
       replay_->present();
     };
@@ -258,7 +259,7 @@ class Program {
   }
 
   core::Stopwatch since_start_;
-  CommandLine command_;
+  presenter::CommandLine command_;
   centre::Access access_;
   std::mutex mutex_;
   centre::CentreWindow* woken_ = nullptr;  // guarded by mutex_; told of the filing's news

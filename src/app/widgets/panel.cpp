@@ -25,18 +25,18 @@ Panel::Panel() {
   cards_.append(stages_);
 }
 
-void Panel::ShowScene(const ScenePage& page) {
+void Panel::ShowScene(const presenter::ScenePage& page) {
   task_.ShowScene(page);
   operation_.ShowScene(page);
   patient_.Show(page);
 }
 
-void Panel::ShowOperation(const OperationPage& page) {
+void Panel::ShowOperation(const presenter::OperationPage& page) {
   hands_.ShowNames(page);
   operation_.Show(page);
 }
 
-void Panel::ShowMeasures(const MeasuresPage& page) {
+void Panel::ShowMeasures(const presenter::MeasuresPage& page) {
   measures_.Show(page);
   stages_.Show(page);
 }

@@ -5,29 +5,29 @@
 #include <gtkmm.h>
 
 #include "panel_cards.h"
-#include "trocar/app/panel_presenter.h"
+#include "trocar/presenter/panel_presenter.h"
 
 namespace trocar::app {
 
-class Panel : public Gtk::ScrolledWindow, private PanelScreen {
+class Panel : public Gtk::ScrolledWindow, private presenter::PanelScreen {
  public:
   Panel();
 
-  PanelPresenter& Presenter() { return presenter_; }
+  presenter::PanelPresenter& Presenter() { return presenter_; }
   /// Adds a card below the others.
   void Add(gui::Card& card) { cards_.append(card); }
 
  private:
   // PanelScreen
-  void ShowScene(const ScenePage& page) override;
-  void ShowHands(const HandPages& page) override { hands_.Show(page); }
-  void ShowOperation(const OperationPage& page) override;
-  void ShowTask(const TaskReadOut& page) override { task_.Show(page); }
-  void ShowSettings(const SettingsPage& page) override { settings_.Show(page); }
+  void ShowScene(const presenter::ScenePage& page) override;
+  void ShowHands(const presenter::HandPages& page) override { hands_.Show(page); }
+  void ShowOperation(const presenter::OperationPage& page) override;
+  void ShowTask(const presenter::TaskReadOut& page) override { task_.Show(page); }
+  void ShowSettings(const presenter::SettingsPage& page) override { settings_.Show(page); }
   void ShowSetting(std::size_t row, const std::string& value) override { settings_.ShowValue(row, value); }
-  void ShowMeasures(const MeasuresPage& page) override;
+  void ShowMeasures(const presenter::MeasuresPage& page) override;
 
-  PanelPresenter presenter_{*this};
+  presenter::PanelPresenter presenter_{*this};
   Gtk::Box cards_{Gtk::Orientation::VERTICAL};
   TaskCard task_;
   HandsCard hands_;

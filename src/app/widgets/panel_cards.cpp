@@ -44,13 +44,13 @@ TaskCard::TaskCard() : gui::Card("Task") {
   append(errors_);
 }
 
-void TaskCard::ShowScene(const ScenePage& page) {
+void TaskCard::ShowScene(const presenter::ScenePage& page) {
   set_visible(page.has_task);
   name_.set_text(page.task_name);
   about_.set_text(page.task_about);
 }
 
-void TaskCard::Show(const TaskReadOut& page) {
+void TaskCard::Show(const presenter::TaskReadOut& page) {
   gui::SetText(*time_, page.time);
   gui::SetText(*progress_, page.progress);
   gui::SetText(*score_, page.score);
@@ -85,25 +85,25 @@ HandsCard::HandsCard() : gui::Card("Force on the instruments") {
   rows_[scene::kRight].name.set_text(core::Translate("2  Right hand"));
 }
 
-void HandsCard::Show(const HandPages& page) {
+void HandsCard::Show(const presenter::HandPages& page) {
   for (std::size_t hand = 0; hand < rows_.size(); ++hand) {
     Row& row = rows_[hand];
     gui::SetText(row.force, page[hand].force);
-    gui::SetClass(row.force, "warning", page[hand].level == ForceLevel::kWarning);
-    gui::SetClass(row.force, "danger", page[hand].level == ForceLevel::kDanger);
+    gui::SetClass(row.force, "warning", page[hand].level == presenter::ForceLevel::kWarning);
+    gui::SetClass(row.force, "danger", page[hand].level == presenter::ForceLevel::kDanger);
     gui::SetText(row.contact, (page[hand].is_chosen ? "▶ " : "") + page[hand].contact);
     row.bar.Show(page[hand].force_n, page[hand].thresholds);
     gui::SetClass(row.name, "chosen", page[hand].is_chosen);
   }
 }
 
-void HandsCard::ShowNames(const OperationPage& page) {
+void HandsCard::ShowNames(const presenter::OperationPage& page) {
   for (std::size_t hand = 0; hand < rows_.size(); ++hand) gui::SetText(rows_[hand].name, page.hands[hand]);
 }
 
 // the operation
 
-OperationCard::OperationCard(PanelPresenter& presenter) : gui::Card("Operation") {
+OperationCard::OperationCard(presenter::PanelPresenter& presenter) : gui::Card("Operation") {
   for (const scene::Hand hand : {scene::kLeft, scene::kRight}) AddTray(presenter, hand);
   clips_ = &AddLine("Clips left", "In the clip applier that is in use");
   blood_ = &AddLine("Blood", "Lost so far, and what of it lies in the abdomen [mL]");
@@ -121,7 +121,7 @@ OperationCard::OperationCard(PanelPresenter& presenter) : gui::Card("Operation")
   append(assistant_);
 }
 
-void OperationCard::AddTray(PanelPresenter& presenter, scene::Hand hand) {
+void OperationCard::AddTray(presenter::PanelPresenter& presenter, scene::Hand hand) {
   Gtk::DropDown& tray = trays_[static_cast<std::size_t>(hand)];
   tray.set_hexpand(true);
   tray.set_tooltip_text(
@@ -135,14 +135,14 @@ void OperationCard::AddTray(PanelPresenter& presenter, scene::Hand hand) {
           &tray}));
 }
 
-void OperationCard::ShowScene(const ScenePage& page) {
+void OperationCard::ShowScene(const presenter::ScenePage& page) {
   set_visible(page.has_tools);
   is_showing_ = true;
   for (std::size_t hand = 0; hand < trays_.size(); ++hand) SetNames(trays_[hand], page.trays[hand]);
   is_showing_ = false;
 }
 
-void OperationCard::Show(const OperationPage& page) {
+void OperationCard::Show(const presenter::OperationPage& page) {
   is_showing_ = true;
   for (std::size_t hand = 0; hand < trays_.size(); ++hand) {
     const auto asked = static_cast<guint>(page.asked[hand]);
@@ -161,18 +161,18 @@ void OperationCard::Show(const OperationPage& page) {
 
 // settings
 
-SettingsCards::SettingsCards(PanelPresenter& presenter) {
+SettingsCards::SettingsCards(presenter::PanelPresenter& presenter) {
   std::string_view group;
-  for (std::size_t i = 0; i < SettingRows().size(); ++i) {
-    if (SettingRows()[i].group != group) {
-      group = SettingRows()[i].group;
-      AddCard(presenter, SettingRows()[i].group);
+  for (std::size_t i = 0; i < presenter::SettingRows().size(); ++i) {
+    if (presenter::SettingRows()[i].group != group) {
+      group = presenter::SettingRows()[i].group;
+      AddCard(presenter, presenter::SettingRows()[i].group);
     }
     AddRow(presenter, i);
   }
 }
 
-void SettingsCards::AddCard(PanelPresenter& presenter, const char* group) {
+void SettingsCards::AddCard(presenter::PanelPresenter& presenter, const char* group) {
   const bool is_first = cards_.empty();
   cards_.push_back(std::make_unique<gui::Card>(group));
   if (is_first) {
@@ -185,9 +185,10 @@ void SettingsCards::AddCard(PanelPresenter& presenter, const char* group) {
   if (group == std::string_view(kSolverGroup)) AddSolver(presenter);
 }
 
-void SettingsCards::AddSolver(PanelPresenter& presenter) {
+void SettingsCards::AddSolver(presenter::PanelPresenter& presenter) {
   std::vector<std::string> names;
-  for (const SolverChoice& choice : SolverChoices()) names.push_back(core::Translate(choice.label));
+  for (const presenter::SolverChoice& choice : presenter::SolverChoices())
+    names.push_back(core::Translate(choice.label));
   SetNames(solver_, names);
   solver_.set_tooltip_text(
       core::Translate("Chebyshev: fast, the one to operate with. Relaxation: the paper's reference."));
@@ -197,8 +198,8 @@ void SettingsCards::AddSolver(PanelPresenter& presenter) {
   cards_.back()->append(solver_);
 }
 
-void SettingsCards::AddRow(PanelPresenter& presenter, std::size_t place) {
-  const SettingRow& setting = SettingRows()[place];
+void SettingsCards::AddRow(presenter::PanelPresenter& presenter, std::size_t place) {
+  const presenter::SettingRow& setting = presenter::SettingRows()[place];
   rows_.push_back(std::make_unique<Row>());
   Row& row = *rows_.back();
   gui::SetStyle(row.value, "value", Gtk::Align::END);
@@ -216,7 +217,7 @@ void SettingsCards::AddRow(PanelPresenter& presenter, std::size_t place) {
   cards_.back()->append(line);
 }
 
-void SettingsCards::Show(const SettingsPage& page) {
+void SettingsCards::Show(const presenter::SettingsPage& page) {
   is_showing_ = true;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     rows_[i]->slider.set_value(page.rows[i].position);
@@ -245,7 +246,7 @@ MeasuresCard::MeasuresCard() : gui::Card("Measured") {
   time_ = &AddLine("Simulated time", "Since the last reset [min:s]");
 }
 
-void MeasuresCard::Show(const MeasuresPage& page) {
+void MeasuresCard::Show(const presenter::MeasuresPage& page) {
   gui::SetText(*residual_, page.residual);
   gui::SetText(*iterations_, page.iterations);
   gui::SetText(*tick_, page.tick);
@@ -268,7 +269,7 @@ PatientCard::PatientCard() : gui::Card("Patient") {
   }
 }
 
-void PatientCard::Show(const ScenePage& page) {
+void PatientCard::Show(const presenter::ScenePage& page) {
   set_visible(page.has_patient);
   name_.set_text(page.patient_name);
   organs_.set_text(page.patient_organs);
@@ -280,7 +281,7 @@ void PatientCard::Show(const ScenePage& page) {
 
 StagesCard::StagesCard() : gui::Card("Stages of a tick [ms]", 1) {
   for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
-    auto* name = Gtk::make_managed<Gtk::Label>(StageLabel(static_cast<simulation::Stage>(stage)));
+    auto* name = Gtk::make_managed<Gtk::Label>(presenter::StageLabel(static_cast<simulation::Stage>(stage)));
     gui::SetStyle(*name, "fine");
     name->set_hexpand(true);
     gui::SetStyle(stages_[stage], "stage", Gtk::Align::END);
@@ -289,7 +290,7 @@ StagesCard::StagesCard() : gui::Card("Stages of a tick [ms]", 1) {
   }
 }
 
-void StagesCard::Show(const MeasuresPage& page) {
+void StagesCard::Show(const presenter::MeasuresPage& page) {
   for (std::size_t stage = 0; stage < stages_.size(); ++stage)
     gui::SetText(stages_[stage], page.stages[stage]);
 }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "force_bar.h"
-#include "trocar/app/panel_presenter.h"
 #include "trocar/gui/card.h"
+#include "trocar/presenter/panel_presenter.h"
 
 namespace trocar::app {
 
@@ -19,8 +19,8 @@ namespace trocar::app {
 class TaskCard : public gui::Card {
  public:
   TaskCard();
-  void ShowScene(const ScenePage& page);
-  void Show(const TaskReadOut& page);
+  void ShowScene(const presenter::ScenePage& page);
+  void Show(const presenter::TaskReadOut& page);
 
  private:
   Gtk::Label name_, about_, next_, errors_;
@@ -31,8 +31,8 @@ class TaskCard : public gui::Card {
 class HandsCard : public gui::Card {
  public:
   HandsCard();
-  void Show(const HandPages& page);
-  void ShowNames(const OperationPage& page);
+  void Show(const presenter::HandPages& page);
+  void ShowNames(const presenter::OperationPage& page);
 
  private:
   struct Row {
@@ -45,12 +45,12 @@ class HandsCard : public gui::Card {
 /// Tools, liquids and the assistant; hidden where there is one tool a hand, and nothing else to do.
 class OperationCard : public gui::Card {
  public:
-  explicit OperationCard(PanelPresenter& presenter);
-  void ShowScene(const ScenePage& page);
-  void Show(const OperationPage& page);
+  explicit OperationCard(presenter::PanelPresenter& presenter);
+  void ShowScene(const presenter::ScenePage& page);
+  void Show(const presenter::OperationPage& page);
 
  private:
-  void AddTray(PanelPresenter& presenter, scene::Hand hand);
+  void AddTray(presenter::PanelPresenter& presenter, scene::Hand hand);
 
   std::array<Gtk::DropDown, scene::kHandCount> trays_;
   Gtk::Label *clips_, *blood_, *bile_, *stones_, *assistant_does_;
@@ -61,9 +61,9 @@ class OperationCard : public gui::Card {
 /// Sliders, a card for each group of SettingRows().
 class SettingsCards {
  public:
-  explicit SettingsCards(PanelPresenter& presenter);
+  explicit SettingsCards(presenter::PanelPresenter& presenter);
   const std::vector<std::unique_ptr<gui::Card>>& Cards() const { return cards_; }
-  void Show(const SettingsPage& page);
+  void Show(const presenter::SettingsPage& page);
   void ShowValue(std::size_t row, const std::string& value);
 
  private:
@@ -71,9 +71,9 @@ class SettingsCards {
     Gtk::Label value;
     Gtk::Scale slider;
   };
-  void AddCard(PanelPresenter& presenter, const char* group);
-  void AddSolver(PanelPresenter& presenter);
-  void AddRow(PanelPresenter& presenter, std::size_t place);
+  void AddCard(presenter::PanelPresenter& presenter, const char* group);
+  void AddSolver(presenter::PanelPresenter& presenter);
+  void AddRow(presenter::PanelPresenter& presenter, std::size_t place);
 
   std::vector<std::unique_ptr<gui::Card>> cards_;
   std::vector<std::unique_ptr<Row>> rows_;
@@ -86,7 +86,7 @@ class SettingsCards {
 class MeasuresCard : public gui::Card {
  public:
   MeasuresCard();
-  void Show(const MeasuresPage& page);
+  void Show(const presenter::MeasuresPage& page);
 
  private:
   Gtk::Label *residual_, *iterations_, *tick_, *late_, *pictures_, *time_;
@@ -96,7 +96,7 @@ class MeasuresCard : public gui::Card {
 class PatientCard : public gui::Card {
  public:
   PatientCard();
-  void Show(const ScenePage& page);
+  void Show(const presenter::ScenePage& page);
 
  private:
   Gtk::Label name_, organs_, source_;
@@ -106,7 +106,7 @@ class PatientCard : public gui::Card {
 class StagesCard : public gui::Card {
  public:
   StagesCard();
-  void Show(const MeasuresPage& page);
+  void Show(const presenter::MeasuresPage& page);
 
  private:
   std::array<Gtk::Label, simulation::kStageCount> stages_;

@@ -16,7 +16,7 @@ constexpr double kMostSeed = 2147483647;
 }  // namespace
 
 PatientListCard::PatientListCard()
-    : gui::ListCard(kListWidth), desk_(FindPatientsFolder(), [this] { news_.emit(); }) {
+    : gui::ListCard(kListWidth), desk_(presenter::FindPatientsFolder(), [this] { news_.emit(); }) {
   news_.connect(sigc::mem_fun(*this, &PatientListCard::OnNews));
   gui::SetStyle(problem_, "bad");
   gui::Wrap(problem_);
@@ -102,7 +102,7 @@ void PatientListCard::OnNews() {
 }
 
 void PatientListCard::ShowProgress() {
-  const PatientPage& page = desk_.Look();
+  const presenter::PatientPage& page = desk_.Look();
   const bool is_busy = !page.doing.empty();
   under_way_.set_visible(is_busy);
   generate_.set_sensitive(!is_busy);
@@ -113,14 +113,14 @@ void PatientListCard::ShowProgress() {
 }
 
 void PatientListCard::Show() {
-  const PatientPage& page = desk_.Look();
+  const presenter::PatientPage& page = desk_.Look();
   gui::SetTextOrHide(problem_, page.problem ? page.problem->Text() : "");
   ClearRows();
   AddTitle("Who is operated on");
-  for (const PatientEntry& patient : page.patients) AddPatient(patient);
+  for (const presenter::PatientEntry& patient : page.patients) AddPatient(patient);
 }
 
-void PatientListCard::AddPatient(const PatientEntry& patient) {
+void PatientListCard::AddPatient(const presenter::PatientEntry& patient) {
   const bool is_chosen = patient.folder == desk_.Look().chosen;
   Gtk::Label* about = gui::MakeLabel(patient.about, "fine");
   about->set_tooltip_text(patient.about);

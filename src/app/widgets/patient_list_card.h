@@ -6,9 +6,9 @@
 
 #include <filesystem>
 
-#include "trocar/app/patient_desk.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/list_card.h"
+#include "trocar/presenter/patient_desk.h"
 
 namespace trocar::app {
 
@@ -26,7 +26,7 @@ class PatientListCard : public gui::ListCard {
   void MakeFoot();
   void Show();
   void ShowProgress();
-  void AddPatient(const PatientEntry& patient);
+  void AddPatient(const presenter::PatientEntry& patient);
   void AskForLabels();
   void Begin();
   void OnNews();
@@ -40,7 +40,7 @@ class PatientListCard : public gui::ListCard {
   sigc::connection pulse_;
   Glib::Dispatcher news_;
   sigc::signal<void(std::filesystem::path)> signal_chosen_;
-  PatientDesk desk_;  // ends before what it uses
+  presenter::PatientDesk desk_;  // ends before what it uses
 };
 
 }  // namespace trocar::app

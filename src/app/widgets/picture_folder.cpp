@@ -5,19 +5,19 @@
 
 #include <system_error>
 
-#include "trocar/app/film_job.h"
+#include "trocar/presenter/film_job.h"
 
 namespace trocar::app {
 
 core::Result<std::filesystem::path> MakePictureName(const std::string& ending) {
   const std::filesystem::path folder =
-      PictureFolder(Glib::get_user_special_dir(Glib::UserDirectory::PICTURES));
+      presenter::PictureFolder(Glib::get_user_special_dir(Glib::UserDirectory::PICTURES));
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure)
     return core::Error{core::ErrorCode::kFileUnwritable,
                        folder.string() + ": " + failure.message() + "; check the folder and its permissions"};
-  return NamePicture(folder, std::chrono::system_clock::now(), ending);
+  return presenter::NamePicture(folder, std::chrono::system_clock::now(), ending);
 }
 
 }  // namespace trocar::app

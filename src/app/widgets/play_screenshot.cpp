@@ -14,15 +14,16 @@ constexpr unsigned kRetry = 100;  // [ms]
 
 }  // namespace
 
-void SavePlayScreenshot(Gtk::Window& window, SimulatorPresenter& presenter) {
+void SavePlayScreenshot(Gtk::Window& window, presenter::SimulatorPresenter& presenter) {
   if (const auto status = gui::SaveScreenshot(window, presenter.GetOptions().run.screenshot); !status)
     return presenter.Fail(status.error());
-  std::printf("%s\n",
-              FormatPlayReport(presenter.MakeReport(window.get_width(), window.get_height())).c_str());
+  std::printf(
+      "%s\n",
+      presenter::FormatPlayReport(presenter.MakeReport(window.get_width(), window.get_height())).c_str());
   window.close();
 }
 
-void EndDeviceRun(Gtk::Window& window, DevicePresenter& presenter, int tries) {
+void EndDeviceRun(Gtk::Window& window, presenter::DevicePresenter& presenter, int tries) {
   const core::Status saved = gui::SaveScreenshot(window, presenter.GetOptions().run.screenshot);
   // a window that is being laid out anew has nothing to show for a moment
   if (!saved && tries < kMostTries) {

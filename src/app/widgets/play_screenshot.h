@@ -4,15 +4,15 @@
 
 #include <gtkmm.h>
 
-#include "trocar/app/device_presenter.h"
-#include "trocar/app/simulator_presenter.h"
+#include "trocar/presenter/device_presenter.h"
+#include "trocar/presenter/simulator_presenter.h"
 
 namespace trocar::app {
 
 /// Saves the window's picture where the options say, prints the report and closes the window. Never within a frame.
-void SavePlayScreenshot(Gtk::Window& window, SimulatorPresenter& presenter);
+void SavePlayScreenshot(Gtk::Window& window, presenter::SimulatorPresenter& presenter);
 /// Likewise for the page of devices, as soon as it has something to show.
 /// \param tries  so far
-void EndDeviceRun(Gtk::Window& window, DevicePresenter& presenter, int tries = 0);
+void EndDeviceRun(Gtk::Window& window, presenter::DevicePresenter& presenter, int tries = 0);
 
 }  // namespace trocar::app

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "trocar/app/replay_presenter.h"
+#include "trocar/presenter/replay_presenter.h"
 
 namespace trocar::app {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr int kListWidth = 700;         // [pixels]
 constexpr std::size_t kMostRows = 200;  // of the newest: a list that nobody scrolls through
 
-std::string NameOf(const record::Description& d) {
+std::string presenter::NameOf(const record::Description& d) {
   std::string name = std::filesystem::path(d.name).stem().string();
   std::replace(name.begin(), name.end(), '_', ' ');
   return name + (d.level.empty() ? "" : ", " + d.level) + ", seed " + std::to_string(d.seed);
@@ -23,7 +23,7 @@ std::string DescribeRow(const record::RecordingSummary& recording) {
   const record::Description& d = recording.description;
   std::string text;
   if (d.started.size() >= 16) text = d.started.substr(0, 10) + " " + d.started.substr(11, 5) + "  ·  ";
-  text += FormatClock(recording.seconds);
+  text += presenter::FormatClock(recording.seconds);
   const std::string outcome = record::DescribeOutcome(recording.outcome);
   if (!recording.is_finished) {
     text += "  ·  not finished";
@@ -70,7 +70,7 @@ void RecordingChooser::AddRecording(const record::RecordingSummary& recording) {
   auto* open = Gtk::make_managed<Gtk::Button>(verb_);
   open->set_tooltip_text(recording.path.filename().string());
   open->signal_clicked().connect([this, path = recording.path] { signal_chosen_.emit(path); });
-  AddRow(NameOf(recording.description), DescribeRow(recording), {open});
+  AddRow(presenter::NameOf(recording.description), DescribeRow(recording), {open});
 }
 
 void RecordingChooser::OpenFile() {

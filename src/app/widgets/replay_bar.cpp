@@ -15,15 +15,15 @@ constexpr double kEventTick = 3;
 struct Colour {
   double red, green, blue;
 };
-Colour ColourOf(ReplayMark::Kind kind) {
+Colour ColourOf(presenter::ReplayMark::Kind kind) {
   switch (kind) {
-    case ReplayMark::Kind::kError:
+    case presenter::ReplayMark::Kind::kError:
       return {1.00, 0.42, 0.37};
-    case ReplayMark::Kind::kPhase:
+    case presenter::ReplayMark::Kind::kPhase:
       return {0.50, 0.82, 0.87};
-    case ReplayMark::Kind::kRemark:
+    case presenter::ReplayMark::Kind::kRemark:
       return {1.00, 0.76, 0.30};
-    case ReplayMark::Kind::kEvent:
+    case presenter::ReplayMark::Kind::kEvent:
       break;
   }
   return {0.55, 0.60, 0.65};
@@ -49,12 +49,12 @@ void ReplayBar::MoveTo(double x) {
   signal_moved_.emit(begin_ + share * (end_ - begin_));
 }
 
-void ReplayBar::SetMarks(const std::vector<ReplayMark>& marks) {
+void ReplayBar::SetMarks(const std::vector<presenter::ReplayMark>& marks) {
   marks_ = marks;
   queue_draw();
 }
 
-void ReplayBar::Show(const ReplayPage& page) {
+void ReplayBar::Show(const presenter::ReplayPage& page) {
   if (begin_ == page.begin && end_ == page.end && time_ == page.time &&
       seek_progress_ == page.seek_progress && known_share_ == page.known_share)
     return;
@@ -87,8 +87,8 @@ void ReplayBar::Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width, int)
   cairo->set_line_cap(Cairo::Context::LineCap::BUTT);
   cairo->set_line_width(2);
   for (const bool is_event : {true, false}) {
-    for (const ReplayMark& mark : marks_) {
-      if ((mark.kind == ReplayMark::Kind::kEvent) != is_event) continue;
+    for (const presenter::ReplayMark& mark : marks_) {
+      if ((mark.kind == presenter::ReplayMark::Kind::kEvent) != is_event) continue;
       const Colour colour = ColourOf(mark.kind);
       cairo->set_source_rgb(colour.red, colour.green, colour.blue);
       const double column = ColumnOf(mark.time, width), half = is_event ? kEventTick : kTick;

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "trocar/app/replay_presenter.h"
+#include "trocar/presenter/replay_presenter.h"
 
 namespace trocar::app {
 
@@ -14,8 +14,8 @@ class ReplayBar : public Gtk::DrawingArea {
  public:
   ReplayBar();
 
-  void SetMarks(const std::vector<ReplayMark>& marks);
-  void Show(const ReplayPage& page);
+  void SetMarks(const std::vector<presenter::ReplayMark>& marks);
+  void Show(const presenter::ReplayPage& page);
 
   /// A person went there [s].
   sigc::signal<void(double)>& SignalMoved() { return signal_moved_; }
@@ -25,7 +25,7 @@ class ReplayBar : public Gtk::DrawingArea {
   void MoveTo(double x);
   double ColumnOf(double time, int width) const;
 
-  std::vector<ReplayMark> marks_;
+  std::vector<presenter::ReplayMark> marks_;
   double begin_ = 0, end_ = 1, time_ = 0, seek_progress_ = 1, known_share_ = 0;
   double pressed_at_ = 0;
   sigc::signal<void(double)> signal_moved_;

@@ -15,11 +15,11 @@ namespace {
 
 constexpr int kWidth = 1280, kHeight = 800, kListWidth = 250;  // [pixels]
 
-const char* StyleOf(ReplayMark::Kind kind) {
+const char* StyleOf(presenter::ReplayMark::Kind kind) {
   switch (kind) {
-    case ReplayMark::Kind::kError:
+    case presenter::ReplayMark::Kind::kError:
       return "error";
-    case ReplayMark::Kind::kPhase:
+    case presenter::ReplayMark::Kind::kPhase:
       return "phase";
     default:
       return "remark";
@@ -28,8 +28,10 @@ const char* StyleOf(ReplayMark::Kind kind) {
 
 }  // namespace
 
-ReplayWindow::ReplayWindow(const Options& options, std::function<void(Branch)> take_over)
-    : bar_(ReplayCommands(), tips_, [this](const ReplayCommand& command) { presenter_->Do(command.action); }),
+ReplayWindow::ReplayWindow(const presenter::Options& options,
+                           std::function<void(presenter::Branch)> take_over)
+    : bar_(presenter::ReplayCommands(), tips_,
+           [this](const presenter::ReplayCommand& command) { presenter_->Do(command.action); }),
       take_over_(std::move(take_over)),
       recording_(options.replay) {
   set_title("Trocar: replay");
@@ -37,8 +39,8 @@ ReplayWindow::ReplayWindow(const Options& options, std::function<void(Branch)> t
   set_default_size(kWidth, kHeight);
   set_titlebar(bar_);
   MakeContent();
-  presenter_ = std::make_unique<ReplayPresenter>(options, static_cast<ReplayScreen&>(*this),
-                                                 [this] { loaded_.emit(); });
+  presenter_ = std::make_unique<presenter::ReplayPresenter>(
+      options, static_cast<presenter::ReplayScreen&>(*this), [this] { loaded_.emit(); });
   MakeRoutes();
   presenter_->Start();
 }
@@ -89,7 +91,7 @@ void ReplayWindow::MakeContent() {
     MakeSide(side);
     pictures->append(sides_[side].overlay);
   }
-  sides_[ReplayPresenter::kBeside].overlay.set_visible(false);
+  sides_[presenter::ReplayPresenter::kBeside].overlay.set_visible(false);
   overlay_.set_child(*pictures);
   help_card_.set_visible(false);
   chooser_.set_visible(false);
@@ -155,8 +157,9 @@ void ReplayWindow::MakeRoutes() {
   });
   chooser_.SignalChosen().connect(
       [this](const std::filesystem::path& path) { presenter_->OpenBeside(path); });
-  chooser_.SignalClosed().connect([this] { presenter_->Do(ReplayAction::kCloseCards); });
-  sides_[ReplayPresenter::kOwn].picture.add_tick_callback(sigc::mem_fun(*this, &ReplayWindow::OnFrame));
+  chooser_.SignalClosed().connect([this] { presenter_->Do(presenter::ReplayAction::kCloseCards); });
+  sides_[presenter::ReplayPresenter::kOwn].picture.add_tick_callback(
+      sigc::mem_fun(*this, &ReplayWindow::OnFrame));
   for (Side& side : sides_) {
     side.picture.SignalFailed().connect([this](const core::Error& error) { failure_card_.Show(error); });
   }
@@ -167,7 +170,7 @@ bool ReplayWindow::OnKey(guint keyval, guint, Gdk::ModifierType state) {
   if ((state & (ModifierType::ALT_MASK | ModifierType::SUPER_MASK)) != ModifierType{}) return false;
   const bool control = (state & ModifierType::CONTROL_MASK) != ModifierType{};
   // '+' needs Shift on some keyboards, and on others none
-  const ReplayCommand* command = FindCommand(ReplayCommands(), keyval, control, false);
+  const presenter::ReplayCommand* command = FindCommand(presenter::ReplayCommands(), keyval, control, false);
   if (command == nullptr) return false;
   tips_.End();
   presenter_->Do(command->action);
@@ -185,9 +188,9 @@ bool ReplayWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   return true;
 }
 
-void ReplayWindow::Show(const ReplayPage& page) {
+void ReplayWindow::Show(const presenter::ReplayPage& page) {
   if (get_title().raw() != page.title) set_title(page.title);
-  bar_.Show([this](const ReplayCommand& command) { return presenter_->FindButton(command); });
+  bar_.Show([this](const presenter::ReplayCommand& command) { return presenter_->FindButton(command); });
   for (std::size_t side = 0; side < sides_.size(); ++side) {
     if (sides_[side].picture.GetOptions() != page.view) sides_[side].picture.SetOptions(page.view);
     gui::SetTextOrHide(sides_[side].about, page.about[side]);
@@ -210,16 +213,16 @@ void ReplayWindow::UseReplay(std::size_t side, const session::ReplayRunner* repl
   } else {
     now.picture.SetScene(nullptr, {}, {});
   }
-  if (side == ReplayPresenter::kBeside) now.overlay.set_visible(replay != nullptr);
+  if (side == presenter::ReplayPresenter::kBeside) now.overlay.set_visible(replay != nullptr);
 }
 
-void ReplayWindow::ShowMarks(const std::vector<ReplayMark>& marks) {
+void ReplayWindow::ShowMarks(const std::vector<presenter::ReplayMark>& marks) {
   time_bar_.SetMarks(marks);
   while (Gtk::Widget* row = mark_list_.get_first_child()) mark_list_.remove(*row);
   marks_.clear();
-  for (const ReplayMark& mark : marks) {
-    if (mark.kind == ReplayMark::Kind::kEvent) continue;
-    auto* time = Gtk::make_managed<Gtk::Label>(FormatClock(mark.time));
+  for (const presenter::ReplayMark& mark : marks) {
+    if (mark.kind == presenter::ReplayMark::Kind::kEvent) continue;
+    auto* time = Gtk::make_managed<Gtk::Label>(presenter::FormatClock(mark.time));
     time->add_css_class("value");
     auto* text = gui::MakeLabel(mark.text, StyleOf(mark.kind));
     text->set_tooltip_text(mark.text);
@@ -228,36 +231,36 @@ void ReplayWindow::ShowMarks(const std::vector<ReplayMark>& marks) {
   }
 }
 
-void ReplayWindow::TakeOver(Branch branch) {
+void ReplayWindow::TakeOver(presenter::Branch branch) {
   // outside of the frame, which holds the GLArea: a window opens
-  auto shared = std::make_shared<Branch>(std::move(branch));
+  auto shared = std::make_shared<presenter::Branch>(std::move(branch));
   Glib::signal_timeout().connect_once([this, shared] { take_over_(std::move(*shared)); }, 0);
 }
 
-void ReplayWindow::DoInWindow(ReplayAction action) {
+void ReplayWindow::DoInWindow(presenter::ReplayAction action) {
   switch (action) {
-    case ReplayAction::kToggleFullscreen:
+    case presenter::ReplayAction::kToggleFullscreen:
       is_fullscreen() ? unfullscreen() : fullscreen();
       break;
-    case ReplayAction::kSavePicture:
+    case presenter::ReplayAction::kSavePicture:
       // outside of the frame, which holds the GLArea
       Glib::signal_timeout().connect_once([this] { SavePicture(); }, 0);
       break;
-    case ReplayAction::kSaveClip:
+    case presenter::ReplayAction::kSaveClip:
       if (const auto file = MakePictureName(".webm"); file.ok()) {
-        StartFilm(presenter_->Time(), kClipSeconds, *file);
+        StartFilm(presenter_->Time(), presenter::kClipSeconds, *file);
       } else {
         presenter_->Tell(file.error().Text(), true);
       }
       break;
-    case ReplayAction::kSaveVideo:
+    case presenter::ReplayAction::kSaveVideo:
       file_dialog_.Ask(
           *this, {"Save the video", "", recording_.stem().string() + ".webm", {{"Video (WebM)", "*.webm"}}},
           [this](const std::filesystem::path& file) {
             StartFilm(std::numeric_limits<double>::infinity(), 0, file);
           });
       break;
-    case ReplayAction::kClose:
+    case presenter::ReplayAction::kClose:
       // never within a frame, which holds the GLArea
       Glib::signal_timeout().connect_once([this] { close(); }, 0);
       break;
@@ -268,13 +271,14 @@ void ReplayWindow::DoInWindow(ReplayAction action) {
 
 void ReplayWindow::SavePicture() {
   const auto file = MakePictureName(".png");
-  const core::Status saved = file.ok() ? gui::SaveWidgetPicture(sides_[ReplayPresenter::kOwn].picture, *file)
-                                       : core::Status(file.error());
+  const core::Status saved =
+      file.ok() ? gui::SaveWidgetPicture(sides_[presenter::ReplayPresenter::kOwn].picture, *file)
+                : core::Status(file.error());
   presenter_->Tell(saved.ok() ? "Saved " + file->string() : saved.error().Text(), !saved.ok());
 }
 
 void ReplayWindow::StartFilm(double until, double last_seconds, const std::filesystem::path& video) {
-  FilmRequest request;
+  presenter::FilmRequest request;
   request.recording = recording_;
   request.video = video;
   request.until = until;

@@ -14,18 +14,18 @@
 #include "picture.h"
 #include "recording_chooser.h"
 #include "replay_bar.h"
-#include "trocar/app/replay_presenter.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
+#include "trocar/presenter/replay_presenter.h"
 
 namespace trocar::app {
 
-class ReplayWindow : public Gtk::ApplicationWindow, private ReplayScreen {
+class ReplayWindow : public Gtk::ApplicationWindow, private presenter::ReplayScreen {
  public:
   /// \param options    names the recording
   /// \param take_over  called when somebody goes on from a moment; never within a frame
-  ReplayWindow(const Options& options, std::function<void(Branch)> take_over);
+  ReplayWindow(const presenter::Options& options, std::function<void(presenter::Branch)> take_over);
   ~ReplayWindow() override;
 
   /// What went wrong, if anything did: the program's exit status follows it.
@@ -47,30 +47,30 @@ class ReplayWindow : public Gtk::ApplicationWindow, private ReplayScreen {
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
 
   // ReplayScreen
-  void Show(const ReplayPage& page) override;
+  void Show(const presenter::ReplayPage& page) override;
   void UseReplay(std::size_t side, const session::ReplayRunner* replay) override;
-  void ShowMarks(const std::vector<ReplayMark>& marks) override;
+  void ShowMarks(const std::vector<presenter::ReplayMark>& marks) override;
   void FillRecordingList(const std::filesystem::path& folder) override { chooser_.Load(folder); }
-  void TakeOver(Branch branch) override;
-  void DoInWindow(ReplayAction action) override;
+  void TakeOver(presenter::Branch branch) override;
+  void DoInWindow(presenter::ReplayAction action) override;
 
   gui::Tips tips_;
-  gui::CommandBar<ReplayAction, ReplayNeeds> bar_;
-  std::array<Side, ReplayPresenter::kSides> sides_;
+  gui::CommandBar<presenter::ReplayAction, presenter::ReplayNeeds> bar_;
+  std::array<Side, presenter::ReplayPresenter::kSides> sides_;
   Gtk::Overlay overlay_;
   ReplayBar time_bar_;
   Gtk::ListBox mark_list_;
-  std::vector<ReplayMark> marks_;  // of the list's rows
+  std::vector<presenter::ReplayMark> marks_;  // of the list's rows
   RecordingChooser chooser_{"Beside"};
-  gui::HelpCard help_card_{ReplayHelp()};
+  gui::HelpCard help_card_{presenter::ReplayHelp()};
   FailureCard failure_card_;
   Gtk::Label clock_, state_, message_;
-  std::function<void(Branch)> take_over_;
+  std::function<void(presenter::Branch)> take_over_;
   Glib::Dispatcher loaded_;
   gui::FileDialog file_dialog_;
   std::filesystem::path recording_;
   FilmBar film_bar_{[this](const std::string& text, bool is_warning) { presenter_->Tell(text, is_warning); }};
-  std::unique_ptr<ReplayPresenter> presenter_;
+  std::unique_ptr<presenter::ReplayPresenter> presenter_;
 };
 
 }  // namespace trocar::app

@@ -4,7 +4,7 @@
 
 #include <gtkmm.h>
 
-#include "trocar/app/task_result.h"
+#include "trocar/presenter/task_result.h"
 
 namespace trocar::app {
 
@@ -13,7 +13,7 @@ class ResultCard : public Gtk::Box {
   ResultCard();
 
   /// Takes the place of what was shown before.
-  void Show(const TaskResult& result);
+  void Show(const presenter::TaskResult& result);
   sigc::signal<void()>& SignalAgain() { return signal_again_; }
   sigc::signal<void()>& SignalOther() { return signal_other_; }
   sigc::signal<void()>& SignalSave() { return signal_save_; }

@@ -6,10 +6,10 @@
 
 #include "picture_folder.h"
 #include "play_screenshot.h"
-#include "trocar/app/guides.h"
 #include "trocar/core/user_folder.h"
 #include "trocar/gui/labels.h"
 #include "trocar/gui/window_screenshot.h"
+#include "trocar/presenter/guides.h"
 
 namespace trocar::app {
 namespace {
@@ -18,11 +18,11 @@ constexpr int kWidth = 1280, kHeight = 800;
 
 }  // namespace
 
-SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& since_start,
+SimulatorWindow::SimulatorWindow(const presenter::Options& options, const core::Stopwatch& since_start,
                                  SimulatorServices services, Beginning beginning)
     : services_(std::move(services)),
-      bar_(SimulatorCommands(), tips_,
-           [this](const SimulatorCommand& command) { presenter_->Do(command.action.action); }),
+      bar_(presenter::SimulatorCommands(), tips_,
+           [this](const presenter::SimulatorCommand& command) { presenter_->Do(command.action.action); }),
       keys_(MakeKeyCardServices()),
       loading_best_([this] { best_loaded_.emit(); }) {
   set_title("Trocar");
@@ -32,19 +32,19 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
   MakeContent();
   tips_.Adopt(panel_);
   hands_ = std::make_unique<HandEvents>(*this, picture_, panel_);
-  presenter_ = std::make_unique<SimulatorPresenter>(
-      options, since_start, static_cast<SimulatorScreen&>(*this), [this] { loaded_.emit(); },
+  presenter_ = std::make_unique<presenter::SimulatorPresenter>(
+      options, since_start, static_cast<presenter::SimulatorScreen&>(*this), [this] { loaded_.emit(); },
       services_.hooks);
   MakeRoutes();
   MakeSound(options);
   panel_.set_sensitive(false);  // until there is something to set
   if (options.is_fullscreen) fullscreen();
   picture_.grab_focus();
-  if (auto* branch = std::get_if<Branch>(&beginning)) {
+  if (auto* branch = std::get_if<presenter::Branch>(&beginning)) {
     presenter_->TakeOver(std::move(*branch));
   } else if (const auto* start = std::get_if<centre::Start>(&beginning)) {
     presenter_->Open(*start);
-  } else if (const auto* task = std::get_if<TaskRequest>(&beginning)) {
+  } else if (const auto* task = std::get_if<presenter::TaskRequest>(&beginning)) {
     presenter_->Open(*task);
   } else {
     presenter_->Start();
@@ -149,7 +149,7 @@ void SimulatorWindow::MakeContent() {
 }
 
 void SimulatorWindow::MakeRoutes() {
-  hands_->SignalAction().connect([this](Action action) {
+  hands_->SignalAction().connect([this](presenter::Action action) {
     tips_.End();
     presenter_->Do(action);
   });
@@ -161,7 +161,7 @@ void SimulatorWindow::MakeRoutes() {
   picture_.SignalDrawn().connect([this] { presenter_->CountPicture(); });
   picture_.SignalFailed().connect([this](const core::Error& error) { presenter_->Fail(error); });
   picture_.add_tick_callback(sigc::mem_fun(*this, &SimulatorWindow::OnFrame));
-  home_.SignalChosen().connect([this](HomeChoice choice) { presenter_->Choose(choice); });
+  home_.SignalChosen().connect([this](presenter::HomeChoice choice) { presenter_->Choose(choice); });
   home_.SignalPerson().connect([this](const std::string& text) { presenter_->BeSomebody(text); });
   loaded_.connect([this] { presenter_->FinishLoading(); });
   // other windows may keep the program alive: what nobody sees any more does not run on
@@ -171,7 +171,8 @@ void SimulatorWindow::MakeRoutes() {
         return false;
       },
       false);
-  chooser_.SignalChosen().connect([this](const TaskRequest& request) { presenter_->Open(request); });
+  chooser_.SignalChosen().connect(
+      [this](const presenter::TaskRequest& request) { presenter_->Open(request); });
   chooser_.SignalClosed().connect([this] { presenter_->CloseTaskList(); });
   chooser_.SignalPatients().connect([this] { presenter_->OpenPatientList(); });
   patients_.SignalChosen().connect(
@@ -201,11 +202,11 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
                                         picture_.FieldOfView(), picture_.CirclePixels());
   if (work.snapshot == nullptr) return true;
   picture_.SetSnapshot(work.snapshot);
-  SessionControl& control = *presenter_->Control();
+  presenter::SessionControl& control = *presenter_->Control();
   view::Overlay overlay;
   overlay.X_world_camera = control.CalcView(*work.snapshot);
   if (presenter_->HasGuides())
-    overlay.trails = MakeGuides(control.GetScene(), control.Surfaces(), *work.snapshot);
+    overlay.trails = presenter::MakeGuides(control.GetScene(), control.Surfaces(), *work.snapshot);
   picture_.SetOverlay(std::move(overlay));
   picture_.queue_render();
   HearFrame(*work.snapshot);
@@ -216,7 +217,7 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
     panel_.Presenter().ShowTimes(*work.snapshot, presenter_->Control()->Statistics(), presenter_->Stages(),
                                  presenter_->PictureRate());
   }
-  if (work.run == UnattendedPlay::Step::kSave) {
+  if (work.run == presenter::UnattendedPlay::Step::kSave) {
     // outside of the frame, which holds the GLArea; a timeout, because frames that fill the time starve idle
     // callbacks
     Glib::signal_timeout().connect_once([this] { SavePlayScreenshot(*this, *presenter_); }, 0);
@@ -224,9 +225,9 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   return true;
 }
 
-void SimulatorWindow::Show(const SimulatorPage& page) {
+void SimulatorWindow::Show(const presenter::SimulatorPage& page) {
   if (get_title().raw() != page.title) set_title(page.title);
-  bar_.Show([this](const SimulatorCommand& command) { return presenter_->FindButton(command); });
+  bar_.Show([this](const presenter::SimulatorCommand& command) { return presenter_->FindButton(command); });
   if (picture_.GetOptions() != page.view) picture_.SetOptions(page.view);
   hands_->SetBindings(presenter_->Bindings());
   hands_->FollowPause();
@@ -260,7 +261,7 @@ void SimulatorWindow::Show(const SimulatorPage& page) {
 }
 
 /// Whoever has only a keyboard gets into a card that opens.
-void SimulatorWindow::FocusCard(const SimulatorPage& page) {
+void SimulatorWindow::FocusCard(const presenter::SimulatorPage& page) {
   Gtk::Widget* card = page.is_home_open           ? static_cast<Gtk::Widget*>(&home_)
                       : page.is_task_list_open    ? static_cast<Gtk::Widget*>(&chooser_)
                       : page.is_patient_list_open ? static_cast<Gtk::Widget*>(&patients_)
@@ -282,7 +283,7 @@ void SimulatorWindow::FocusCard(const SimulatorPage& page) {
       0);
 }
 
-void SimulatorWindow::UseControl(SessionControl* control) {
+void SimulatorWindow::UseControl(presenter::SessionControl* control) {
   device_page_.reset();
   picture_.SetSnapshot(nullptr);
   if (sound_ != nullptr) sound_->Rest();
@@ -302,8 +303,8 @@ void SimulatorWindow::RequestBest() {
 }
 
 void SimulatorWindow::ShowHelp() {
-  const KeyBindings& bindings = presenter_->Bindings();
-  std::pair<KeyLayout, KeyBindings::Own> now{bindings.Layout(), bindings.GetOwn()};
+  const presenter::KeyBindings& bindings = presenter_->Bindings();
+  std::pair<presenter::KeyLayout, presenter::KeyBindings::Own> now{bindings.Layout(), bindings.GetOwn()};
   if (shown_help_ == now) return;
   shown_help_ = std::move(now);
   while (Gtk::Widget* child = help_.get_first_child()) help_.remove(*child);
@@ -316,7 +317,7 @@ KeyCardServices SimulatorWindow::MakeKeyCardServices() {
   services.change_key = [this](const std::string& id, std::uint32_t key) {
     return presenter_->ChangeKey(id, key);
   };
-  services.change_button = [this](ButtonAct act, MouseButton button) {
+  services.change_button = [this](presenter::ButtonAct act, presenter::MouseButton button) {
     presenter_->ChangeButton(act, button);
   };
   services.restore = [this] { presenter_->RestoreKeys(); };
@@ -328,29 +329,29 @@ std::vector<std::string> SimulatorWindow::UseKeys(const std::map<std::string, de
   return hands_->SetKeys(keys);
 }
 
-void SimulatorWindow::DoInWindow(Action action) {
+void SimulatorWindow::DoInWindow(presenter::Action action) {
   if (ChangeSound(action)) return;
   switch (action) {
-    case Action::kToggleFullscreen:
+    case presenter::Action::kToggleFullscreen:
       is_fullscreen() ? unfullscreen() : fullscreen();
       break;
-    case Action::kSwitchPane:
+    case presenter::Action::kSwitchPane:
       SwitchPane();
       break;
-    case Action::kOpenDevices:
+    case presenter::Action::kOpenDevices:
       OpenDevices();
       break;
-    case Action::kOpenCentre:
+    case presenter::Action::kOpenCentre:
       if (services_.open_centre) services_.open_centre();
       break;
-    case Action::kSavePicture:
+    case presenter::Action::kSavePicture:
       // outside of the frame, which holds the GLArea
       Glib::signal_timeout().connect_once([this] { SavePicture(); }, 0);
       break;
-    case Action::kSaveClip:
+    case presenter::Action::kSaveClip:
       SaveClip();
       break;
-    case Action::kQuit:
+    case presenter::Action::kQuit:
       // never within a frame, which holds the GLArea
       Glib::signal_timeout().connect_once([this] { close(); }, 0);
       break;
@@ -364,10 +365,10 @@ core::Result<std::string> SimulatorWindow::BeSomebody(const std::optional<std::s
 }
 
 void SimulatorWindow::OpenReplay(const std::filesystem::path& recording) {
-  Options options = presenter_->GetOptions();
+  presenter::Options options = presenter_->GetOptions();
   options.replay = recording;
   options.replay_beside.clear();
-  replay_ = std::make_unique<ReplayWindow>(options, [this](Branch branch) {
+  replay_ = std::make_unique<ReplayWindow>(options, [this](presenter::Branch branch) {
     presenter_->TakeOver(std::move(branch));
     present();
   });
@@ -413,20 +414,20 @@ void SimulatorWindow::SaveClip() {
     return presenter_->Tell("This attempt is not recorded, so that there is no clip of it.", true);
   const auto file = MakePictureName(".webm");
   if (!file.ok()) return presenter_->Tell(file.error().Text(), true);
-  FilmRequest request;
+  presenter::FilmRequest request;
   request.recording = recording->path;
   request.video = *file;
-  request.last_seconds = kClipSeconds;
+  request.last_seconds = presenter::kClipSeconds;
   film_bar_.Start(std::move(request));
 }
 
 /// A run without a person is silent.
-void SimulatorWindow::MakeSound(const Options& options) {
+void SimulatorWindow::MakeSound(const presenter::Options& options) {
   panel_.Add(sound_card_);
   if (!options.run.IsAttended()) return;
   const std::filesystem::path folder =
       options.settings.empty() ? core::FindConfigFolder() : options.settings.parent_path();
-  sound_ = std::make_unique<WindowSound>(folder / "sound.json");
+  sound_ = std::make_unique<presenter::WindowSound>(folder / "sound.json");
   sound_card_.Show(sound_->Settings(), sound_->Describe());
   sound_card_.SignalChanged().connect([this](const sound::SoundSettings& settings) {
     sound_->Set(settings);
@@ -436,27 +437,27 @@ void SimulatorWindow::MakeSound(const Options& options) {
 
 void SimulatorWindow::HearFrame(const simulation::Snapshot& snapshot) {
   if (sound_ == nullptr) return;
-  SessionControl& control = *presenter_->Control();
+  presenter::SessionControl& control = *presenter_->Control();
   sound_->Hear(control.GetScene(), snapshot, control.GetSentInput(), !control.IsPaused());
   // what an instructor would say: what to do, or that something went wrong
-  const SimulatorPage& page = presenter_->Page();
+  const presenter::SimulatorPage& page = presenter_->Page();
   sound_->Say(!page.tutorial.empty() ? page.tutorial : page.is_event_warning ? page.event : std::string());
 }
 
 /// \return whether the action is one of the sound's
-bool SimulatorWindow::ChangeSound(Action action) {
+bool SimulatorWindow::ChangeSound(presenter::Action action) {
   if (sound_ == nullptr) return false;
   switch (action) {
-    case Action::kToggleSound:
+    case presenter::Action::kToggleSound:
       sound_->ToggleMute();
       break;
-    case Action::kToggleSpeech:
+    case presenter::Action::kToggleSpeech:
       sound_->ToggleSpeech();
       break;
-    case Action::kLouder:
+    case presenter::Action::kLouder:
       sound_->ChangeVolume(1);
       break;
-    case Action::kQuieter:
+    case presenter::Action::kQuieter:
       sound_->ChangeVolume(-1);
       break;
     default:

@@ -25,10 +25,10 @@
 #include "result_card.h"
 #include "sound_card.h"
 #include "task_chooser.h"
-#include "trocar/app/simulator_presenter.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
+#include "trocar/presenter/simulator_presenter.h"
 
 namespace trocar::app {
 
@@ -43,20 +43,20 @@ struct SimulatorServices {
   std::function<std::function<core::Result<centre::BestResults>()>()> load_best;
   /// As SimulatorScreen::BeSomebody.
   std::function<core::Result<std::string>(const std::optional<std::string>&)> be_somebody;
-  AttemptHooks hooks;
+  presenter::AttemptHooks hooks;
 };
 
-class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
+class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::SimulatorScreen {
  public:
   /// \param since_start  runs since the program began
   /// \param beginning    nothing, or what is opened in place of the scene that the options name: a moment of a recording from which
   ///                     it goes on, a step of a course or an exam, or a task
-  using Beginning = std::variant<std::monostate, Branch, centre::Start, TaskRequest>;
-  SimulatorWindow(const Options& options, const core::Stopwatch& since_start, SimulatorServices services,
-                  Beginning beginning = {});
+  using Beginning = std::variant<std::monostate, presenter::Branch, centre::Start, presenter::TaskRequest>;
+  SimulatorWindow(const presenter::Options& options, const core::Stopwatch& since_start,
+                  SimulatorServices services, Beginning beginning = {});
   ~SimulatorWindow() override;
 
-  SimulatorPresenter& Presenter() { return *presenter_; }
+  presenter::SimulatorPresenter& Presenter() { return *presenter_; }
   /// Writes what --haptic-record asks for; call it once the window has closed.
   void SaveHapticRecord() { presenter_->SaveHapticRecord(); }
   /// What went wrong, if anything did: the program's exit status follows it.
@@ -73,39 +73,39 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   void ChooseAndSaveResult();
   void SavePicture();
   void SaveClip();
-  void MakeSound(const Options& options);
+  void MakeSound(const presenter::Options& options);
   void HearFrame(const simulation::Snapshot& snapshot);
-  bool ChangeSound(Action action);
+  bool ChangeSound(presenter::Action action);
   void ShowHelp();
-  void FocusCard(const SimulatorPage& page);
+  void FocusCard(const presenter::SimulatorPage& page);
   KeyCardServices MakeKeyCardServices();
 
   // SimulatorScreen
-  void Show(const SimulatorPage& page) override;
-  void UseControl(SessionControl* control) override;
+  void Show(const presenter::SimulatorPage& page) override;
+  void UseControl(presenter::SessionControl* control) override;
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) override;
-  void FillTaskList(const TaskPage& page) override { chooser_.Show(page); }
+  void FillTaskList(const presenter::TaskPage& page) override { chooser_.Show(page); }
   void RequestBest() override;
   void FillPatientList(const std::filesystem::path& chosen) override { patients_.Load(chosen); }
   void FillRecordingList(const std::filesystem::path& folder) override { recordings_.Load(folder); }
   void OpenReplay(const std::filesystem::path& recording) override;
   void OpenAttempt(const std::filesystem::path& recording,
                    const std::optional<centre::ExamSitting>& exam) override;
-  void FillResult(const TaskResult& result) override { result_card_.Show(result); }
+  void FillResult(const presenter::TaskResult& result) override { result_card_.Show(result); }
   void ReleasePointer() override { hands_->ReleasePointer(); }
   bool IsPointerTaken() const override { return hands_->IsPointerTaken(); }
   void FocusPicture() override { picture_.grab_focus(); }
-  void DoInWindow(Action action) override;
+  void DoInWindow(presenter::Action action) override;
   core::Result<std::string> BeSomebody(const std::optional<std::string>& text) override;
 
   SimulatorServices services_;
   gui::Tips tips_;
-  gui::CommandBar<KeyMeaning, SimulatorNeeds> bar_;
+  gui::CommandBar<presenter::KeyMeaning, presenter::SimulatorNeeds> bar_;
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
   Gtk::Box help_;  // of the keys as they are now
-  std::optional<std::pair<KeyLayout, KeyBindings::Own>> shown_help_;
+  std::optional<std::pair<presenter::KeyLayout, presenter::KeyBindings::Own>> shown_help_;
   Gtk::Widget* focused_card_ = nullptr;
   HomeCard home_;
   OpeningCard opening_;
@@ -122,10 +122,10 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Glib::Dispatcher loaded_, best_loaded_;
   gui::BackgroundJob<core::Result<centre::BestResults>> loading_best_;
   gui::FileDialog file_dialog_;
-  std::unique_ptr<SimulatorPresenter> presenter_;
+  std::unique_ptr<presenter::SimulatorPresenter> presenter_;
   FilmBar film_bar_{[this](const std::string& text, bool is_warning) { presenter_->Tell(text, is_warning); }};
-  std::unique_ptr<WindowSound> sound_;       // null where nobody is there to hear
-  std::unique_ptr<DevicePage> device_page_;  // of the presenter's control
+  std::unique_ptr<presenter::WindowSound> sound_;  // null where nobody is there to hear
+  std::unique_ptr<DevicePage> device_page_;        // of the presenter's control
   std::unique_ptr<ReplayWindow> replay_;
 };
 

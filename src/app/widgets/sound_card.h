@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "trocar/app/window_sound.h"
 #include "trocar/gui/card.h"
+#include "trocar/presenter/window_sound.h"
 
 namespace trocar::app {
 

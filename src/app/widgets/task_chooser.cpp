@@ -15,7 +15,7 @@ constexpr int kListWidth = 760, kLevelWidth = 96;  // [pixels]
 constexpr double kMostSeed = 2147483647;
 
 /// What differs at the level, and one's best result at it.
-std::string DescribeLevel(const TaskPage::Level& level) {
+std::string DescribeLevel(const presenter::TaskPage::Level& level) {
   return level.about + (level.about.empty() || level.best.empty() ? "" : ". ") + level.best;
 }
 
@@ -31,16 +31,16 @@ TaskChooser::TaskChooser() : gui::ListCard(kListWidth) {
   AddFoot({label, &seed_, &patients_});
 }
 
-void TaskChooser::Show(const TaskPage& page) {
+void TaskChooser::Show(const presenter::TaskPage& page) {
   ClearRows();
-  for (const TaskPage::Group& group : page.groups) {
+  for (const presenter::TaskPage::Group& group : page.groups) {
     AddTitle(group.title);
-    for (const TaskPage::Row& row : group.rows) AddTask(row);
+    for (const presenter::TaskPage::Row& row : group.rows) AddTask(row);
   }
-  patients_.set_visible(page.section != TaskSection::kBasicSkills);
+  patients_.set_visible(page.section != presenter::TaskSection::kBasicSkills);
 }
 
-void TaskChooser::AddTask(const TaskPage::Row& row) {
+void TaskChooser::AddTask(const presenter::TaskPage::Row& row) {
   Gtk::Label* about = gui::MakeLabel(row.about, "fine");
   about->set_tooltip_text(row.about);
   Gtk::Label* best = gui::MakeLabel("", "name");
@@ -56,7 +56,7 @@ void TaskChooser::AddTask(const TaskPage::Row& row) {
   }
   auto* level = Gtk::make_managed<Gtk::DropDown>();
   std::vector<Glib::ustring> keys;
-  for (const TaskPage::Level& one : row.levels) keys.emplace_back(one.key);
+  for (const presenter::TaskPage::Level& one : row.levels) keys.emplace_back(one.key);
   level->set_model(Gtk::StringList::create(keys));
   gui::SetAccessibleName(*level, "Level of " + row.name);
   const auto normal = std::find(keys.begin(), keys.end(), Glib::ustring(row.request.choice.level));

@@ -4,8 +4,8 @@
 
 #include <gtkmm.h>
 
-#include "trocar/app/task_page.h"
 #include "trocar/gui/list_card.h"
+#include "trocar/presenter/task_page.h"
 
 namespace trocar::app {
 
@@ -13,16 +13,16 @@ class TaskChooser : public gui::ListCard {
  public:
   TaskChooser();
 
-  void Show(const TaskPage& page);
-  sigc::signal<void(TaskRequest)>& SignalChosen() { return signal_chosen_; }
+  void Show(const presenter::TaskPage& page);
+  sigc::signal<void(presenter::TaskRequest)>& SignalChosen() { return signal_chosen_; }
   sigc::signal<void()>& SignalPatients() { return signal_patients_; }
 
  private:
-  void AddTask(const TaskPage::Row& row);
+  void AddTask(const presenter::TaskPage::Row& row);
 
   Gtk::SpinButton seed_;
   Gtk::Button patients_{"Another patient…"};
-  sigc::signal<void(TaskRequest)> signal_chosen_;
+  sigc::signal<void(presenter::TaskRequest)> signal_chosen_;
   sigc::signal<void()> signal_patients_;
 };
 

@@ -8,17 +8,20 @@
 #include <vector>
 
 #include "command.h"
-#include "doctor_checks.h"
+#include "trocar/doctor/doctor_checks.h"
 
 namespace trocar::cli {
 namespace {
+
+using doctor::Finding;
+using doctor::Health;
 
 void PrintJson(const std::vector<Finding>& findings) {
   nlohmann::ordered_json json;
   json["checks"] = nlohmann::ordered_json::array();
   for (const Finding& finding : findings) {
     json["checks"].push_back({{"name", finding.name},
-                              {"state", HealthName(finding.health)},
+                              {"state", doctor::HealthName(finding.health)},
                               {"found", finding.found},
                               {"meaning", finding.meaning},
                               {"remedy", finding.remedy}});
@@ -29,8 +32,8 @@ void PrintJson(const std::vector<Finding>& findings) {
 
 void PrintForPerson(const std::vector<Finding>& findings) {
   for (const Finding& finding : findings) {
-    std::printf("%-10s %-8s %s\n", finding.name.c_str(), std::string(HealthName(finding.health)).c_str(),
-                finding.found.c_str());
+    std::printf("%-10s %-8s %s\n", finding.name.c_str(),
+                std::string(doctor::HealthName(finding.health)).c_str(), finding.found.c_str());
     std::printf("%19s %s\n", "", finding.meaning.c_str());
     if (!finding.remedy.empty()) std::printf("%19s to mend: %s\n", "", finding.remedy.c_str());
   }
@@ -55,7 +58,7 @@ void AddDoctorCommand(CLI::App& app, Outcome& outcome) {
       "command does\n"
       "not work). Exit status 1 if anything is missing.");
   command->callback([is_json, &outcome] {
-    const std::vector<Finding> findings = CheckAll();
+    const std::vector<Finding> findings = doctor::CheckAll();
     *is_json ? PrintJson(findings) : PrintForPerson(findings);
     outcome.has_finding = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
       return finding.health == Health::kMissing;

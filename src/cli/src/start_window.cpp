@@ -7,12 +7,12 @@
 #include <cstring>
 #include <filesystem>
 
-#include "program_folder.h"
+#include "trocar/core/program.h"
 
 namespace trocar::cli {
 
 core::Error StartWindow(const std::vector<std::string>& arguments) {
-  const std::filesystem::path program = FindProgramFolder() / "trocar-window";
+  const std::filesystem::path program = core::FindProgramFolder() / "trocar-window";
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;

@@ -15,6 +15,7 @@
 #include "console.h"
 #include "trocar/bench/benchmark.h"
 #include "trocar/bench/validity_study.h"
+#include "trocar/core/program.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/study/study.h"
 
@@ -90,8 +91,7 @@ core::Status RunPlan(const StudyArguments& arguments, Outcome& outcome) {
   options.workers = arguments.options.jobs;
   options.attempts = arguments.attempts;
   options.launch = arguments.launch;
-  std::error_code failure;
-  options.program = std::filesystem::read_symlink("/proc/self/exe", failure);
+  options.program = core::FindProgram();
   const auto backend = study::FindBackend(arguments.backend);
   if (!backend)
     return core::Error{core::ErrorCode::kUsage,

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "trocar/core/program.h"
 namespace trocar::core {
 namespace {
 
@@ -28,11 +29,9 @@ std::string LanguageOf(const char* name) {
 
 fs::path FindLocaleFolder() {
   if (const char* named = std::getenv("TROCAR_LOCALE_DIR"); named != nullptr && *named != '\0') return named;
+  const fs::path folder = FindProgramFolder();
   std::error_code failure;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  if (failure) return {};
-  for (const fs::path& place :
-       {program.parent_path() / "../share/locale", program.parent_path() / "locale"}) {
+  for (const fs::path& place : {folder / "../share/locale", folder / "locale"}) {
     if (fs::exists(place / "es/LC_MESSAGES/trocar.mo", failure)) return place.lexically_normal();
   }
   return {};

@@ -21,6 +21,7 @@
 #include "trocar/core/assert.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/printable.h"
+#include "trocar/core/program.h"
 
 namespace trocar::images {
 namespace {
@@ -48,13 +49,7 @@ struct SpawnSettings {
 }  // namespace
 
 fs::path FindImportProgram() {
-  std::error_code failure;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  const fs::path folder = failure ? fs::path(".") : program.parent_path();
-  fs::path beside = folder / "trocar-import";
-  if (fs::exists(beside, failure)) return beside;
-  const fs::path installed = folder.parent_path() / "libexec" / "trocar" / "trocar-import";
-  return fs::exists(installed, failure) ? installed : beside;
+  return core::FindCompanionProgram("trocar-import");
 }
 
 core::Result<SampleBuffer> SampleBuffer::Make(std::uint64_t bytes) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/core/program.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::scene {
@@ -13,12 +14,9 @@ core::Result<fs::path> FindDataFolder() {
   if (const char* named = std::getenv("TROCAR_DATA_DIR"); named != nullptr && *named != '\0') {
     places.emplace_back(named);  // whoever names a folder wants that one
   } else {
-    std::error_code failure;
-    const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-    if (!failure) {
-      places.push_back(program.parent_path() / "../share/trocar");
-      places.push_back(program.parent_path());
-    }
+    const fs::path folder = core::FindProgramFolder();
+    places.push_back(folder / "../share/trocar");
+    places.push_back(folder);
     places.emplace_back(TROCAR_COMPILED_DATA_FOLDER);
   }
   std::string tried;

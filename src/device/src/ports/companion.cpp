@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "trocar/core/program.h"
 #include "trocar/device/ports.h"
 
 extern char** environ;
@@ -22,10 +23,7 @@ extern char** environ;
 namespace trocar::device {
 
 std::filesystem::path Companion::Find(const char* name) {
-  std::error_code failure;
-  const auto folder = std::filesystem::read_symlink("/proc/self/exe", failure).parent_path();
-  const auto installed = folder.parent_path() / "libexec/trocar" / name;
-  return std::filesystem::exists(installed, failure) ? installed : folder / name;
+  return core::FindCompanionProgram(name);
 }
 
 core::Result<Companion> Companion::Start(const std::filesystem::path& program, const char* option,

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/presenter/patient_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "trocar/anatomy/patient.h"
+#include "trocar/core/log.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/core/state_hash.h"
+#include "trocar/core/user_folder.h"
+#include "trocar/render/figure_picture.h"
+#include "trocar/scene/scene.h"
+#include "trocar/view/patient_figure.h"
+
+namespace trocar::presenter {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kBuiltIn = "assets/patients/visible-human-male/patient";
+constexpr int kWidth = 200, kHeight = 150;  // of a picture [pixels]
+constexpr double kLiverOpacity = 0.35;      // the ducts lie behind it
+
+core::Status Draw(const anatomy::Patient& patient, const fs::path& path) {
+  const auto data = scene::FindDataFolder();
+  if (!data.ok()) return data.error();
+  const auto colours = view::ReadPatientColours(*data / view::kPatientColoursFile);
+  if (!colours.ok()) return colours.error();
+  view::PatientFigureOptions options;
+  options.colours = *colours;
+  options.has_regions = options.has_landmarks = false;
+  options.liver_opacity = kLiverOpacity;
+  const view::PatientFigure figure = view::MakePatientFigure(patient, options);
+  const render::OrbitCamera camera =
+      render::LookFrom(render::Viewpoint::kUmbilicus, render::CalcFigureBox(figure.surfaces),
+                       static_cast<double>(kWidth) / kHeight);
+  const auto pictures =
+      render::DrawPictures(figure.surfaces, figure.marks, {&camera, 1}, {}, kWidth, kHeight);
+  if (!pictures.ok()) return pictures.error();
+  std::error_code ignored;
+  fs::create_directories(path.parent_path(), ignored);
+  return render::WritePng(path, pictures->front());
+}
+
+/// The picture in the cache, drawn where it is not there; nothing where it cannot be.
+fs::path FindPicture(const fs::path& folder, const anatomy::Patient& patient) {
+  const auto text = core::ReadFile(folder / "patient.json");
+  if (!text.ok()) return {};
+  core::StateHash hash;
+  core::AddStateTo(hash, fs::absolute(folder).string() + *text);
+  const fs::path path =
+      core::FindCacheFolder() / "patient-pictures" / (core::HashText(hash.Value()) + ".png");
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored)) return path;
+  if (const core::Status drawn = Draw(patient, path); !drawn.ok()) {
+    core::Log(core::LogLevel::kWarning, "no picture of " + folder.string() + ": " + drawn.error().Text());
+    return {};
+  }
+  return path;
+}
+
+/// "gallbladder 78 mm, cystic duct 24 mm; moynihan hump, adhesions": what a surgeon asks for first.
+std::string DescribeFindings(const anatomy::Patient& patient) {
+  constexpr std::pair<const char*, const char*> kSizes[] = {{"gallbladder_length", "gallbladder"},
+                                                            {"cystic_duct_length", "cystic duct"}};
+  constexpr const char* kVariations[] = {
+      "double_cystic_artery", "moynihan_hump", "subvesical_duct", "phrygian_cap", "hydrops",
+      "acute_cholecystitis",  "scleroatrophy", "steatosis",       "cirrhosis",    "adhesions"};
+  std::string sizes, variations;
+  for (const auto& [name, shown] : kSizes) {
+    const anatomy::Parameter* parameter = patient.FindParameter(name);
+    const double* value = parameter == nullptr ? nullptr : std::get_if<double>(&parameter->value);
+    if (value == nullptr) continue;
+    sizes += (sizes.empty() ? "" : ", ") + std::string(shown) + " " + std::to_string(std::lround(*value)) +
+             " " + parameter->unit;
+  }
+  for (const std::string name : kVariations) {
+    const anatomy::Parameter* parameter = patient.FindParameter(name);
+    if (parameter == nullptr) continue;
+    const auto* word = std::get_if<std::string>(&parameter->value);
+    const bool is_there = word != nullptr ? *word == "yes" : std::get<double>(parameter->value) > 0;
+    if (is_there) variations += (variations.empty() ? "" : ", ") + name;
+  }
+  std::replace(variations.begin(), variations.end(), '_', ' ');
+  return sizes + (sizes.empty() || variations.empty() ? "" : "; ") + variations;
+}
+
+PatientEntry Describe(const fs::path& folder) {
+  PatientEntry entry;
+  entry.folder = folder;
+  entry.name = ShortPatientName(folder);
+  const auto patient = anatomy::ReadPatient(folder);
+  if (!patient.ok()) {
+    entry.problem = patient.error();
+    return entry;
+  }
+  if (!patient->name.empty()) entry.name = patient->name;
+  entry.about = DescribeFindings(*patient);
+  if (patient->tubes.empty())
+    entry.problem = core::Error{
+        core::ErrorCode::kPatientInvalid,
+        folder.string() + ": the patient has no ducts; place a template with trocar anatomy edit"};
+  entry.picture = FindPicture(folder, *patient);
+  return entry;
+}
+
+}  // namespace
+
+fs::path FindPatientsFolder() {
+  return core::FindUserDataFolder() / "patients";
+}
+
+std::vector<PatientEntry> ListPatients(const fs::path& folder, const fs::path& chosen) {
+  std::vector<PatientEntry> entries;
+  const auto data = scene::FindDataFolder();
+  if (data.ok()) {
+    entries.push_back(Describe(*data / kBuiltIn));
+    entries.back().folder.clear();
+    entries.back().about = "Built in; measured and trained on most";
+  }
+  std::vector<fs::path> folders;
+  std::error_code failure;
+  for (fs::directory_iterator it(folder, failure), end; !failure && it != end; it.increment(failure)) {
+    std::error_code ignored;
+    const std::string name = it->path().filename().string();
+    // what is being written has a point in its name
+    if (it->is_directory(ignored) && name.find('.') == std::string::npos) folders.push_back(it->path());
+  }
+  std::sort(folders.begin(), folders.end());
+  if (!chosen.empty() && std::find(folders.begin(), folders.end(), chosen) == folders.end())
+    folders.push_back(chosen);
+  for (const fs::path& one : folders) entries.push_back(Describe(one));
+  return entries;
+}
+
+std::string ShortPatientName(const fs::path& folder) {
+  if (folder.empty()) return "the built-in patient";
+  std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+  std::replace(name.begin(), name.end(), '-', ' ');
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+}  // namespace trocar::presenter

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/presenter/task_result.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "trocar/core/assert.h"
+#include "trocar/core/markup.h"
+#include "trocar/core/version.h"
+#include "trocar/presenter/read_outs.h"
+
+namespace trocar::presenter {
+namespace {
+
+using core::EscapeMarkup;
+using scene::TaskPhase;
+
+constexpr const char* kStyle = R"(
+body { font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1d2327; background: #fff; margin: 0 auto;
+  max-width: 50rem; padding: 1.5rem; }
+h1 { font-size: 1.6rem; margin: 0; } h2 { font-size: 1.1rem; margin: 1.8rem 0 .3rem; }
+table { border-collapse: collapse; width: 100%; }
+th, td { text-align: left; padding: .3rem .6rem; border-bottom: 1px solid #dcdcde; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.done { color: #00693e; } .open { color: #8a5a00; } .critical { color: #a4161a; font-weight: 600; }
+)";
+
+std::string VerdictOf(TaskPhase phase) {
+  switch (phase) {
+    case TaskPhase::kCompleted:
+      return "Completed";
+    case TaskPhase::kTimeOver:
+      return "The time is over";
+    case TaskPhase::kEnded:
+      return "Ended by an error";
+    default:
+      return "Not finished";
+  }
+}
+
+std::string FormatPoints(double points) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", points);
+  return text;
+}
+
+}  // namespace
+
+void TaskErrorLog::Add(const scene::TaskSnapshot& now) {
+  if (now.error_count < seen_) {
+    errors_.clear();
+    seen_ = 0;
+  }
+  const auto ring = static_cast<std::uint64_t>(now.last_errors.size());
+  for (seen_ = std::max(seen_, now.error_count > ring ? now.error_count - ring : 0); seen_ < now.error_count;
+       ++seen_)
+    errors_.push_back(now.last_errors[seen_ % ring]);
+}
+
+TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& now,
+                          const std::vector<scene::TaskError>& errors) {
+  TROCAR_ASSERT(scene.task.has_value());
+  const scene::Task& task = *scene.task;
+  TaskResult result;
+  result.task = task.name;
+  result.level = task.level;
+  result.seed = scene.seed;
+  result.phase = now.phase;
+  result.verdict = VerdictOf(now.phase);
+  result.time = now.time;
+  result.score = scene::CalcShownScore(task, now);
+  result.best_score = task.best_score;
+  result.is_score_percent = task.reference_points > 0;
+  for (std::size_t g = 0; g < task.goals.size(); ++g)
+    result.goals.push_back({task.goals[g].name, g < now.goals.size() && now.goals[g].is_done});
+  for (const scene::TaskError& error : errors) {
+    const scene::ErrorRule& rule = task.errors[static_cast<std::size_t>(error.rule)];
+    TaskResult::ErrorRow row{
+        error.time, rule.name,    rule.about,    std::string(training::NameOf(rule.severity)),
+        "",         rule.penalty, error.position};
+    if (error.object >= 0) row.by = scene.objects[static_cast<std::size_t>(error.object)].name;
+    if (error.hand >= 0)
+      row.by +=
+          (row.by.empty() ? "" : ", ") + std::string(error.hand == scene::kLeft ? "left hand" : "right hand");
+    result.errors.push_back(std::move(row));
+  }
+  return result;
+}
+
+std::string FormatScore(const TaskResult& result) {
+  char text[32];
+  if (result.is_score_percent) {
+    std::snprintf(text, sizeof text, "%.1f of %.0f", result.score, result.best_score);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f points", result.score);
+  }
+  return text;
+}
+
+std::string FormatTaskResultJson(const TaskResult& result) {
+  nlohmann::ordered_json json = {{"format", "trocar-task-result"},
+                                 {"version", 1},
+                                 {"task", result.task},
+                                 {"level", result.level},
+                                 {"seed", result.seed},
+                                 {"demonstration", result.is_demonstration},
+                                 {"phase", scene::PhaseName(result.phase)},
+                                 {"time_s", result.time},
+                                 {"score", result.score},
+                                 {"score_unit", result.is_score_percent ? "of_best_score" : "points"},
+                                 {"best_score", result.best_score},
+                                 {"recording", result.recording},
+                                 {"goals", nlohmann::ordered_json::array()},
+                                 {"errors", nlohmann::ordered_json::array()}};
+  for (const TaskResult::GoalRow& goal : result.goals)
+    json["goals"].push_back({{"goal", goal.name}, {"done", goal.is_done}});
+  for (const TaskResult::ErrorRow& error : result.errors) {
+    json["errors"].push_back(
+        {{"error", error.name},
+         {"about", error.about},
+         {"severity", error.severity},
+         {"time_s", error.time},
+         {"by", error.by},
+         {"penalty", error.penalty},
+         {"at_mm", {1e3 * error.position.x, 1e3 * error.position.y, 1e3 * error.position.z}}});
+  }
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string FormatTaskResultHtml(const TaskResult& result) {
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
+                     EscapeMarkup(result.task) + " - Trocar</title>\n<style>" + kStyle +
+                     "</style>\n</head>\n<body>\n<h1>" + EscapeMarkup(result.task) + "</h1>\n<p>" +
+                     result.verdict + " after " + FormatTime(result.time) + " (min:s). Score " +
+                     FormatScore(result) + ". Level " + EscapeMarkup(result.level) + ", seed " +
+                     std::to_string(result.seed) + "." +
+                     (result.is_demonstration ? " A demonstration by the scripted expert." : "") +
+                     "</p>\n<h2>Goals</h2>\n<table>\n";
+  for (const TaskResult::GoalRow& goal : result.goals)
+    html += "<tr><td>" + EscapeMarkup(goal.name) + "</td><td class=\"" +
+            (goal.is_done ? "done\">done" : "open\">open") + "</td></tr>\n";
+  html += "</table>\n<h2>Errors</h2>\n";
+  if (result.errors.empty()) {
+    html += "<p>None.</p>\n";
+  } else {
+    html += "<table>\n<tr><th>At</th><th>Error</th><th>Severity</th><th>By</th><th>Points</th></tr>\n";
+    for (const TaskResult::ErrorRow& error : result.errors) {
+      html += "<tr><td class=\"number\">" + FormatTime(error.time) + "</td><td>" + EscapeMarkup(error.about) +
+              "</td><td class=\"" + error.severity + "\">" + error.severity + "</td><td>" +
+              EscapeMarkup(error.by) + "</td><td class=\"number\">-" + FormatPoints(error.penalty) +
+              "</td></tr>\n";
+    }
+    html += "</table>\n";
+  }
+  return html + "<p>Training feedback, not certified assessment. Trocar " +
+         EscapeMarkup(std::string(core::VersionText())) + ".</p>\n</body>\n</html>\n";
+}
+
+}  // namespace trocar::presenter
