@@ -14,8 +14,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capacity.h"
 #include "solver_content.h"
+#include "trocar/core/spare_capacity.h"
 
 namespace trocar::tissue {
 namespace {
@@ -172,7 +172,7 @@ ChebyshevScratch::ChebyshevScratch(const TissueModel& model, double spare_share)
   constant_force.resize(n);
   touched_nodes.reserve(3 * kMaxContacts);
   chunk_reports.resize(n / CalcChunk(n) + 1);
-  ReserveWithSpare(model.half_strands.size(), spare_share, strand_nodes);
+  core::ReserveWithSpare(model.half_strands.size(), spare_share, strand_nodes);
   SetModel(model);
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "capacity.h"
+#include "trocar/core/spare_capacity.h"
 
 namespace trocar::tissue {
 namespace {
@@ -43,8 +43,8 @@ std::vector<LevelCapacity> CalcLevelCapacities(const HierarchyTopology& like, do
       const SliceLayout& layout = like.levels[at].layout;
       own = {layout.PaddedNodes(), layout.Steps()};
     }
-    level = {std::max(AddSpare(own.nodes, share), share > 0.0 ? level.nodes / 2 : 0),
-             std::max(AddSpare(own.steps, share), share > 0.0 ? level.steps / 2 : 0)};
+    level = {std::max(core::AddSpare(own.nodes, share), share > 0.0 ? level.nodes / 2 : 0),
+             std::max(core::AddSpare(own.steps, share), share > 0.0 ? level.steps / 2 : 0)};
     capacities.push_back(level);
   }
   return capacities;
@@ -117,7 +117,8 @@ void HierarchyBuilder::FillTransfer(const NodeGraph& fine, const NodeGraph& coar
 void HierarchyBuilder::Reserve(const HierarchyTopology& like, double share, HierarchyTopology& own) {
   const std::vector<LevelCapacity> capacities = CalcLevelCapacities(like, share);
   const SliceLayout& finest = like.levels.front().layout;
-  const std::size_t nodes = AddSpare(finest.node_count, share), links = AddSpare(finest.others.size(), share);
+  const std::size_t nodes = core::AddSpare(finest.node_count, share),
+                    links = core::AddSpare(finest.others.size(), share);
   fine_.Reserve(nodes, links);
   aggregation_.Reserve(nodes, links);
   for (auto* list : {&places_, &counts_}) list->reserve(nodes);

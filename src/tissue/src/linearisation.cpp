@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capacity.h"
 #include "node_force.h"
 #include "node_vectors.h"
+#include "trocar/core/spare_capacity.h"
 
 namespace trocar::tissue {
 namespace {
@@ -89,18 +89,18 @@ void OrderedModel::Reserve(const OrderedModel& like, double share) {
   for (auto* list : {&old_of_new, &new_of_old}) list->reserve(n);
   graph.starts.reserve(n + 1), layout.starts.reserve(like.layout.starts.size());
   rest.reserve(n), mass.reserve(n), shape.reserve(n);
-  ReserveWithSpare(like.graph.others.size(), share, graph.others, graph_stiffness);
-  ReserveWithSpare(like.layout.others.size(), share, layout.others);
-  ReserveWithSpare(like.spring_entries.size(), share, spring_entries);
-  ReserveWithSpare(like.strands.size(), share, strands);
+  core::ReserveWithSpare(like.graph.others.size(), share, graph.others, graph_stiffness);
+  core::ReserveWithSpare(like.layout.others.size(), share, layout.others);
+  core::ReserveWithSpare(like.spring_entries.size(), share, spring_entries);
+  core::ReserveWithSpare(like.strands.size(), share, strands);
 }
 
 void OrderedModelWorkspace::Reserve(const OrderedModel& like, double share) {
   const std::size_t n = like.Size();
   graph.starts.reserve(n + 1);
   order.roots.reserve(n), order.is_placed.reserve(n);
-  ReserveWithSpare(like.graph.others.size(), share, graph.others, stiffness);
-  order.places.reserve(AddSpare(n, share));  // by degree: a node has fewer links than there are nodes
+  core::ReserveWithSpare(like.graph.others.size(), share, graph.others, stiffness);
+  order.places.reserve(core::AddSpare(n, share));  // by degree: a node has fewer links than there are nodes
 }
 
 void SetOrderedSprings(const TissueModel& model, const OrderedModel& ordered, OrderedSprings& springs) {

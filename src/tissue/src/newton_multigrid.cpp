@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "capacity.h"
 #include "node_vectors.h"
+#include "trocar/core/spare_capacity.h"
 
 namespace trocar::tissue {
 namespace {
@@ -68,8 +68,8 @@ NewtonMultigrid::NewtonMultigrid(const SolverModel& made, const OrderedSprings& 
       preconditioner_(made.ordered, hierarchy_) {
   const OrderedModel& model = *model_;
   const std::size_t n = model.Size(), padded = model.layout.PaddedNodes();
-  linearisation_.Reserve(padded, AddSpare(model.layout.Steps() * kSliceNodes, spare_share),
-                         AddSpare(model.strands.size(), spare_share));
+  linearisation_.Reserve(padded, core::AddSpare(model.layout.Steps() * kSliceNodes, spare_share),
+                         core::AddSpare(model.strands.size(), spare_share));
   linearisation_.SetModel(model);
   load_.constant.resize(n);
   load_.is_free.resize(n);
@@ -93,7 +93,7 @@ void NewtonMultigrid::Prepare(std::size_t constraints, bool follows_snap_through
   preconditioner_.Prepare(constraints);
   if (!follows_snap_through || local_solve_ != nullptr) return;
   const SliceLayout& layout = model_->layout;
-  pressure_.Reserve(layout.PaddedNodes(), AddSpare(layout.Steps() * kSliceNodes, spare_share_));
+  pressure_.Reserve(layout.PaddedNodes(), core::AddSpare(layout.Steps() * kSliceNodes, spare_share_));
   local_solve_ = std::make_unique<LocalSolve>(*model_, *springs_);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver_model.h"
 
-#include "capacity.h"
+#include "trocar/core/spare_capacity.h"
 
 namespace trocar::tissue {
 
@@ -32,7 +32,7 @@ void SolverModelBuilder::Reserve(const SolverModel& like, double share, SolverMo
   ordered_.Reserve(like.ordered, share);
   own.ordered.Reserve(like.ordered, share);
   hierarchy_.Reserve(like.hierarchy, share, own.hierarchy);
-  own.ends.reserve(AddSpare(like.ends.size(), share));
+  own.ends.reserve(core::AddSpare(like.ends.size(), share));
 }
 
 }  // namespace trocar::tissue

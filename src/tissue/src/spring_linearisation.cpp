@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "capacity.h"
 #include "trocar/core/assert.h"
+#include "trocar/core/spare_capacity.h"
 #include "trocar/tissue/spring_law.h"
 
 namespace trocar::tissue {
@@ -13,8 +13,8 @@ namespace trocar::tissue {
 void SpringLinearisation::SetModel(const TissueModel& model, const SolverModel& made) {
   if (model_ == nullptr) {
     const std::size_t springs = model.SpringCount(), entries = made.ordered.layout.Steps() * kSliceNodes;
-    ReserveWithSpare(springs, spare_share_, factor_, is_changed_, elastic_);
-    ReserveWithSpare(entries, spare_share_, ordered_.stiffness, ordered_.rest_length);
+    core::ReserveWithSpare(springs, spare_share_, factor_, is_changed_, elastic_);
+    core::ReserveWithSpare(entries, spare_share_, ordered_.stiffness, ordered_.rest_length);
     unconstrained_.reserve(model.Size());
   }
   model_ = &model;
@@ -39,9 +39,9 @@ const LinearisedModel& SpringLinearisation::Nodewise() {
   nodewise_ = std::make_unique<LinearisedModel>();
   auto& [model, sliced] = *nodewise_;
   const std::size_t springs = model_->SpringCount();
-  ReserveWithSpare(2 * springs, spare_share_, model.half_springs, sliced.others, sliced.stiffness,
-                   sliced.stiffness_times_rest);
-  ReserveWithSpare(springs, spare_share_, model.spring_law);
+  core::ReserveWithSpare(2 * springs, spare_share_, model.half_springs, sliced.others, sliced.stiffness,
+                         sliced.stiffness_times_rest);
+  core::ReserveWithSpare(springs, spare_share_, model.spring_law);
   model = *model_;
   SetSlicedSprings(*model_, sliced);
   for (std::uint32_t spring = 0; spring < springs; ++spring) {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capacity.h"
 #include "node_vectors.h"
+#include "trocar/core/spare_capacity.h"
 
 namespace trocar::tissue {
 namespace {
@@ -88,7 +88,7 @@ void SpringSlices::SetLookups() {
 }
 
 void SpringSlices::Reserve(const OrderedModel& like, double share) {
-  const std::size_t steps = AddSpare(like.layout.Steps(), share);
+  const std::size_t steps = core::AddSpare(like.layout.Steps(), share);
   lookups_.reserve(steps);
   springs_.reserve(steps * kSpringFloats);
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file capacity.h  Reserves spare capacity, so that a change of topology allocates nothing.
+/// \file spare_capacity.h  Reserves spare capacity, so that lists which grow a little later, as after a cut, allocate nothing then.
 #pragma once
 
 #include <cstddef>
 
-namespace trocar::tissue {
+namespace trocar::core {
 
-/// Spare elements beyond the share: small levels grow by more than their share.
+/// Spare elements beyond the share: short lists grow by more than their share.
 inline constexpr std::size_t kLeastCapacity = 1024;
 
 /// Capacity for `share` times more elements than `count`, and kLeastCapacity more; without a share for `count`.
@@ -21,4 +21,4 @@ void ReserveWithSpare(std::size_t count, double share, Vectors&... vectors) {
   (vectors.reserve(AddSpare(count, share)), ...);
 }
 
-}  // namespace trocar::tissue
+}  // namespace trocar::core
