@@ -211,11 +211,15 @@ TEST_P(SpoolOver, LosesNothingWhenTheProgramIsKilled) {
   }
   EXPECT_GE(kept.size(), static_cast<std::size_t>(kKills));
   Reopen();
-  const DeliveryReport rest = Spool(place_).Deliver(Open());
-  EXPECT_FALSE(rest.failure);
+  // the server may still be at the last one's transaction: what is busy is tried again, as the courier does
+  DeliveryReport rest = Spool(place_).Deliver(Open());
+  for (int i = 0; i < 30 && rest.failure && rest.failure->code == core::ErrorCode::kStoreBusy; ++i)
+    rest = Spool(place_).Deliver(Open());
+  EXPECT_FALSE(rest.failure) << rest.failure->Text();
   EXPECT_EQ(rest.damaged, 0);
+  EXPECT_EQ(rest.held, 0);
   const auto found = Open().GetDatabase().Run("SELECT score FROM attempt");
-  ASSERT_TRUE(found.ok());
+  ASSERT_TRUE(found.ok()) << found.error().Text();
   std::multiset<int> there;
   for (const Row& row : found->rows) there.insert(static_cast<int>(row.Real(0)));
   for (const int number : kept) EXPECT_EQ(there.count(number), 1u) << number;
