@@ -278,7 +278,7 @@ class Program {
 int main(int argc, char** argv) {
   using namespace trocar;
   core::UseLanguage(core::FindLocaleFolder());
-  const core::Result<app::CommandLine> command = app::ParseCommandLine(argc, argv);
+  const core::Result<presenter::CommandLine> command = presenter::ParseCommandLine(argc, argv);
   if (!command) {
     std::fprintf(stderr, "%s\n", command.error().Text().c_str());
     return 2;

@@ -13,7 +13,7 @@ namespace {
 constexpr int kListWidth = 700;         // [pixels]
 constexpr std::size_t kMostRows = 200;  // of the newest: a list that nobody scrolls through
 
-std::string presenter::NameOf(const record::Description& d) {
+std::string NameOf(const record::Description& d) {
   std::string name = std::filesystem::path(d.name).stem().string();
   std::replace(name.begin(), name.end(), '_', ' ');
   return name + (d.level.empty() ? "" : ", " + d.level) + ", seed " + std::to_string(d.seed);
@@ -70,7 +70,7 @@ void RecordingChooser::AddRecording(const record::RecordingSummary& recording) {
   auto* open = Gtk::make_managed<Gtk::Button>(verb_);
   open->set_tooltip_text(recording.path.filename().string());
   open->signal_clicked().connect([this, path = recording.path] { signal_chosen_.emit(path); });
-  AddRow(presenter::NameOf(recording.description), DescribeRow(recording), {open});
+  AddRow(NameOf(recording.description), DescribeRow(recording), {open});
 }
 
 void RecordingChooser::OpenFile() {
