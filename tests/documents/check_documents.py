@@ -6,6 +6,7 @@
   check_documents.py ROOT ... --control                                  seeds one mistake after the other; each must be found
 """
 import argparse
+import functools
 import os
 import re
 import shutil
@@ -137,14 +138,22 @@ def check_decisions(root):
             yield f"{name}: the list of decisions has another date or status"
 
 
+@functools.cache
+def read_sources(folders):
+    """(paths from the root, words) of the source files below these folders. The control's copies share them."""
+    files, words = set(), set()
+    for folder in folders:
+        for path in folder.rglob("*"):
+            if path.suffix in (".h", ".cpp", ".cu", ".cuh"):
+                files.add("/" + str(path.relative_to(folder.parent)))
+                words.update(re.findall(r"\w+", path.read_text()))
+    return files, words
+
+
 def check_names(root):
     """Source files, and names such as SolveReport::error or Suite.Test, that the documents mention are there."""
-    files, words = set(), set()
-    for folder in ("src", "tests", "samples", "fuzz", "bench"):
-        for path in (root / folder).rglob("*") if (root / folder).is_dir() else ():
-            if path.suffix in (".h", ".cpp", ".cu", ".cuh"):
-                files.add("/" + str(path.relative_to(root)))
-                words.update(re.findall(r"\w+", path.read_text()))
+    folders = [root / name for name in ("src", "tests", "samples", "fuzz", "bench")]
+    files, words = read_sources(tuple(folder.resolve() for folder in folders if folder.is_dir()))
     for page in pages(root):
         name = page.relative_to(root)
         text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.S | re.M)
