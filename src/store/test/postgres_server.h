@@ -4,12 +4,14 @@
 
 #include <gtest/gtest.h>
 #include <pwd.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -46,11 +48,7 @@ class PostgresServer {
       }
       as_other_ = {"/usr/bin/setpriv", "--reuid=postgres", "--regid=postgres", "--clear-groups"};
     }
-    const test::ProcessResult made =
-        test::RunProcess(Words({programs_ / "initdb", "-D", Data(), "--no-sync", "-A", "trust", "-U",
-                                "postgres", "-E", "UTF8", "--locale=C.UTF-8"}));
-    trouble_ = made.out + made.err;
-    if (made.status == 0) Start();
+    if (MakeData()) Start();
   }
   ~PostgresServer() {
     Stop(SIGINT);
@@ -98,19 +96,49 @@ class PostgresServer {
   }
 
  private:
+  /// A new cluster takes seconds of computing, and each test has a server of its own: the first one's empty files are kept beside
+  /// the program that is tested, and copied.
+  bool MakeData() {
+    const auto version = programs_.parent_path().filename().string();
+    const auto kept =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / ("empty-postgres-" + version);
+    if (std::filesystem::exists(kept)) return Run({"/bin/cp", "-a", kept, Data()});
+    std::vector<std::string> initialise = {
+        programs_ / "initdb", "-D", Data(), "--no-sync",       "-A", "trust", "-U",
+        "postgres",           "-E", "UTF8", "--locale=C.UTF-8"};
+    if (!Run(Words(initialise))) return false;
+    const std::string part = kept.string() + "." + std::to_string(::getpid());
+    if (!Run({"/bin/cp", "-a", Data(), part}) || ::rename(part.c_str(), kept.c_str()) != 0) {
+      std::error_code ignored;
+      std::filesystem::remove_all(part, ignored);  // there is no room, or another test was first
+    }
+    return true;
+  }
+  bool Run(const std::vector<std::string>& words) {
+    const test::ProcessResult result = test::RunProcess(words);
+    trouble_ = result.out + result.err;
+    return result.status == 0;
+  }
+
   std::vector<std::string> Words(const std::vector<std::string>& words) const {
     std::vector<std::string> all = as_other_;
     all.insert(all.end(), words.begin(), words.end());
     return all;
   }
 
-  /// Below the first folder that any account reaches and that leaves room for a socket's name: a TMPDIR may be deep, or root's own.
+  /// Below the first folder that any account reaches, that has room, and whose name leaves room for a socket's: a TMPDIR may be deep, or
+  /// root's own. Memory first: a cluster is a thousand files, which a disk takes seconds to make and to remove.
   static std::filesystem::path MakeFolder() {
     constexpr std::size_t kMostSocketPath = 107,
-                          kSocketName = 40;  // [bytes] of Linux; "/trocar-test-XXXXXX/.s.PGSQL.5432"
+                          kSocketName = 40;       // [bytes] of Linux; "/trocar-test-XXXXXX/.s.PGSQL.5432"
+    constexpr std::uintmax_t kRoom = 512u << 20;  // [bytes] for a cluster of 39 MiB and what a test stores
+    std::error_code failure;
     for (const std::filesystem::path& parent :
-         {std::filesystem::temp_directory_path(), std::filesystem::path("/tmp")}) {
-      bool is_open = parent.is_absolute() && parent.native().size() + kSocketName < kMostSocketPath;
+         {std::filesystem::path("/dev/shm"), std::filesystem::temp_directory_path(),
+          std::filesystem::path("/tmp")}) {
+      const auto space = std::filesystem::space(parent, failure);
+      bool is_open = !failure && space.available > kRoom && parent.is_absolute() &&
+                     parent.native().size() + kSocketName < kMostSocketPath;
       for (auto folder = parent; is_open && folder.has_relative_path(); folder = folder.parent_path()) {
         struct stat info {};
         is_open = ::stat(folder.c_str(), &info) == 0 && (info.st_mode & S_IXOTH) != 0;
@@ -118,7 +146,7 @@ class PostgresServer {
       std::string path = parent / "trocar-test-XXXXXX";
       if (is_open && ::mkdtemp(path.data()) != nullptr) return path;
     }
-    throw std::runtime_error("no folder for a PostgreSQL server");
+    throw std::runtime_error("no folder for a PostgreSQL server: it needs 512 MiB");
   }
 
   std::filesystem::path folder_, programs_;
