@@ -10,6 +10,7 @@
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/core/translate.h"
 #include "trocar/core/user_folder.h"
 #include "trocar/render/figure_picture.h"
 #include "trocar/scene/scene.h"
@@ -21,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kBuiltIn = "assets/patients/visible-human-male/patient";
+constexpr std::string_view kGenerated = "seed-";
 constexpr int kWidth = 200, kHeight = 150;  // of a picture [pixels]
 constexpr double kLiverOpacity = 0.35;      // the ducts lie behind it
 
@@ -74,17 +76,19 @@ std::string DescribeFindings(const anatomy::Patient& patient) {
     const anatomy::Parameter* parameter = patient.FindParameter(name);
     const double* value = parameter == nullptr ? nullptr : std::get_if<double>(&parameter->value);
     if (value == nullptr) continue;
-    sizes += (sizes.empty() ? "" : ", ") + std::string(shown) + " " + std::to_string(std::lround(*value)) +
-             " " + parameter->unit;
+    sizes += (sizes.empty() ? "" : ", ") + core::Translate(shown) + " " +
+             std::to_string(std::lround(*value)) + " " + parameter->unit;
   }
   for (const std::string name : kVariations) {
     const anatomy::Parameter* parameter = patient.FindParameter(name);
     if (parameter == nullptr) continue;
     const auto* word = std::get_if<std::string>(&parameter->value);
     const bool is_there = word != nullptr ? *word == "yes" : std::get<double>(parameter->value) > 0;
-    if (is_there) variations += (variations.empty() ? "" : ", ") + name;
+    if (!is_there) continue;
+    std::string words = name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    variations += (variations.empty() ? "" : ", ") + core::Translate(words);
   }
-  std::replace(variations.begin(), variations.end(), '_', ' ');
   return sizes + (sizes.empty() || variations.empty() ? "" : "; ") + variations;
 }
 
@@ -97,7 +101,7 @@ PatientEntry Describe(const fs::path& folder) {
     entry.problem = patient.error();
     return entry;
   }
-  if (!patient->name.empty()) entry.name = patient->name;
+  if (!patient->name.empty()) entry.name = core::TranslateComposed(patient->name);
   entry.about = DescribeFindings(*patient);
   if (patient->tubes.empty())
     entry.problem = core::Error{
@@ -119,7 +123,7 @@ std::vector<PatientEntry> ListPatients(const fs::path& folder, const fs::path& c
   if (data.ok()) {
     entries.push_back(Describe(*data / kBuiltIn));
     entries.back().folder.clear();
-    entries.back().about = "Built in; measured and trained on most";
+    entries.back().about = core::Translate("Built in; measured and trained on most");
   }
   std::vector<fs::path> folders;
   std::error_code failure;
@@ -137,11 +141,15 @@ std::vector<PatientEntry> ListPatients(const fs::path& folder, const fs::path& c
 }
 
 std::string ShortPatientName(const fs::path& folder) {
-  if (folder.empty()) return "the built-in patient";
+  if (folder.empty()) return core::Translate("the built-in patient");
   std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+  // as the desk names what it generates
+  if (name.starts_with(kGenerated) && name.size() > kGenerated.size() &&
+      name.find_first_not_of("0123456789", kGenerated.size()) == std::string::npos)
+    return core::TranslateWith("generated patient {1}", {name.substr(kGenerated.size())});
   std::replace(name.begin(), name.end(), '-', ' ');
   std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
+  return core::TranslateComposed(name);
 }
 
 }  // namespace trocar::app

@@ -5,6 +5,7 @@
 #include <gtkmm.h>
 
 #include "trocar/app/task_page.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/list_card.h"
 
 namespace trocar::app {
@@ -21,7 +22,7 @@ class TaskChooser : public gui::ListCard {
   void AddTask(const TaskPage::Row& row);
 
   Gtk::SpinButton seed_;
-  Gtk::Button patients_{"Another patient…"};
+  Gtk::Button patients_{core::Translate("Another patient…")};
   sigc::signal<void(TaskRequest)> signal_chosen_;
   sigc::signal<void()> signal_patients_;
 };

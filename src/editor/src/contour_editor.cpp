@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::editor {
 
 namespace {
@@ -230,10 +232,10 @@ void ContourEditor::Propagate(int direction) {
   if (!carried.ok()) return EmitError(carried.error());
   SetSlice(to);
   const int percent = static_cast<int>(100 * carried->confidence + 0.5);
-  EmitEvent("Carried " + std::to_string(carried->contours) +
-            (carried->contours == 1 ? " contour" : " contours") + " to slice " + std::to_string(to) +
-            "; the least certain point agrees to " + std::to_string(percent) +
-            " %. Correct it where it is wrong.");
+  EmitEvent(core::TranslateWith(
+      "Carried {1} to slice {2}; the least certain point agrees to {3} %. Correct it where it is wrong.",
+      {core::TranslateCount("{1} contour", "{1} contours", carried->contours), std::to_string(to),
+       std::to_string(percent)}));
 }
 
 void ContourEditor::GoTo(const std::optional<contours::EditPlace>& place, const char* verb) {
@@ -267,7 +269,7 @@ void ContourEditor::Cancel() {
     choice_.reset();
   } else if (!Here().open.empty()) {
     EmitError(document.DropOpenContour(structure_, slice_));
-    EmitEvent("The open contour was dropped; Ctrl+Z brings it back");
+    EmitEvent(core::Translate("The open contour was dropped; Ctrl+Z brings it back"));
   }
 }
 
@@ -299,12 +301,12 @@ void ContourEditor::ChooseNextOrgan() {
 
 void ContourEditor::Undo() {
   Release();
-  GoTo(workspace_->Document().Undo(), "Undone");
+  GoTo(workspace_->Document().Undo(), core::Translate("Undone"));
 }
 
 void ContourEditor::Redo() {
   Release();
-  GoTo(workspace_->Document().Redo(), "Done again");
+  GoTo(workspace_->Document().Redo(), core::Translate("Done again"));
 }
 
 void ContourEditor::FitWhole() {
