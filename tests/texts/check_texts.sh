@@ -11,6 +11,13 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$repository"
 
+# compare TEMPLATE: fails, naming them, where texts of it have no Spanish; the catalogue has more than any one template
+compare() {
+  msgcmp "$work/es.po" "$1" 2>"$work/complaint" && return 0
+  grep -v 'this message is not used' "$work/complaint" || true
+  return 1
+}
+
 "$list_texts" "$repository" >"$work/tables.pot"
 # of calls: Translate("..."), the title of a card, and both texts of its lines
 mapfile -t sources < <(find src -path '*/test' -prune -o \( -name '*.cpp' -o -name '*.h' \) -print | sort)
@@ -21,7 +28,7 @@ msgcat --use-first "$work/tables.pot" "$work/calls.pot" "$work/tips.pot" -o "$wo
 # of modules that a window can reach
 modules=(core math geometry collision tissue instrument surgery training haptics device anatomy meshing images contours roles rigid scene
   simulation record store assessment report session render view net sound gui app centre editor)
-python3 tests/texts/list_messages.py "${modules[@]/#/src/}" >"$work/messages.pot"
+python3 -B tests/texts/list_messages.py "${modules[@]/#/src/}" >"$work/messages.pot"
 cp po/es.po "$work/es.po"
 if [ "${3:-}" = --missing ]; then
   msgcat --use-first "$work/all.pot" "$work/messages.pot" -o "$work/both.pot"
@@ -31,7 +38,7 @@ fi
 if [ "${3:-}" = --control ]; then
   grep -q '^msgid "Stiffness"$' "$work/es.po"
   sed -i '/^msgid "Stiffness"$/{n;s/.*/msgstr ""/}' "$work/es.po"
-  if msgcmp "$work/es.po" "$work/all.pot" 2>"$work/complaint"; then
+  if compare "$work/all.pot" >/dev/null; then
     echo "a text without Spanish was not noticed"
     exit 1
   fi
@@ -41,9 +48,9 @@ if [ "${3:-}" = --control ]; then
 fi
 if [ "${3:-}" = --messages ]; then
   echo "$(grep -c '^msgid' "$work/messages.pot") messages"
-  msgcmp "$work/es.po" "$work/messages.pot"
+  compare "$work/messages.pot"
   exit 0
 fi
 echo "$(grep -c '^msgid' "$work/all.pot") texts"
 msgfmt --check --statistics -o /dev/null "$work/es.po"
-msgcmp "$work/es.po" "$work/all.pot"
+compare "$work/all.pot"

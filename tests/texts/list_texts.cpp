@@ -225,6 +225,14 @@ int main(int count, char** arguments) {
   for (const char* what : {"Reading", "Seeking", "Drawing", "reading labels", "looking at the labels",
                            "assembling the patient", "done"})
     Print(what);
+  // what is undone in the editor of contours
+  for (const char* step :
+       {"add a point", "follow an edge", "close a hole", "close a contour",
+        "drop the points of an open contour", "remove the last point", "move a point", "insert a point",
+        "delete a point", "delete a hole", "delete a contour", "make a hole a contour",
+        "make a contour a hole", "clear the slice", "add {1}", "rename an organ", "delete {1}",
+        "change the edge search", "carry the contours to slice {1}"})
+    Print(step);
   // what the expert does who brings the operation to where a part begins
   for (const char* doing : {"reach",
                             "look",

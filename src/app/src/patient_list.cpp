@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kBuiltIn = "assets/patients/visible-human-male/patient";
 constexpr std::string_view kGenerated = "seed-";
+/// Changes where a patient's picture would look other than one in the cache.
+constexpr const char* kPictureVersion = "2 ";
 constexpr int kWidth = 200, kHeight = 150;  // of a picture [pixels]
 constexpr double kLiverOpacity = 0.35;      // the ducts lie behind it
 
@@ -39,8 +41,10 @@ core::Status Draw(const anatomy::Patient& patient, const fs::path& path) {
   const render::OrbitCamera camera =
       render::LookFrom(render::Viewpoint::kUmbilicus, render::CalcFigureBox(figure.surfaces),
                        static_cast<double>(kWidth) / kHeight);
+  render::FigureOptions look;
+  look.has_axes = false;  // letters of directions are for the editor
   const auto pictures =
-      render::DrawPictures(figure.surfaces, figure.marks, {&camera, 1}, {}, kWidth, kHeight);
+      render::DrawPictures(figure.surfaces, figure.marks, {&camera, 1}, look, kWidth, kHeight);
   if (!pictures.ok()) return pictures.error();
   std::error_code ignored;
   fs::create_directories(path.parent_path(), ignored);
@@ -52,7 +56,7 @@ fs::path FindPicture(const fs::path& folder, const anatomy::Patient& patient) {
   const auto text = core::ReadFile(folder / "patient.json");
   if (!text.ok()) return {};
   core::StateHash hash;
-  core::AddStateTo(hash, fs::absolute(folder).string() + *text);
+  core::AddStateTo(hash, kPictureVersion + fs::absolute(folder).string() + *text);
   const fs::path path =
       core::FindCacheFolder() / "patient-pictures" / (core::HashText(hash.Value()) + ".png");
   std::error_code ignored;

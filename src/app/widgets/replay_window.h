@@ -15,6 +15,7 @@
 #include "recording_chooser.h"
 #include "replay_bar.h"
 #include "trocar/app/replay_presenter.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
@@ -61,7 +62,7 @@ class ReplayWindow : public Gtk::ApplicationWindow, private ReplayScreen {
   ReplayBar time_bar_;
   Gtk::ListBox mark_list_;
   std::vector<ReplayMark> marks_;  // of the list's rows
-  RecordingChooser chooser_{"Beside"};
+  RecordingChooser chooser_{core::Mark("Beside")};
   gui::HelpCard help_card_{ReplayHelp()};
   FailureCard failure_card_;
   Gtk::Label clock_, state_, message_;

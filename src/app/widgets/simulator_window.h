@@ -26,6 +26,7 @@
 #include "sound_card.h"
 #include "task_chooser.h"
 #include "trocar/app/simulator_presenter.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
@@ -113,7 +114,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   KeyCard keys_;
   Gtk::Box question_{Gtk::Orientation::VERTICAL};
   TaskChooser chooser_;
-  RecordingChooser recordings_{"Watch"};
+  RecordingChooser recordings_{core::Mark("Watch")};
   ResultCard result_card_;
   SoundCard sound_card_;
   FailureCard failure_card_;

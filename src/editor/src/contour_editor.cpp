@@ -14,7 +14,7 @@ using contours::ContourId;
 
 constexpr double kZoomStep = 1.25;  // of a key
 constexpr auto kRefused = core::ErrorCode::kEditRefused;
-constexpr const char* kNoContour = "choose a contour first: click one of its points";
+constexpr const char* kNoContour = core::Mark("choose a contour first: click one of its points");
 
 }  // namespace
 
@@ -238,7 +238,7 @@ void ContourEditor::Propagate(int direction) {
        std::to_string(percent)}));
 }
 
-void ContourEditor::GoTo(const std::optional<contours::EditPlace>& place, const char* verb) {
+void ContourEditor::GoTo(const std::optional<contours::EditPlace>& place, const std::string& verb) {
   if (!place) return;
   choice_.reset();
   ChooseStructure(place->structure);
@@ -246,7 +246,7 @@ void ContourEditor::GoTo(const std::optional<contours::EditPlace>& place, const 
   structure_ = std::clamp(
       structure_, 0, std::max(0, static_cast<int>(workspace_->Document().Points().structures.size()) - 1));
   if (place->slice) SetSlice(*place->slice);
-  EmitEvent(std::string(verb) + ": " + place->what);
+  EmitEvent(verb + ": " + core::TranslateComposed(place->what));
 }
 
 void ContourEditor::GoTo(const std::optional<int>& slice) {

@@ -41,7 +41,7 @@ std::optional<EditorTool> FindTool(PatientAction action) {
 
 }  // namespace
 
-const char* HintText(EditorTool tool) noexcept {
+std::string HintText(EditorTool tool) {
   switch (tool) {
     case EditorTool::kLook:
       return core::Translate("Drag turns · right button moves · wheel zooms · 1 to 4 choose a tool");
