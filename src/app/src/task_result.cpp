@@ -106,7 +106,9 @@ std::string DescribeDoer(const TaskResult::ErrorRow& error) {
   std::string text;
   for (std::size_t at = 0; at < error.by.size();) {
     const std::size_t end = std::min(error.by.find(", ", at), error.by.size());
-    text += (text.empty() ? "" : ", ") + core::TranslateComposed(error.by.substr(at, end - at));
+    std::string name = error.by.substr(at, end - at);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    text += (text.empty() ? "" : ", ") + core::TranslateComposed(name);
     at = end + 2;
   }
   return text;

@@ -45,7 +45,7 @@ TEST(TaskPages, TasksAndPartsHaveSmallPictures) {
 TEST(TaskPages, HaveTheOperationAndItsPartsOnThePatientWithLevels) {
   const TaskPage page = Load(TaskSection::kOperation, "/patients/seed-7");
   ASSERT_EQ(page.groups.size(), 1u);
-  EXPECT_NE(page.groups[0].title.find("seed 7"), std::string::npos);
+  EXPECT_NE(page.groups[0].title.find("generated patient 7"), std::string::npos);
   const auto& rows = page.groups[0].rows;
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0].request.part, "");

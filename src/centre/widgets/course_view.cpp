@@ -14,14 +14,14 @@ using assessment::StepState;
 
 constexpr int kMapWidth = 520, kGap = 14;  // [pixels]
 
-const char* WordOf(StepState state) {
+std::string WordOf(StepState state) {
   switch (state) {
     case StepState::kDone:
-      return core::Mark("✓ done");
+      return core::Translate("✓ done");
     case StepState::kOpen:
-      return core::Mark("open: can be done now");
+      return core::TranslateIn("step", "open");
     case StepState::kLocked:
-      return core::Mark("locked");
+      return core::Translate("locked");
   }
   return "";
 }
@@ -98,7 +98,7 @@ void CourseView::ShowMap(const CoursePage& page, Gtk::Box& into) {
     if (!step.due.empty()) words->append(MakeText(step.due, step.is_overdue ? "caution" : "fine"));
     content->append(*words);
     content->append(
-        MakeLine(core::Translate(WordOf(step.state)), step.state == StepState::kDone ? "good" : "name"));
+        MakeLine(WordOf(step.state), step.state == StepState::kDone ? "good" : "name"));
     auto* button = Gtk::make_managed<Gtk::Button>();
     button->add_css_class("step");
     button->set_child(*content);
