@@ -27,15 +27,11 @@ TEST(TaskPages, HaveTheBasicSkillsTheEasiestFirst) {
   EXPECT_EQ(keys.size(), rows.size());
 }
 
-/// Of these none has been drawn yet.
-bool IsWithoutPicture(const std::string& task) {
-  return task.empty() || task == "camera_navigation_0" || task == "object_transport";
-}
-
 TEST(TaskPages, TasksAndPartsHaveSmallPictures) {
   for (const TaskPage::Group& group : Load(TaskSection::kAll).groups) {
     for (const TaskPage::Row& row : group.rows) {
-      if (IsWithoutPicture(row.request.task)) continue;
+      // a scene that is no task has none
+      if (row.request.task.empty()) continue;
       ASSERT_FALSE(row.picture.empty()) << row.name;
       EXPECT_LT(std::filesystem::file_size(row.picture), 60000u) << row.picture;
     }
