@@ -1,21 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints, as a template for gettext, the texts that stand in tables of the program: errors, commands with their help, buttons and
-// keys, settings, the home page. xgettext finds those that stand in calls.
+// list_texts REPOSITORY: prints, as a template for gettext, the texts that stand in tables of the program (errors, commands with their
+// help, settings, home, tutorial, metrics, mistakes, names of anatomy) and in its data (tasks, courses, levels, forms, the coach's
+// rules). xgettext finds those that stand in calls.
+#include <cctype>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "trocar/assessment/learning.h"
+#include "trocar/assessment/milestone.h"
 #include "trocar/centre/centre_commands.h"
+#include "trocar/contours/contour_fit.h"
 #include "trocar/core/error_codes.h"
 #include "trocar/editor/contour_commands.h"
 #include "trocar/editor/patient_commands.h"
+#include "trocar/editor/series_form.h"
+#include "trocar/haptics/fault.h"
+#include "trocar/haptics/force_gate.h"
+#include "trocar/instrument/tool.h"
 #include "trocar/presenter/home.h"
+#include "trocar/presenter/key_bindings.h"
 #include "trocar/presenter/replay_commands.h"
 #include "trocar/presenter/settings_form.h"
 #include "trocar/presenter/simulator_commands.h"
+#include "trocar/presenter/tutorial.h"
+#include "trocar/scene/event.h"
+#include "trocar/simulation/snapshot.h"
+#include "trocar/training/metric_definition.h"
+#include "trocar/training/operation_error.h"
 
 namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
 
 std::set<std::string> printed;
 
@@ -27,6 +50,27 @@ void Print(std::string_view text) {
     quoted += c == '\n' ? std::string("\\n") : std::string(1, c);
   }
   std::printf("\nmsgid \"%s\"\nmsgstr \"\"\n", quoted.c_str());
+}
+
+/// A key of a file as the window shows it: "cystic duct" of "cystic_duct".
+void PrintWords(std::string name) {
+  for (char& c : name) {
+    if (c == '_' || c == '-') c = ' ';
+  }
+  Print(name);
+}
+
+/// "ring {1}" of "ring_3": names that only count have one text.
+void PrintCounted(std::string name) {
+  std::string counted;
+  for (const char c : name) {
+    if (std::isdigit(static_cast<unsigned char>(c)) == 0) {
+      counted += c == '_' ? ' ' : c;
+    } else if (!counted.ends_with("{1}")) {
+      counted += "{1}";
+    }
+  }
+  Print(counted);
 }
 
 template <typename Commands>
@@ -43,13 +87,124 @@ void PrintCommands(const Commands& commands) {
   }
 }
 
+json ReadJson(const fs::path& path) {
+  std::ifstream file(path);
+  json document = json::parse(file, nullptr, false);
+  if (document.is_discarded()) {
+    std::fprintf(stderr, "%s cannot be read\n", path.c_str());
+    std::exit(1);
+  }
+  return document;
+}
+
+void PrintField(const json& object, const char* key) {
+  if (object.is_object() && object.contains(key) && object[key].is_string())
+    Print(object[key].get<std::string>());
+}
+
+void PrintFields(const json& object, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) PrintField(object, key);
+}
+
+std::vector<fs::path> ListJson(const fs::path& folder) {
+  std::set<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".json") files.insert(entry.path());
+  }
+  return {files.begin(), files.end()};
+}
+
+void PrintTasks(const fs::path& scenes) {
+  for (const fs::path& file : ListJson(scenes / "tasks")) {
+    const json task = ReadJson(file);
+    PrintWords(file.stem().string());
+    PrintFields(task, {"name", "about"});
+    for (const json& level : task.value("levels", json::array()))
+      Print(level.is_string() ? level.get<std::string>() : level.value("key", ""));
+    const json rules = task.value("rules", json::object());
+    for (const json& goal : rules.value("goals", json::array())) PrintField(goal, "name");
+    for (const json& error : rules.value("errors", json::array())) PrintField(error, "about");
+    for (const json& object : task["scene"].value("objects", json::array()))
+      PrintCounted(object.value("name", ""));
+  }
+  PrintField(ReadJson(scenes / "cholecystectomy.json"), "name");
+  PrintFields(ReadJson(scenes / "demonstration.json"), {"name", "about"});
+}
+
+void PrintAssets(const fs::path& assets) {
+  for (const fs::path& file : ListJson(assets / "courses")) {
+    const json course = ReadJson(file);
+    PrintFields(course, {"name", "about"});
+    for (const json& step : course["steps"]) {
+      PrintWords(step.value("key", ""));
+      PrintFields(step, {"name", "goal", "briefing", "after_pass", "after_fail"});
+    }
+  }
+  for (const json& level : ReadJson(assets / "operation" / "levels.json")["levels"])
+    PrintFields(level, {"key", "about"});
+  for (const json& rule : ReadJson(assets / "coach" / "rules.json")["rules"])
+    PrintFields(rule, {"sentence", "sentence_alone", "why", "practise"});
+  for (const fs::path& file : ListJson(assets / "rating")) {
+    const json form = ReadJson(file);
+    PrintFields(form, {"name", "about"});
+    for (const json& item : form["items"]) PrintFields(item, {"name", "1", "3", "5"});
+  }
+  for (const auto& folder : fs::directory_iterator(assets / "patients")) {
+    const json patient = ReadJson(folder.path() / "patient" / "patient.json");
+    for (const char* list : {"organs", "tubes", "landmarks"}) {
+      for (const json& one : patient[list]) {
+        PrintWords(one.value("name", ""));
+        for (const json& region : one.value("regions", json::array())) PrintWords(region.value("name", ""));
+      }
+    }
+  }
+}
+
+void PrintMedicine() {
+  using namespace trocar;
+  for (const training::MetricDefinition& metric : training::MetricDefinitions()) {
+    Print(metric.name);
+    Print(metric.about);
+  }
+  Print(training::MetricsDisclaimer());
+  for (int error = 0; error < static_cast<int>(training::OperationError::kCount); ++error) {
+    const auto one = static_cast<training::OperationError>(error);
+    Print(training::ExplanationOf(one));
+    PrintWords(std::string(training::NameOf(one)));
+  }
+  for (const training::Severity severity :
+       {training::Severity::kMinor, training::Severity::kMajor, training::Severity::kCritical})
+    Print(training::NameOf(severity));
+  for (const char* tool :
+       {"grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag"}) {
+    if (instrument::FindTool(tool) == nullptr) std::exit(1);
+    PrintWords(tool);
+  }
+  for (int kind = 0; kind <= static_cast<int>(scene::EventKind::kOperationError); ++kind)
+    PrintWords(std::string(scene::EventName(static_cast<scene::EventKind>(kind))));
+  for (int stage = 0; stage < static_cast<int>(simulation::Stage::kCount); ++stage)
+    PrintWords(std::string(simulation::StageName(static_cast<simulation::Stage>(stage))));
+  // what a generated patient may have; ducts and regions beyond those of the built-in one
+  for (const char* name :
+       {"double_cystic_artery", "moynihan_hump", "subvesical_duct", "phrygian_cap", "hydrops",
+        "acute_cholecystitis", "scleroatrophy", "steatosis", "cirrhosis", "adhesions", "right_hepatic_duct",
+        "left_hepatic_duct", "proper_hepatic_artery", "left_hepatic_artery", "cystic_artery_2",
+        "common_hepatic_artery", "gallbladder bed"})
+    PrintWords(name);
+}
+
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
   using namespace trocar;
+  if (count != 2) return 2;
+  const fs::path repository = arguments[1];
   std::puts("msgid \"\"\nmsgstr \"\"\n\"Content-Type: text/plain; charset=UTF-8\\n\"");
   for (const core::ErrorEntry& entry : core::ErrorTable()) Print(entry.meaning);
   PrintCommands(presenter::SimulatorCommands());
+  for (const presenter::SimulatorCommand& command : presenter::SimulatorCommands()) {
+    if (presenter::KeyBindings::CanChange(command) && *command.help.meaning == '\0') PrintWords(command.id);
+  }
   PrintCommands(presenter::ReplayCommands());
   PrintCommands(centre::CentreCommands());
   PrintCommands(editor::ContourCommands());
@@ -64,6 +219,65 @@ int main() {
     Print(entry.title);
     Print(entry.about);
   }
-  // what a video's job is doing
-  for (const char* what : {"Reading", "Seeking", "Drawing"}) Print(what);
+  for (const std::string_view text : presenter::TutorialTexts()) Print(text);
+  for (const char* direction : editor::PatientDirections()) Print(direction);
+  // what a long work is doing
+  for (const char* what : {"Reading", "Seeking", "Drawing", "reading labels", "looking at the labels",
+                           "assembling the patient", "done"})
+    Print(what);
+  // what is undone in the editor of contours
+  for (const char* step :
+       {"add a point", "follow an edge", "close a hole", "close a contour",
+        "drop the points of an open contour", "remove the last point", "move a point", "insert a point",
+        "delete a point", "delete a hole", "delete a contour", "make a hole a contour",
+        "make a contour a hole", "clear the slice", "add {1}", "rename an organ", "delete {1}",
+        "change the edge search", "carry the contours to slice {1}"})
+    Print(step);
+  // what the expert does who brings the operation to where a part begins
+  for (const char* doing : {"reach",
+                            "look",
+                            "wait",
+                            "ease",
+                            "draw",
+                            "burn",
+                            "lift",
+                            "turn the neck",
+                            "choose a hold",
+                            "fundus first",
+                            "close the bag",
+                            "look from aside",
+                            "look at the triangle",
+                            "look at the bed",
+                            "look at the stumps",
+                            "look at the hold",
+                            "look for what is missing",
+                            "count what enters",
+                            "assistant: retract",
+                            "assistant: release",
+                            "the hepatocystic triangle",
+                            "the lower third of the bed",
+                            "the gallbladder from its bed",
+                            "the gallbladder from the fundus on"})
+    Print(doing);
+  for (const haptics::FaultEntry& fault : haptics::FaultTable()) {
+    Print(fault.what);
+    Print(fault.remedy);
+  }
+  for (const haptics::ArmState state : {haptics::ArmState::kRamping, haptics::ArmState::kArmed})
+    Print(haptics::ArmStateName(state));
+  for (const contours::FitProblem problem :
+       {contours::FitProblem::kNoEdge, contours::FitProblem::kTooIrregular,
+        contours::FitProblem::kCrossesItself})
+    Print(contours::FitProblemText(problem));
+  for (const assessment::CusumVerdict verdict :
+       {assessment::CusumVerdict::kAcceptable, assessment::CusumVerdict::kUnacceptable,
+        assessment::CusumVerdict::kUndecided})
+    Print(assessment::VerdictSentence(verdict));
+  for (const assessment::Milestone milestone :
+       {assessment::Milestone::kCriticalView, assessment::Milestone::kDivided, assessment::Milestone::kFree,
+        assessment::Milestone::kCompleted})
+    Print(assessment::DescribeUntil(milestone));
+  PrintMedicine();
+  PrintTasks(repository / "scenes");
+  PrintAssets(repository / "assets");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device_cards.h"
 
+#include "trocar/core/translate.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/gui/labels.h"
 
@@ -27,15 +28,16 @@ FoundCard::FoundCard(presenter::DevicePresenter& presenter) : gui::Card("DEVICES
   found_.signal_row_activated().connect([&presenter](Gtk::ListBoxRow* row) {
     presenter.ChooseFound(static_cast<std::size_t>(row->get_index()));
   });
-  spec_.set_placeholder_text("KIND:ADDRESS, for example liberty:/dev/ttyUSB0");
-  spec_.set_tooltip_text("Device to try; a + joins hands and jaws. `trocar devices list` names the kinds");
+  spec_.set_placeholder_text(core::Translate("KIND:ADDRESS, for example liberty:/dev/ttyUSB0"));
+  spec_.set_tooltip_text(
+      core::Translate("Device to try; a + joins hands and jaws. `trocar devices list` names the kinds"));
   spec_.signal_changed().connect([this, &presenter] { presenter.SetSpec(spec_.get_text().raw()); });
   spec_.signal_activate().connect([&presenter] { presenter.Test(); });
   append(spec_);
   test_.add_css_class("primary");
-  test_.set_tooltip_text("Open the device and show what it says");
-  stop_.set_tooltip_text("Close the device");
-  find_.set_tooltip_text("Look for what has been plugged in since");
+  test_.set_tooltip_text(core::Translate("Open the device and show what it says"));
+  stop_.set_tooltip_text(core::Translate("Close the device"));
+  find_.set_tooltip_text(core::Translate("Look for what has been plugged in since"));
   test_.signal_clicked().connect([&presenter] { presenter.Test(); });
   stop_.signal_clicked().connect([&presenter] { presenter.Stop(); });
   find_.signal_clicked().connect([&presenter] { presenter.Find(); });
@@ -50,7 +52,8 @@ void FoundCard::ShowFound(const std::vector<std::string>& devices) {
     label->set_ellipsize(Pango::EllipsizeMode::END);
     found_.append(*label);
   }
-  if (devices.empty()) found_.append(*Gtk::make_managed<Gtk::Label>("nothing but mouse and keyboard"));
+  if (devices.empty())
+    found_.append(*Gtk::make_managed<Gtk::Label>(core::Translate("nothing but mouse and keyboard")));
 }
 
 void FoundCard::Show(const presenter::DevicePageState& state) {
@@ -59,20 +62,24 @@ void FoundCard::Show(const presenter::DevicePageState& state) {
 
 CalibrationCard::CalibrationCard(presenter::DevicePresenter& presenter)
     : gui::Card("HAND AND CALIBRATION", kSpacing) {
-  hand_.set_model(Gtk::StringList::create({"Left hand", "Right hand", "Laparoscope"}));
+  hand_.set_model(Gtk::StringList::create(
+      {core::Translate("Left hand"), core::Translate("Right hand"), core::Translate("Laparoscope")}));
   hand_.property_selected().signal_changed().connect(
       [this, &presenter] { presenter.ChooseHand(static_cast<device::Channel>(hand_.get_selected())); });
-  swap_.set_tooltip_text("The left hand's sensor becomes the right hand's, and the other way round; kept");
+  swap_.set_tooltip_text(
+      core::Translate("The left hand's sensor becomes the right hand's, and the other way round; kept"));
   swap_.signal_clicked().connect([&presenter] { presenter.SwapHands(); });
   append(gui::MakeRow(kSpacing, {&hand_, &swap_}));
-  const auto step = [&presenter](Gtk::Button& button, presenter::CalibrationStep which, const char* tip) {
+  const auto step = [&presenter](Gtk::Button& button, presenter::CalibrationStep which,
+                                 const std::string& tip) {
     button.set_tooltip_text(tip);
     button.signal_clicked().connect([&presenter, which] { presenter.Begin(which); });
   };
   step(tip_, presenter::CalibrationStep::kTip,
-       "Where the tip is, seen from its sensor: swing the handle about the tip");
-  step(trocar_, presenter::CalibrationStep::kTrocar, "Where the trocar is: swing the instrument in it");
-  step(jaw_, presenter::CalibrationStep::kJaw, "What the jaw sensor reads closed and open");
+       core::Translate("Where the tip is, seen from its sensor: swing the handle about the tip"));
+  step(trocar_, presenter::CalibrationStep::kTrocar,
+       core::Translate("Where the trocar is: swing the instrument in it"));
+  step(jaw_, presenter::CalibrationStep::kJaw, core::Translate("What the jaw sensor reads closed and open"));
   append(gui::MakeRow(kSpacing, {&tip_, &trocar_, &jaw_}));
   SetWrapped(hint_, "name");
   SetWrapped(result_, "value");
@@ -89,17 +96,19 @@ void CalibrationCard::Show(const presenter::DevicePageState& state) {
 }
 
 UseCard::UseCard(presenter::DevicePresenter& presenter) : gui::Card("IN THE OPERATION", kSpacing) {
-  use_.set_tooltip_text("The device above holds the instruments; the mouse keeps what it does not see");
+  use_.set_tooltip_text(
+      core::Translate("The device above holds the instruments; the mouse keeps what it does not see"));
   use_.signal_clicked().connect([&presenter] { presenter.Use(); });
   append(use_);
-  haptic_name_.set_placeholder_text("haptic device");
+  haptic_name_.set_placeholder_text(core::Translate("haptic device"));
   haptic_name_.set_text("simulated");
-  haptic_name_.set_tooltip_text("Haptic devices: " + device::ListForceDrivers());
+  haptic_name_.set_tooltip_text(core::TranslateWith("Haptic devices: {1}", {device::ListForceDrivers()}));
   use_haptics_.signal_clicked().connect(
       [this, &presenter] { presenter.UseHaptics(haptic_name_.get_text().raw()); });
-  check_pose_.set_tooltip_text("Confirm which haptic device is which hand");
+  check_pose_.set_tooltip_text(core::Translate("Confirm which haptic device is which hand"));
   check_pose_.signal_clicked().connect([&presenter] { presenter.CheckPose(); });
-  force_.set_tooltip_text("Asks for force, or takes it away; nothing switches it on by itself");
+  force_.set_tooltip_text(
+      core::Translate("Asks for force, or takes it away; nothing switches it on by itself"));
   force_.signal_toggled().connect([this, &presenter] {
     if (!is_showing_) presenter.SetForce(force_.get_active());
   });

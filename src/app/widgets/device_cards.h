@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/presenter/device_presenter.h"
 
@@ -22,7 +23,8 @@ class FoundCard : public gui::Card {
  private:
   Gtk::ListBox found_;
   Gtk::Entry spec_;
-  Gtk::Button test_{"Test"}, stop_{"Stop"}, find_{"Look again"};
+  Gtk::Button test_{core::Translate("Test")}, stop_{core::Translate("Stop")},
+      find_{core::Translate("Look again")};
 };
 
 /// Which hand, and what is measured of it.
@@ -33,7 +35,8 @@ class CalibrationCard : public gui::Card {
 
  private:
   Gtk::DropDown hand_;
-  Gtk::Button tip_{"Tip"}, trocar_{"Trocar"}, jaw_{"Jaw"}, swap_{"Swap hands"};
+  Gtk::Button tip_{core::Translate("Tip")}, trocar_{core::Translate("Trocar")}, jaw_{core::Translate("Jaw")},
+      swap_{core::Translate("Swap hands")};
   Gtk::ProgressBar progress_;
   Gtk::Label hint_, result_;
 };
@@ -45,10 +48,10 @@ class UseCard : public gui::Card {
   void Show(const presenter::DevicePageState& state);
 
  private:
-  Gtk::Button use_{"Hold the instruments"};
+  Gtk::Button use_{core::Translate("Hold the instruments")};
   Gtk::Entry haptic_name_;
-  Gtk::Button use_haptics_{"Use"}, check_pose_{"Check pose"};
-  Gtk::ToggleButton force_{"Force"};
+  Gtk::Button use_haptics_{core::Translate("Use")}, check_pose_{core::Translate("Check pose")};
+  Gtk::ToggleButton force_{core::Translate("Force")};
   Gtk::Label haptics_;
   bool is_showing_ = false;  // the toggle is being set by us
 };

@@ -2,6 +2,7 @@
 #include "device_page.h"
 
 #include "play_screenshot.h"
+#include "trocar/core/translate.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/gui/labels.h"
 
@@ -16,7 +17,7 @@ constexpr unsigned kSettleTime = 300;  // before a picture is taken [ms]
 
 DevicePage::DevicePage(const presenter::Options& options, presenter::SessionControl* control)
     : presenter_(options, device::FindDeviceStore(), control, *this) {
-  set_title("Trocar: devices");
+  set_title(core::Translate("Trocar: devices"));
   add_css_class("trocar");
   set_default_size(kWidth, kHeight);
   if (control != nullptr) use_.emplace(presenter_);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::app {
 namespace {
 
@@ -21,13 +23,17 @@ struct Lane {
   double (*value)(const HandSample&);  // in `unit`; null: the force
 };
 
-constexpr Lane kLanes[] = {
-    {"pan", "°", -80, 80, 0.50, 0.82, 0.87, [](const HandSample& hand) { return kDegree * hand.pan; }},
-    {"tilt", "°", -80, 80, 0.56, 0.88, 0.66, [](const HandSample& hand) { return kDegree * hand.tilt; }},
-    {"turn", "°", -180, 180, 0.80, 0.68, 0.95, [](const HandSample& hand) { return kDegree * hand.spin; }},
-    {"depth", "mm", 0, 300, 1.00, 0.76, 0.30, [](const HandSample& hand) { return 1e3 * hand.depth; }},
-    {"jaw", "°", 0, 70, 0.98, 0.56, 0.48, [](const HandSample& hand) { return kDegree * hand.jaw; }},
-    {"force", "N", 0, 5, 0.92, 0.95, 0.97, nullptr}};
+constexpr Lane kLanes[] = {{core::Mark("pan"), "°", -80, 80, 0.50, 0.82, 0.87,
+                            [](const HandSample& hand) { return kDegree * hand.pan; }},
+                           {core::Mark("tilt"), "°", -80, 80, 0.56, 0.88, 0.66,
+                            [](const HandSample& hand) { return kDegree * hand.tilt; }},
+                           {core::Mark("turn"), "°", -180, 180, 0.80, 0.68, 0.95,
+                            [](const HandSample& hand) { return kDegree * hand.spin; }},
+                           {core::Mark("depth"), "mm", 0, 300, 1.00, 0.76, 0.30,
+                            [](const HandSample& hand) { return 1e3 * hand.depth; }},
+                           {core::Mark("jaw"), "°", 0, 70, 0.98, 0.56, 0.48,
+                            [](const HandSample& hand) { return kDegree * hand.jaw; }},
+                           {core::Mark("force"), "N", 0, 5, 0.92, 0.95, 0.97, nullptr}};
 constexpr int kLaneCount = static_cast<int>(std::size(kLanes));
 
 }  // namespace
@@ -98,11 +104,11 @@ void DevicePlot::Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width, int
                             Cairo::ToyFontFace::Weight::NORMAL);
     cairo->set_font_size(13);
     cairo->move_to(10, top + 0.5 * lane_height - 3);
-    cairo->show_text(lane.name);
+    cairo->show_text(core::Translate(lane.name));
     char text[32] = "–";
     if (std::isfinite(newest)) std::snprintf(text, sizeof text, "%.1f %s", newest, lane.unit);
     cairo->move_to(10, top + 0.5 * lane_height + 15);
-    cairo->show_text(text);
+    cairo->show_text(core::LocalNumber(text));
   }
 }
 

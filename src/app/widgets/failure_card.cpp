@@ -28,10 +28,9 @@ void FailureCard::Show(const core::Error& error) {
     append(*label);
   };
   line(std::string(core::CodeText(error.code)), "code");
-  // what the code means, in the person's language; where it happened and what mends it is English
   if (const std::string meaning = core::TranslatedMeaning(error.code); !meaning.empty())
     line(meaning, "text");
-  line(error.message, "text");
+  line(core::TranslateComposed(error.message), "text");
   line(core::Translate("`trocar doctor` checks graphics, display and data and says how to mend them."),
        "text");
   set_visible(true);

@@ -51,7 +51,7 @@ void FilmBar::Start(presenter::FilmRequest request) {
 
 bool FilmBar::ShowProgress() {
   const gui::JobProgress::Value now = progress_.Get();
-  gui::SetText(text_, core::Translate("Video: ") + core::Translate(now.what) + " …");
+  gui::SetText(text_, core::TranslateWith("Video: {1} …", {core::Translate(now.what)}));
   bar_.set_fraction(now.fraction);
   return true;
 }
@@ -61,13 +61,14 @@ void FilmBar::Finish() {
   set_visible(false);
   const core::Result<presenter::Film> status = job_.Take();
   if (status.ok())
-    return say_(core::Translate("Saved ") + presenter::FormatClock(status->until - status->from) +
-                    core::Translate(" min:s in ") + request_.video.string(),
-                false);
+    return say_(
+        core::TranslateWith("Saved {1} min:s in {2}",
+                            {presenter::FormatClock(status->until - status->from), request_.video.string()}),
+        false);
   if (status.error().code == core::ErrorCode::kCancelled)
     return say_(core::Translate("The video was given up."), false);
   core::Log(core::LogLevel::kError, status.error().Text());
-  say_(status.error().Text(), true);
+  say_(core::ShownText(status.error()), true);
 }
 
 }  // namespace trocar::app

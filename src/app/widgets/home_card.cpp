@@ -78,13 +78,14 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
 }
 
 void HomeCard::Show(const presenter::HomePage& page) {
-  gui::SetTextOrHide(who_, page.who.empty() ? "" : core::Translate("You are: ") + page.who);
-  gui::SetTextOrHide(patient_,
-                     page.patient.empty() ? "" : core::Translate("Operations are on ") + page.patient);
-  gui::SetTextOrHide(problem_, page.problem ? "\u26a0 " + page.problem->Text() : "");
+  gui::SetTextOrHide(who_, page.who.empty() ? "" : core::TranslateWith("You are: {1}", {page.who}));
+  gui::SetTextOrHide(
+      patient_, page.patient.empty() ? "" : core::TranslateWith("Operations are on {1}", {page.patient}));
+  gui::SetTextOrHide(problem_, page.problem ? "\u26a0 " + core::ShownText(*page.problem) : "");
   rows_[presenter::HomeChoice::kContinue].button->set_visible(!page.last.empty());
   rows_[presenter::HomeChoice::kContinue].about->set_text(page.last);
-  rows_[presenter::HomeChoice::kTutorial].title->set_text(core::Translate("Tutorial: ") + page.tutorial);
+  rows_[presenter::HomeChoice::kTutorial].title->set_text(
+      core::TranslateWith("Tutorial: {1}", {page.tutorial}));
   gui::SetClass(*rows_[presenter::HomeChoice::kTutorial].button, "primary", page.is_tutorial_suggested);
   gui::SetClass(*rows_[presenter::HomeChoice::kContinue].button, "primary", !page.is_tutorial_suggested);
 }

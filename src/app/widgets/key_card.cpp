@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
 
@@ -12,23 +13,25 @@ namespace {
 
 constexpr int kListWidth = 660, kKeyWidth = 130;  // [pixels]
 constexpr std::array<const char*, presenter::kButtonActs.size()> kActTexts = {
-    "close the jaws, hold the button", "open the jaws, hold the button", "look round, hold the button"};
+    core::Mark("close the jaws, hold the button"), core::Mark("open the jaws, hold the button"),
+    core::Mark("look round, hold the button")};
 
 }  // namespace
 
 KeyCard::KeyCard(KeyCardServices services) : gui::ListCard(kListWidth), services_(std::move(services)) {
-  restore_.set_tooltip_text("All keys and buttons as they were at first; Undo takes that back");
+  restore_.set_tooltip_text(
+      core::Translate("All keys and buttons as they were at first; Undo takes that back"));
   restore_.signal_clicked().connect([this] { services_.restore(); });
-  undo_.set_tooltip_text("Takes back the last change of a key or button");
+  undo_.set_tooltip_text(core::Translate("Takes back the last change of a key or button"));
   undo_.signal_clicked().connect([this] { services_.undo(); });
   AddFoot({&restore_, &undo_});
   MakeRows();
 }
 
 void KeyCard::MakeRows() {
-  AddTitle("Mouse");
+  AddTitle(core::Translate("Mouse"));
   for (const presenter::ButtonAct act : presenter::kButtonActs) AddButton(act);
-  AddTitle("Keys: press a button here, then the new key. Esc keeps the old one.");
+  AddTitle(core::Translate("Keys: press a button here, then the new key. Esc keeps the old one."));
   for (const presenter::SimulatorCommand& command : presenter::SimulatorCommands()) {
     if (presenter::KeyBindings::CanChange(command)) AddCommand(command);
   }
@@ -36,15 +39,16 @@ void KeyCard::MakeRows() {
 
 void KeyCard::AddButton(presenter::ButtonAct act) {
   auto* choice = Gtk::make_managed<Gtk::DropDown>();
-  choice->set_model(Gtk::StringList::create({"left button", "middle button", "right button"}));
+  choice->set_model(Gtk::StringList::create(
+      {core::Translate("left button"), core::Translate("middle button"), core::Translate("right button")}));
   const auto index = static_cast<std::size_t>(act);
-  gui::SetAccessibleName(*choice, kActTexts[index]);
+  gui::SetAccessibleName(*choice, core::Translate(kActTexts[index]));
   choice->property_selected().signal_changed().connect([this, act, choice] {
     if (!is_showing_)
       services_.change_button(act, static_cast<presenter::MouseButton>(choice->get_selected() + 1));
   });
   buttons_[index] = choice;
-  AddRow(kActTexts[index], "", {choice});
+  AddRow(core::Translate(kActTexts[index]), "", {choice});
 }
 
 void KeyCard::AddCommand(const presenter::SimulatorCommand& command) {
@@ -59,7 +63,7 @@ void KeyCard::AddCommand(const presenter::SimulatorCommand& command) {
 
 void KeyCard::AskFor(const presenter::SimulatorCommand& command) {
   asked_ = command.id;
-  rows_of_[asked_].button->set_label("Press a key …");
+  rows_of_[asked_].button->set_label(core::Translate("Press a key …"));
   services_.ask_key([this, id = asked_](std::uint32_t key) {
     asked_.clear();
     if (key == 0 || !services_.change_key(id, key).ok()) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/list_card.h"
 #include "trocar/presenter/key_bindings.h"
 
@@ -45,7 +46,7 @@ class KeyCard : public gui::ListCard {
   std::string asked_;        // id of the command whose new key is waited for
   bool is_showing_ = false;  // the choice changes by the program, not by a person
   presenter::KeyBindings shown_;
-  Gtk::Button restore_{"As at first"}, undo_{"Undo"};
+  Gtk::Button restore_{core::Translate("As at first")}, undo_{core::Translate("Undo")};
 };
 
 }  // namespace trocar::app

@@ -280,7 +280,7 @@ int main(int argc, char** argv) {
   core::UseLanguage(core::FindLocaleFolder());
   const core::Result<presenter::CommandLine> command = presenter::ParseCommandLine(argc, argv);
   if (!command) {
-    std::fprintf(stderr, "%s\n", command.error().Text().c_str());
+    std::fprintf(stderr, "%s\n", core::ShownText(command.error()).c_str());
     return 2;
   }
   if (command->is_text_only) {
@@ -294,11 +294,11 @@ int main(int argc, char** argv) {
                             "no display can be opened: start from a desktop session or set DISPLAY "
                             "or WAYLAND_DISPLAY; without one, "
                             "`trocar simulate` runs the same scene headless"};
-    std::fprintf(stderr, "%s\n", error.Text().c_str());
+    std::fprintf(stderr, "%s\n", core::ShownText(error).c_str());
     return EXIT_FAILURE;
   }
   if (const core::Status found = program.FindStore(); !found.ok()) {
-    std::fprintf(stderr, "%s\n", found.error().Text().c_str());
+    std::fprintf(stderr, "%s\n", core::ShownText(found.error()).c_str());
     return EXIT_FAILURE;
   }
   core::RemovePartialPathsOnSignals();

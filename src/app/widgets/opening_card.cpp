@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opening_card.h"
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/labels.h"
 
 namespace trocar::app {
@@ -20,11 +21,12 @@ OpeningCard::OpeningCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   doing_.set_xalign(0);
   doing_.set_wrap(true);
   doing_.set_max_width_chars(60);
-  gui::SetAccessibleName(progress_, "The operation is prepared");
-  auto* note = Gtk::make_managed<Gtk::Label>("This takes minutes the first time, and is kept.");
+  gui::SetAccessibleName(progress_, core::Translate("The operation is prepared"));
+  auto* note =
+      Gtk::make_managed<Gtk::Label>(core::Translate("This takes minutes the first time, and is kept."));
   note->add_css_class("name");
   note->set_xalign(0);
-  auto* cancel = Gtk::make_managed<Gtk::Button>("Cancel");
+  auto* cancel = Gtk::make_managed<Gtk::Button>(core::Translate("Cancel"));
   cancel->set_halign(Gtk::Align::END);
   cancel->signal_clicked().connect([this] { signal_cancelled_.emit(); });
   append(doing_);

@@ -71,10 +71,10 @@ HandsCard::HandsCard() : gui::Card("Force on the instruments") {
     words->set_valign(Gtk::Align::CENTER);
     gui::SetStyle(row.name, "hand");
     gui::SetStyle(row.contact, "fine");
-    row.contact.set_text("free");
+    row.contact.set_text(core::Translate("free"));
     gui::SetStyle(row.force, "force", Gtk::Align::END);
     row.force.set_width_chars(7);
-    row.force.set_text("0.0 N");
+    row.force.set_text(presenter::FormatForce(0));
     words->append(row.name);
     words->append(row.contact);
     append(gui::MakeRow(0, {words, &row.force}));

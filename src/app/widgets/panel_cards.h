@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "force_bar.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/presenter/panel_presenter.h"
 
@@ -78,7 +79,7 @@ class SettingsCards {
   std::vector<std::unique_ptr<gui::Card>> cards_;
   std::vector<std::unique_ptr<Row>> rows_;
   Gtk::DropDown solver_;
-  Gtk::Button defaults_{"Defaults"};
+  Gtk::Button defaults_{core::Translate("Defaults")};
   bool is_showing_ = false;  // sliders are being moved by us
 };
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
 
@@ -26,7 +27,7 @@ PatientListCard::PatientListCard()
   doing_.set_hexpand(true);
   doing_.set_ellipsize(Pango::EllipsizeMode::END);
   progress_.set_valign(Gtk::Align::CENTER);
-  gui::SetAccessibleName(progress_, "How far it is");
+  gui::SetAccessibleName(progress_, core::Translate("How far it is"));
   cancel_.signal_clicked().connect([this] {
     desk_.Cancel();
     ShowProgress();
@@ -45,14 +46,16 @@ PatientListCard::~PatientListCard() {
 }
 
 void PatientListCard::MakeFoot() {
-  auto* label = Gtk::make_managed<Gtk::Label>("New patient: seed");
+  auto* label = Gtk::make_managed<Gtk::Label>(core::Translate("New patient: seed"));
   label->add_css_class("name");
   seed_.set_adjustment(Gtk::Adjustment::create(1, 0, kMostSeed, 1, 10));
-  seed_.set_tooltip_text("The same seed gives the same patient");
-  gui::SetAccessibleName(seed_, "Seed of a new patient");
+  seed_.set_tooltip_text(core::Translate("The same seed gives the same patient"));
+  gui::SetAccessibleName(seed_, core::Translate("Seed of a new patient"));
   generate_.add_css_class("primary");
-  generate_.set_tooltip_text("A plausible patient without any pictures, with varied anatomy");
-  import_.set_tooltip_text("Liver and gallbladder that somebody drew or computed (NIfTI, NRRD)");
+  generate_.set_tooltip_text(
+      core::Translate("A plausible patient without any pictures, with varied anatomy"));
+  import_.set_tooltip_text(
+      core::Translate("Liver and gallbladder that somebody drew or computed (NIfTI, NRRD)"));
   generate_.signal_clicked().connect([this] {
     desk_.Generate(static_cast<std::uint64_t>(seed_.get_value_as_int()));
     Begin();
@@ -63,11 +66,11 @@ void PatientListCard::MakeFoot() {
 
 void PatientListCard::AskForLabels() {
   gui::FileRequest request;
-  request.title = "Label map of liver and gallbladder";
-  request.kinds = {{"Label maps (NIfTI, NRRD)", "*.nii"},
-                   {"Compressed NIfTI", "*.nii.gz"},
+  request.title = core::Translate("Label map of liver and gallbladder");
+  request.kinds = {{core::Translate("Label maps (NIfTI, NRRD)"), "*.nii"},
+                   {core::Translate("Compressed NIfTI"), "*.nii.gz"},
                    {"NRRD", "*.nrrd"},
-                   {"All files", "*"}};
+                   {core::Translate("All files"), "*"}};
   file_dialog_.Ask(*this, request, [this](const std::filesystem::path& file) {
     desk_.Import(file);
     Begin();
@@ -114,9 +117,9 @@ void PatientListCard::ShowProgress() {
 
 void PatientListCard::Show() {
   const presenter::PatientPage& page = desk_.Look();
-  gui::SetTextOrHide(problem_, page.problem ? page.problem->Text() : "");
+  gui::SetTextOrHide(problem_, page.problem ? core::ShownText(*page.problem) : "");
   ClearRows();
-  AddTitle("Who is operated on");
+  AddTitle(core::Translate("Who is operated on"));
   for (const presenter::PatientEntry& patient : page.patients) AddPatient(patient);
 }
 
@@ -127,14 +130,14 @@ void PatientListCard::AddPatient(const presenter::PatientEntry& patient) {
   Gtk::Label* state = gui::MakeLabel("", "name");
   if (patient.problem) {
     gui::SetClass(*state, "bad", true);
-    state->set_text("\u26a0 " + patient.problem->Text());
-    state->set_tooltip_text(patient.problem->Text());
+    state->set_text("\u26a0 " + core::ShownText(*patient.problem));
+    state->set_tooltip_text(core::ShownText(*patient.problem));
   } else if (is_chosen) {
-    state->set_text("\u2713 Chosen");
+    state->set_text(core::Translate("\u2713 Chosen"));
   }
-  auto* choose = Gtk::make_managed<Gtk::Button>("Operate on");
+  auto* choose = Gtk::make_managed<Gtk::Button>(core::Translate("Operate on"));
   choose->set_tooltip_text(patient.name);
-  gui::SetAccessibleName(*choose, "Operate on " + patient.name);
+  gui::SetAccessibleName(*choose, core::TranslateWith("Operate on {1}", {patient.name}));
   choose->set_sensitive(!patient.problem);
   choose->signal_clicked().connect([this, folder = patient.folder] {
     desk_.Choose(folder);

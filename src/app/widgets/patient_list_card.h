@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/list_card.h"
 #include "trocar/presenter/patient_desk.h"
@@ -33,7 +34,8 @@ class PatientListCard : public gui::ListCard {
 
   Gtk::Label problem_, doing_;
   Gtk::ProgressBar progress_;
-  Gtk::Button cancel_{"Cancel"}, generate_{"Make it"}, import_{"From a label map…"};
+  Gtk::Button cancel_{core::Translate("Cancel")}, generate_{core::Translate("Make it")},
+      import_{core::Translate("From a label map…")};
   Gtk::SpinButton seed_;
   Gtk::Box under_way_;
   gui::FileDialog file_dialog_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "trocar/core/translate.h"
 #include "trocar/presenter/replay_presenter.h"
 
 namespace trocar::app {
@@ -16,7 +17,9 @@ constexpr std::size_t kMostRows = 200;  // of the newest: a list that nobody scr
 std::string NameOf(const record::Description& d) {
   std::string name = std::filesystem::path(d.name).stem().string();
   std::replace(name.begin(), name.end(), '_', ' ');
-  return name + (d.level.empty() ? "" : ", " + d.level) + ", seed " + std::to_string(d.seed);
+  name = core::Translate(name);
+  if (!d.level.empty()) name += ", " + core::Translate(d.level);
+  return core::TranslateWith("{1}, seed {2}", {name, std::to_string(d.seed)});
 }
 
 std::string DescribeRow(const record::RecordingSummary& recording) {
@@ -24,24 +27,25 @@ std::string DescribeRow(const record::RecordingSummary& recording) {
   std::string text;
   if (d.started.size() >= 16) text = d.started.substr(0, 10) + " " + d.started.substr(11, 5) + "  ·  ";
   text += presenter::FormatClock(recording.seconds);
-  const std::string outcome = record::DescribeOutcome(recording.outcome);
+  const std::string outcome = core::TranslateComposed(record::DescribeOutcome(recording.outcome));
   if (!recording.is_finished) {
-    text += "  ·  not finished";
+    text += core::Translate("  ·  not finished");
   } else if (!outcome.empty()) {
     text += "  ·  " + outcome;
   }
-  if (!recording.is_whole) text += "  ·  damaged";
+  if (!recording.is_whole) text += core::Translate("  ·  damaged");
   if (recording.errors > 0)
-    text += "  ·  " + std::to_string(recording.errors) + (recording.errors == 1 ? " error" : " errors");
-  text += "  ·  " + d.player;
-  if (!d.branched_from.empty()) text += ", from " + d.branched_from;
+    text +=
+        "  ·  " + core::TranslateCount("{1} error", "{1} errors", static_cast<std::size_t>(recording.errors));
+  text += "  ·  " + core::TranslateComposed(d.player);
+  if (!d.branched_from.empty()) text += core::TranslateWith(", from {1}", {d.branched_from});
   return text;
 }
 
 }  // namespace
 
 RecordingChooser::RecordingChooser(const char* verb) : gui::ListCard(kListWidth), verb_(verb) {
-  auto* file = Gtk::make_managed<Gtk::Button>("Another file…");
+  auto* file = Gtk::make_managed<Gtk::Button>(core::Translate("Another file…"));
   file->signal_clicked().connect(sigc::mem_fun(*this, &RecordingChooser::OpenFile));
   AddFoot({file});
   loaded_.connect(sigc::mem_fun(*this, &RecordingChooser::Fill));
@@ -59,15 +63,17 @@ void RecordingChooser::Load(const std::filesystem::path& folder) {
 void RecordingChooser::Fill() {
   const auto list = loading_.Take();
   ClearRows();
-  AddTitle(list.empty() ? "There is no recording in " + folder_.string() : "Recordings, the newest first");
+  AddTitle(list.empty() ? core::TranslateWith("There is no recording in {1}", {folder_.string()})
+                        : core::Translate("Recordings, the newest first"));
   for (std::size_t i = 0; i < std::min(list.size(), kMostRows); ++i) AddRecording(list[i]);
   if (list.size() > kMostRows)
-    AddTitle("and " + std::to_string(list.size() - kMostRows) + " older ones in " + folder_.string());
+    AddTitle(core::TranslateWith("and {1} older ones in {2}",
+                                 {std::to_string(list.size() - kMostRows), folder_.string()}));
   if (next_folder_) Load(*std::exchange(next_folder_, std::nullopt));
 }
 
 void RecordingChooser::AddRecording(const record::RecordingSummary& recording) {
-  auto* open = Gtk::make_managed<Gtk::Button>(verb_);
+  auto* open = Gtk::make_managed<Gtk::Button>(core::Translate(verb_));
   open->set_tooltip_text(recording.path.filename().string());
   open->signal_clicked().connect([this, path = recording.path] { signal_chosen_.emit(path); });
   AddRow(NameOf(recording.description), DescribeRow(recording), {open});
@@ -75,8 +81,8 @@ void RecordingChooser::AddRecording(const record::RecordingSummary& recording) {
 
 void RecordingChooser::OpenFile() {
   gui::FileRequest request;
-  request.title = "Open a recording";
-  request.kinds = {{"Recordings", "*.trocar"}};
+  request.title = core::Translate("Open a recording");
+  request.kinds = {{core::Translate("Recordings"), "*.trocar"}};
   file_dialog_.Ask(*this, request, [this](const std::filesystem::path& file) { signal_chosen_.emit(file); });
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "picture_folder.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
 #include "trocar/gui/window_screenshot.h"
@@ -34,7 +35,7 @@ ReplayWindow::ReplayWindow(const presenter::Options& options,
            [this](const presenter::ReplayCommand& command) { presenter_->Do(command.action); }),
       take_over_(std::move(take_over)),
       recording_(options.replay) {
-  set_title("Trocar: replay");
+  set_title(core::Translate("Trocar: replay"));
   add_css_class("trocar");
   set_default_size(kWidth, kHeight);
   set_titlebar(bar_);
@@ -108,7 +109,7 @@ void ReplayWindow::MakeContent() {
   panel->add_css_class("panel");
   panel->set_size_request(kListWidth, -1);
   panel->set_hexpand(false);  // though its rows do
-  auto* title = gui::MakeLabel("Errors, phases and remarks", "card-title");
+  auto* title = gui::MakeLabel(core::Translate("Errors, phases and remarks"), "card-title");
   title->set_margin(8);
   panel->append(*title);
   panel->append(*scroller);
@@ -250,15 +251,18 @@ void ReplayWindow::DoInWindow(presenter::ReplayAction action) {
       if (const auto file = MakePictureName(".webm"); file.ok()) {
         StartFilm(presenter_->Time(), presenter::kClipSeconds, *file);
       } else {
-        presenter_->Tell(file.error().Text(), true);
+        presenter_->Tell(core::ShownText(file.error()), true);
       }
       break;
     case presenter::ReplayAction::kSaveVideo:
-      file_dialog_.Ask(
-          *this, {"Save the video", "", recording_.stem().string() + ".webm", {{"Video (WebM)", "*.webm"}}},
-          [this](const std::filesystem::path& file) {
-            StartFilm(std::numeric_limits<double>::infinity(), 0, file);
-          });
+      file_dialog_.Ask(*this,
+                       {core::Translate("Save the video"),
+                        "",
+                        recording_.stem().string() + ".webm",
+                        {{core::Translate("Video (WebM)"), "*.webm"}}},
+                       [this](const std::filesystem::path& file) {
+                         StartFilm(std::numeric_limits<double>::infinity(), 0, file);
+                       });
       break;
     case presenter::ReplayAction::kClose:
       // never within a frame, which holds the GLArea
@@ -274,7 +278,9 @@ void ReplayWindow::SavePicture() {
   const core::Status saved =
       file.ok() ? gui::SaveWidgetPicture(sides_[presenter::ReplayPresenter::kOwn].picture, *file)
                 : core::Status(file.error());
-  presenter_->Tell(saved.ok() ? "Saved " + file->string() : saved.error().Text(), !saved.ok());
+  presenter_->Tell(
+      saved.ok() ? core::TranslateWith("Saved {1}", {file->string()}) : core::ShownText(saved.error()),
+      !saved.ok());
 }
 
 void ReplayWindow::StartFilm(double until, double last_seconds, const std::filesystem::path& video) {

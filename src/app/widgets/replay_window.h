@@ -14,6 +14,7 @@
 #include "picture.h"
 #include "recording_chooser.h"
 #include "replay_bar.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
@@ -61,7 +62,7 @@ class ReplayWindow : public Gtk::ApplicationWindow, private presenter::ReplayScr
   ReplayBar time_bar_;
   Gtk::ListBox mark_list_;
   std::vector<presenter::ReplayMark> marks_;  // of the list's rows
-  RecordingChooser chooser_{"Beside"};
+  RecordingChooser chooser_{core::Mark("Beside")};
   gui::HelpCard help_card_{presenter::ReplayHelp()};
   FailureCard failure_card_;
   Gtk::Label clock_, state_, message_;

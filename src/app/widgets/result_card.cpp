@@ -72,22 +72,24 @@ void ResultCard::AddLine(const std::string& left, const std::string& middle, con
 void ResultCard::Show(const presenter::TaskResult& result) {
   while (Gtk::Widget* old = lines_.get_first_child()) lines_.remove(*old);
   line_count_ = 0;
-  title_.set_text(result.task + ", " + result.level +
+  title_.set_text(core::Translate(result.task) + ", " + core::Translate(result.level) +
                   (result.is_demonstration ? core::Translate(", shown by the expert") : std::string()));
   verdict_.set_text(result.verdict + core::Translate(" after ") + presenter::FormatTime(result.time));
   score_.set_text(core::Translate("Score ") + presenter::FormatScore(result));
   const bool is_completed = result.phase == scene::TaskPhase::kCompleted;
   score_.set_css_classes({is_completed ? "force" : "note"});
   for (const presenter::TaskResult::GoalRow& goal : result.goals)
-    AddLine(goal.is_done ? "✓" : "—", goal.name, "", "meaning");
+    AddLine(goal.is_done ? "✓" : "—", core::TranslateComposed(goal.name), "", "meaning");
   if (result.errors.empty())
     AddLine("",
             is_completed ? core::Translate("No errors.")
                          : core::Translate("No errors, but not all goals were reached."),
             "", "meaning");
   for (const presenter::TaskResult::ErrorRow& error : result.errors)
-    AddLine(presenter::FormatTime(error.time), error.about + (error.by.empty() ? "" : " (" + error.by + ")"),
-            error.severity, "note");
+    AddLine(presenter::FormatTime(error.time),
+            core::TranslateComposed(error.about) +
+                (error.by.empty() ? "" : " (" + presenter::DescribeDoer(error) + ")"),
+            core::Translate(error.severity), "note");
   if (!result.recording.empty()) AddLine("", core::Translate("Recorded: ") + result.recording, "", "meaning");
 }
 

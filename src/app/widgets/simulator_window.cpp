@@ -6,6 +6,7 @@
 
 #include "picture_folder.h"
 #include "play_screenshot.h"
+#include "trocar/core/translate.h"
 #include "trocar/core/user_folder.h"
 #include "trocar/gui/labels.h"
 #include "trocar/gui/window_screenshot.h"
@@ -59,7 +60,7 @@ SimulatorWindow::~SimulatorWindow() {
 
 void SimulatorWindow::MakeOverlay() {
   overlay_.set_child(picture_);
-  gui::SetAccessibleName(picture_, "Picture of the laparoscope");
+  gui::SetAccessibleName(picture_, core::Translate("Picture of the laparoscope"));
   overlay_.set_hexpand(true);
   overlay_.set_vexpand(true);
   badge_.add_css_class("badge");
@@ -103,9 +104,9 @@ void SimulatorWindow::MakeQuestion() {
   auto* answers = Gtk::make_managed<Gtk::Box>();
   answers->set_spacing(8);
   answers->set_halign(Gtk::Align::END);
-  auto* no = Gtk::make_managed<Gtk::Button>("No, go on");
+  auto* no = Gtk::make_managed<Gtk::Button>(core::Translate("No, go on"));
   no->add_css_class("primary");
-  auto* yes = Gtk::make_managed<Gtk::Button>("Yes");
+  auto* yes = Gtk::make_managed<Gtk::Button>(core::Translate("Yes"));
   no->signal_clicked().connect([this] { presenter_->Answer(false); });
   yes->signal_clicked().connect([this] { presenter_->Answer(true); });
   answers->append(*yes);
@@ -405,15 +406,18 @@ void SimulatorWindow::OpenDevices() {
 void SimulatorWindow::SavePicture() {
   const auto file = MakePictureName(".png");
   const core::Status saved = file.ok() ? gui::SaveWidgetPicture(picture_, *file) : core::Status(file.error());
-  presenter_->Tell(saved.ok() ? "Saved " + file->string() : saved.error().Text(), !saved.ok());
+  presenter_->Tell(
+      saved.ok() ? core::TranslateWith("Saved {1}", {file->string()}) : core::ShownText(saved.error()),
+      !saved.ok());
 }
 
 void SimulatorWindow::SaveClip() {
   const auto recording = presenter_->Control()->Recording();
   if (!recording || recording->failure)
-    return presenter_->Tell("This attempt is not recorded, so that there is no clip of it.", true);
+    return presenter_->Tell(core::Translate("This attempt is not recorded, so that there is no clip of it."),
+                            true);
   const auto file = MakePictureName(".webm");
-  if (!file.ok()) return presenter_->Tell(file.error().Text(), true);
+  if (!file.ok()) return presenter_->Tell(core::ShownText(file.error()), true);
   presenter::FilmRequest request;
   request.recording = recording->path;
   request.video = *file;
@@ -470,9 +474,9 @@ bool SimulatorWindow::ChangeSound(presenter::Action action) {
 
 void SimulatorWindow::ChooseAndSaveResult() {
   gui::FileRequest request;
-  request.title = "Save the result";
+  request.title = core::Translate("Save the result");
   request.new_name = "result.html";
-  request.kinds = {{"Page (HTML)", "*.html"}, {"Data (JSON)", "*.json"}};
+  request.kinds = {{core::Translate("Page (HTML)"), "*.html"}, {core::Translate("Data (JSON)"), "*.json"}};
   file_dialog_.Ask(*this, request,
                    [this](const std::filesystem::path& file) { presenter_->SaveResult(file); });
 }

@@ -25,6 +25,7 @@
 #include "result_card.h"
 #include "sound_card.h"
 #include "task_chooser.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
@@ -113,7 +114,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   KeyCard keys_;
   Gtk::Box question_{Gtk::Orientation::VERTICAL};
   TaskChooser chooser_;
-  RecordingChooser recordings_{"Watch"};
+  RecordingChooser recordings_{core::Mark("Watch")};
   ResultCard result_card_;
   SoundCard sound_card_;
   FailureCard failure_card_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
 
@@ -22,11 +23,11 @@ std::string DescribeLevel(const presenter::TaskPage::Level& level) {
 }  // namespace
 
 TaskChooser::TaskChooser() : gui::ListCard(kListWidth) {
-  auto* label = Gtk::make_managed<Gtk::Label>("Seed of the task");
+  auto* label = Gtk::make_managed<Gtk::Label>(core::Translate("Seed of the task"));
   label->add_css_class("name");
   seed_.set_adjustment(Gtk::Adjustment::create(1, 0, kMostSeed, 1, 10));
-  gui::SetAccessibleName(seed_, "Seed of the task");
-  seed_.set_tooltip_text("Moves what a task leaves open; the same seed gives the same task");
+  gui::SetAccessibleName(seed_, core::Translate("Seed of the task"));
+  seed_.set_tooltip_text(core::Translate("Moves what a task leaves open; the same seed gives the same task"));
   patients_.signal_clicked().connect([this] { signal_patients_.emit(); });
   AddFoot({label, &seed_, &patients_});
 }
@@ -44,9 +45,9 @@ void TaskChooser::AddTask(const presenter::TaskPage::Row& row) {
   Gtk::Label* about = gui::MakeLabel(row.about, "fine");
   about->set_tooltip_text(row.about);
   Gtk::Label* best = gui::MakeLabel("", "name");
-  auto* start = Gtk::make_managed<Gtk::Button>("Start");
+  auto* start = Gtk::make_managed<Gtk::Button>(core::Translate("Start"));
   start->set_tooltip_text(row.name);
-  gui::SetAccessibleName(*start, "Start " + row.name);
+  gui::SetAccessibleName(*start, core::TranslateWith("Start {1}", {row.name}));
   if (row.levels.empty()) {
     start->signal_clicked().connect([this, request = row.request]() mutable {
       request.choice.seed = static_cast<std::uint64_t>(seed_.get_value_as_int());
@@ -56,9 +57,13 @@ void TaskChooser::AddTask(const presenter::TaskPage::Row& row) {
   }
   auto* level = Gtk::make_managed<Gtk::DropDown>();
   std::vector<Glib::ustring> keys;
-  for (const presenter::TaskPage::Level& one : row.levels) keys.emplace_back(one.key);
-  level->set_model(Gtk::StringList::create(keys));
-  gui::SetAccessibleName(*level, "Level of " + row.name);
+  std::vector<Glib::ustring> names;
+  for (const presenter::TaskPage::Level& one : row.levels) {
+    keys.emplace_back(one.key);
+    names.emplace_back(core::Translate(one.key));
+  }
+  level->set_model(Gtk::StringList::create(names));
+  gui::SetAccessibleName(*level, core::TranslateWith("Level of {1}", {row.name}));
   const auto normal = std::find(keys.begin(), keys.end(), Glib::ustring(row.request.choice.level));
   level->set_selected(static_cast<guint>(normal == keys.end() ? 0 : normal - keys.begin()));
   level->set_size_request(kLevelWidth, -1);

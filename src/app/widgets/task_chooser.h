@@ -4,6 +4,7 @@
 
 #include <gtkmm.h>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/list_card.h"
 #include "trocar/presenter/task_page.h"
 
@@ -21,7 +22,7 @@ class TaskChooser : public gui::ListCard {
   void AddTask(const presenter::TaskPage::Row& row);
 
   Gtk::SpinButton seed_;
-  Gtk::Button patients_{"Another patient…"};
+  Gtk::Button patients_{core::Translate("Another patient…")};
   sigc::signal<void(presenter::TaskRequest)> signal_chosen_;
   sigc::signal<void()> signal_patients_;
 };

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "trocar/core/translate.h"
 #include "trocar/store/names.h"
 
 namespace trocar::centre {
@@ -48,7 +49,7 @@ core::Result<std::string> FindPseudonym(const Access& access, const std::string&
 }
 
 std::string NameOf(const Access& access, const std::string& pseudonym) {
-  if (pseudonym.empty()) return "Nobody in particular";
+  if (pseudonym.empty()) return core::Translate("Nobody in particular");
   const auto names = store::ReadNames(access.place.NamesFile());
   if (!names.ok()) return pseudonym;
   const auto found = names->find(pseudonym);

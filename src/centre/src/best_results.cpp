@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "trocar/core/translate.h"
 #include "trocar/report/attempt_report.h"
 #include "trocar/store/attempts.h"
 #include "words.h"
@@ -43,12 +44,15 @@ core::Result<BestResults> LoadBestResults(const Access& access) {
 
 std::string DescribeBest(const BestResults& results, const std::string& task, const std::string& level) {
   const auto found = results.find({task, level});
-  if (found == results.end()) return "Not tried yet";
+  if (found == results.end()) return core::Translate("Not tried yet");
   const BestResult& best = found->second;
-  if (best.completed == 0) return "Not completed in " + Count(best.attempts, "attempt");
-  std::string text = "Best ";
-  if (best.score) text += ScoreText(*best.score, best.is_score_percent) + ", ";
-  return text + report::FormatClock(best.seconds.value_or(0)) + "; " + Count(best.attempts, "attempt");
+  if (best.completed == 0)
+    return core::TranslateCount("Not completed in {1} attempt", "Not completed in {1} attempts",
+                                best.attempts);
+  std::string what = best.score ? ScoreText(*best.score, best.is_score_percent) + ", " : "";
+  what += report::FormatClock(best.seconds.value_or(0));
+  return core::TranslateWith("Best {1}; {2}",
+                             {what, core::TranslateCount("{1} attempt", "{1} attempts", best.attempts)});
 }
 
 }  // namespace trocar::centre

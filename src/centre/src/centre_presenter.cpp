@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "trocar/core/log.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::centre {
 namespace {
@@ -84,10 +85,10 @@ void CentrePresenter::FollowFiling() {
     const FilingStatus status = filing_->Status();
     page_.notice.clear();
     if (status.waiting > 0) {
-      page_.notice = std::to_string(status.waiting) +
-                     (status.waiting == 1 ? " attempt waits" : " attempts wait") +
-                     " on this computer for the store and will arrive by themselves";
-      if (status.failure) page_.notice += ": " + status.failure->Text();
+      page_.notice = core::TranslateCount(
+          "{1} attempt waits on this computer for the store and will arrive by itself",
+          "{1} attempts wait on this computer for the store and will arrive by themselves", status.waiting);
+      if (status.failure) page_.notice += ": " + core::ShownText(*status.failure);
     }
     for (FiledAttempt& filed : filing_->TakeFiled()) {
       const bool is_expected = filed.recording == expected_;
@@ -219,7 +220,7 @@ void CentrePresenter::BeSomebody(const std::string& text) {
     bool is_trainee = false;
     std::string name;
   };
-  Ask("Looking for you", [this, access = access_, text]() -> Apply {
+  Ask(core::Translate("Looking for you"), [this, access = access_, text]() -> Apply {
     auto found =
         std::make_shared<Found>(Found{FindPseudonym(access, text)});  // a function's content is copied
     if (found->pseudonym.ok()) {
@@ -248,7 +249,7 @@ void CentrePresenter::BeSomebody(const std::string& text) {
 /// Groups are for instructors. Where the store is away, nobody is one.
 void CentrePresenter::ReadRole() {
   is_trainee_ = true;
-  Ask("Looking for you", [this, access = access_]() -> Apply {
+  Ask(core::Translate("Looking for you"), [this, access = access_]() -> Apply {
     const auto desk = OpenDesk(access);
     return [this, is_trainee = !desk.ok() || desk->viewer.role == store::Role::kTrainee] {
       is_trainee_ = is_trainee;
@@ -272,7 +273,7 @@ void CentrePresenter::UseResult(const JudgedAttempt& judged) {
   page_.review = {};
   Refresh(true);
   // the person's best and what others have said come from the store
-  Ask("Reading the store", [this, access = access_, judged]() -> Apply {
+  Ask(core::Translate("Reading the store"), [this, access = access_, judged]() -> Apply {
     auto page = std::make_shared<ResultPage>(MakeResultPage(judged, &access));
     return [this, page, id = judged.attempt.recording_id] {
       if (shown_.recording_id == id) page_.result = *page;
@@ -283,7 +284,7 @@ void CentrePresenter::UseResult(const JudgedAttempt& judged) {
 
 void CentrePresenter::ReadReview() {
   if (!page_.result || shown_.recording_id.empty()) return;
-  Ask("Reading remarks", [this, access = access_, shown = shown_]() -> Apply {
+  Ask(core::Translate("Reading remarks"), [this, access = access_, shown = shown_]() -> Apply {
     auto review = std::make_shared<core::Result<ReviewPage>>(LoadReview(access, shown));
     return [this, review, id = shown.recording_id] {
       if (!review->ok()) return Fail(review->error());
@@ -312,38 +313,41 @@ void CentrePresenter::PlayNext() {
 
 void CentrePresenter::SaveReport(const std::filesystem::path& path) {
   if (!page_.result) return;
-  Ask("Writing the report", [this, report = page_.result->report, path]() -> Apply {
+  Ask(core::Translate("Writing the report"), [this, report = page_.result->report, path]() -> Apply {
     return [this, path, saved = centre::SaveReport(report, path)] {
-      saved.ok() ? screen_->ShowNotice("Saved " + path.string()) : Fail(saved.error());
+      saved.ok() ? screen_->ShowNotice(core::TranslateWith("Saved {1}", {path.string()}))
+                 : Fail(saved.error());
     };
   });
 }
 
 void CentrePresenter::AddRemark(double time, const std::string& text) {
   if (text.empty()) return;
-  Ask("Keeping the remark", [this, access = access_, review = page_.review, time, text]() -> Apply {
-    return [this, kept = KeepRemark(access, review, time, text)] {
-      if (!kept.ok()) Fail(kept.error());
-      ReadReview();
-    };
-  });
+  Ask(core::Translate("Keeping the remark"),
+      [this, access = access_, review = page_.review, time, text]() -> Apply {
+        return [this, kept = KeepRemark(access, review, time, text)] {
+          if (!kept.ok()) Fail(kept.error());
+          ReadReview();
+        };
+      });
 }
 
 void CentrePresenter::Rate(const ReviewPage::Form& form) {
-  Ask("Keeping the rating", [this, access = access_, review = page_.review, form]() -> Apply {
-    return [this, kept = KeepRating(access, review, form), name = form.name] {
-      if (!kept.ok()) return Fail(kept.error());
-      screen_->ShowNotice("The " + name + " rating is kept.");
-      ReadReview();
-    };
-  });
+  Ask(core::Translate("Keeping the rating"),
+      [this, access = access_, review = page_.review, form]() -> Apply {
+        return [this, kept = KeepRating(access, review, form), name = form.name] {
+          if (!kept.ok()) return Fail(kept.error());
+          screen_->ShowNotice(core::TranslateWith("The {1} rating is kept.", {name}));
+          ReadReview();
+        };
+      });
 }
 
 // history
 
 void CentrePresenter::ReadHistory(const HistoryQuery& query) {
   page_.history.query = query;
-  Ask("Reading the history", [this, access = access_, query]() -> Apply {
+  Ask(core::Translate("Reading the history"), [this, access = access_, query]() -> Apply {
     auto history = std::make_shared<core::Result<HistoryPage>>(LoadHistory(access, query));
     return [this, history] {
       if (!history->ok()) return Fail(history->error());
@@ -386,17 +390,18 @@ void CentrePresenter::OpenResultOf(const HistoryPage::Row& row) {
     on_done_();
     return !is_given_up_.load();
   };
-  Ask("Playing the attempt again, to judge it", [this, path = row.recording, settings]() -> Apply {
-    auto judged = std::make_shared<core::Result<JudgedAttempt>>(JudgeRecording(path, settings));
-    return [this, judged, path] {
-      if (expected_ == path) expected_.clear();
-      if (!judged->ok()) {
-        page_.kind = PageKind::kHistory;
-        return Fail(judged->error());
-      }
-      UseResult(**judged);
-    };
-  });
+  Ask(core::Translate("Playing the attempt again, to judge it"),
+      [this, path = row.recording, settings]() -> Apply {
+        auto judged = std::make_shared<core::Result<JudgedAttempt>>(JudgeRecording(path, settings));
+        return [this, judged, path] {
+          if (expected_ == path) expected_.clear();
+          if (!judged->ok()) {
+            page_.kind = PageKind::kHistory;
+            return Fail(judged->error());
+          }
+          UseResult(**judged);
+        };
+      });
   Refresh(true);
 }
 
@@ -407,7 +412,7 @@ void CentrePresenter::OpenReplayOf(const HistoryPage::Row& row) {
 // courses, groups, exams
 
 void CentrePresenter::ChooseCourse(const std::string& course) {
-  Ask("Reading the course", [this, access = access_, course]() -> Apply {
+  Ask(core::Translate("Reading the course"), [this, access = access_, course]() -> Apply {
     auto loaded = std::make_shared<core::Result<LoadedCourse>>(LoadCourse(access, course));
     return [this, loaded] {
       if (!loaded->ok()) return Fail(loaded->error());
@@ -418,8 +423,8 @@ void CentrePresenter::ChooseCourse(const std::string& course) {
 }
 
 void CentrePresenter::StartStep(const StepName& name) {
-  Ask("Making the step ready; where it begins in the middle of an operation the expert operates up to there, "
-      "once",
+  Ask(core::Translate("Making the step ready; where it begins in the middle of an operation the expert "
+                      "operates up to there, once"),
       [this, name]() -> Apply {
         auto start = std::make_shared<core::Result<Start>>(
             PrepareStart(name, [this](double, const std::string&) { return !is_given_up_.load(); }));
@@ -431,7 +436,7 @@ void CentrePresenter::StartStep(const StepName& name) {
 }
 
 void CentrePresenter::ChooseGroup(const std::string& group) {
-  Ask("Reading the group", [this, access = access_, group]() -> Apply {
+  Ask(core::Translate("Reading the group"), [this, access = access_, group]() -> Apply {
     auto loaded = std::make_shared<core::Result<GroupPage>>(LoadGroup(access, group));
     return [this, loaded] {
       if (!loaded->ok()) return Fail(loaded->error());
@@ -442,7 +447,7 @@ void CentrePresenter::ChooseGroup(const std::string& group) {
 
 void CentrePresenter::OpenExamFile(const std::filesystem::path& file) {
   page_.kind = PageKind::kExam;
-  Ask("Opening the exam", [this, file]() -> Apply {
+  Ask(core::Translate("Opening the exam"), [this, file]() -> Apply {
     auto opened = std::make_shared<core::Result<ExamPage>>(OpenExam(file));
     return [this, opened] {
       if (!opened->ok()) return Fail(opened->error());
@@ -462,7 +467,7 @@ void CentrePresenter::StartExam() {
   page_.exam.recording.clear();
   page_.exam.certificate.clear();
   page_.exam.finding.clear();
-  Ask("Making the exam ready", [this, page = page_.exam]() -> Apply {
+  Ask(core::Translate("Making the exam ready"), [this, page = page_.exam]() -> Apply {
     auto start = std::make_shared<core::Result<Start>>(PrepareExam(page));
     return [this, start] {
       if (!start->ok()) return Fail(start->error());
@@ -473,7 +478,7 @@ void CentrePresenter::StartExam() {
 
 void CentrePresenter::EndExam(const ExamSitting& sitting, const std::filesystem::path& recording) {
   page_.kind = PageKind::kExam;
-  Ask("Opening the exam", [this, access = access_, sitting, recording]() -> Apply {
+  Ask(core::Translate("Opening the exam"), [this, access = access_, sitting, recording]() -> Apply {
     auto opened = std::make_shared<core::Result<ExamPage>>(OpenExam(sitting.file));
     if (opened->ok()) {
       (*opened)->examinee = sitting.examinee;
@@ -488,7 +493,7 @@ void CentrePresenter::EndExam(const ExamSitting& sitting, const std::filesystem:
 }
 
 void CentrePresenter::IssueCertificate(const assessment::SigningKey& key, const std::filesystem::path& file) {
-  Ask("Computing the exam again, to sign what it came to",
+  Ask(core::Translate("Computing the exam again, to sign what it came to"),
       [this, access = access_, page = page_.exam, key, file]() -> Apply {
         auto issued = std::make_shared<core::Result<ExamPage>>(
             IssueExamCertificate(access, page, key, file, [this](double share) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "trocar/assessment/preparation.h"
+#include "trocar/core/translate.h"
 #include "trocar/scene/scene.h"
 #include "trocar/store/attempts.h"
 #include "trocar/store/courses.h"
@@ -36,10 +37,10 @@ std::chrono::sys_days Today() {
 }
 
 std::string WhatOf(const Step& step) {
-  if (!step.IsOperation()) return TaskNameOf(step.task) + ", " + step.level;
+  if (!step.IsOperation()) return TaskNameOf(step.task) + ", " + core::Translate(step.level);
   std::string text = TaskNameOf(step.operation);
-  if (!step.patient.Text().empty()) text += ", patient of " + step.patient.Text();
-  return text + ", " + std::string(assessment::DescribeUntil(step.until));
+  if (!step.patient.Text().empty()) text += core::TranslateWith(", patient of {1}", {step.patient.Text()});
+  return text + ", " + core::Translate(assessment::DescribeUntil(step.until));
 }
 
 /// An attempt of the store as courses judge it.
@@ -97,26 +98,30 @@ core::Result<std::vector<Attempt>> ListAttemptsAt(Desk& desk, const std::string&
 }
 
 std::string ProgressText(const Step& step, const assessment::StepProgress& now) {
-  if (now.attempts == 0) return "not tried yet";
-  std::string text = std::to_string(now.passes) + " of " + std::to_string(step.passes) + " passes";
+  if (now.attempts == 0) return core::Translate("not tried yet");
+  std::string text =
+      core::TranslateWith("{1} of {2} passes", {std::to_string(now.passes), std::to_string(step.passes)});
   if (step.consecutive_passes > 1)
-    text += ", " + std::to_string(now.longest_run) + " of " + std::to_string(step.consecutive_passes) +
-            " in a row";
-  return text + ", " + Count(now.attempts, "attempt");
+    text += core::TranslateWith(", {1} of {2} in a row",
+                                {std::to_string(now.longest_run), std::to_string(step.consecutive_passes)});
+  return text + ", " + core::TranslateCount("{1} attempt", "{1} attempts", now.attempts);
 }
 
 CoursePage::Step MakeStep(const Course& course, const Step& step, const assessment::StepProgress& now) {
   CoursePage::Step shown;
-  shown.key = step.key, shown.name = step.name, shown.goal = step.goal, shown.briefing = step.briefing;
+  shown.key = step.key, shown.name = core::Translate(step.name);
+  shown.goal = core::Translate(step.goal), shown.briefing = core::Translate(step.briefing);
   shown.what = WhatOf(step);
   shown.state = now.state;
   shown.progress = ProgressText(step, now);
   for (const std::string& key : now.locked_by) {
     const Step* other = course.Find(key);
-    shown.locked_by += (shown.locked_by.empty() ? "" : ", ") + (other != nullptr ? other->name : key);
+    shown.locked_by +=
+        (shown.locked_by.empty() ? "" : ", ") + (other != nullptr ? core::Translate(other->name) : key);
   }
   if (now.due) {
-    shown.due = (now.is_overdue ? "overdue since " : "due ") + assessment::FormatDay(*now.due);
+    shown.due = core::TranslateWith(now.is_overdue ? core::Mark("overdue since {1}") : core::Mark("due {1}"),
+                                    {assessment::FormatDay(*now.due)});
     shown.is_overdue = now.is_overdue;
   }
   for (const assessment::Threshold& threshold : step.proficiency.thresholds)
@@ -136,7 +141,7 @@ core::Result<LoadedCourse> LoadCourse(const Access& access, const std::string& c
   if (!all.ok()) return all.error();
   LoadedCourse loaded;
   CoursePage& page = loaded.page;
-  for (const Course& one : *all) page.courses.push_back({one.key, one.name});
+  for (const Course& one : *all) page.courses.push_back({one.key, core::Translate(one.name)});
   if (all->empty()) return loaded;
   page.who = NameOf(access, access.person);
 
@@ -151,7 +156,8 @@ core::Result<LoadedCourse> LoadCourse(const Access& access, const std::string& c
   if (key.empty()) key = assignments.empty() ? all->front().key : assignments.front().course;
   const auto course = assessment::FindCourse(key);
   if (!course.ok()) return course.error();
-  page.course = course->key, page.name = course->name, page.about = course->about;
+  page.course = course->key;
+  page.name = core::Translate(course->name), page.about = core::Translate(course->about);
 
   std::vector<Attempt> attempts;
   assessment::CourseDates dates;

@@ -6,6 +6,7 @@
 
 #include "trocar/assessment/certificate.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/translate.h"
 #include "trocar/store/attempts.h"
 #include "words.h"
 
@@ -18,11 +19,12 @@ core::Result<ExamPage> OpenExam(const std::filesystem::path& file) {
   page.file = file;
   page.name = exam->name;
   // neither seed nor nonce: whoever sits the exam looks on
-  page.facts = {
-      {"Of", exam->IsOperation() ? TaskNameOf(exam->operation) + ", on a patient that nobody has seen"
-                                 : TaskNameOf(exam->task) + ", " + exam->level},
-      {"Sealed", report::FormatDate(exam->sealed)},
-      {"Commitment", exam->commitment}};
+  page.facts = {{core::Translate("Of"), exam->IsOperation()
+                                            ? core::TranslateWith("{1}, on a patient that nobody has seen",
+                                                                  {TaskNameOf(exam->operation)})
+                                            : TaskNameOf(exam->task) + ", " + core::Translate(exam->level)},
+                {core::Translate("Sealed"), report::FormatDate(exam->sealed)},
+                {core::Translate("Commitment"), exam->commitment}};
   for (const assessment::Threshold& threshold : exam->passes)
     page.thresholds.push_back(ThresholdText(threshold));
   return page;
@@ -39,7 +41,7 @@ core::Result<Start> PrepareExam(const ExamPage& page) {
   if (!description.ok()) return description.error();
   Start start;
   start.description = std::move(*description);
-  start.title = "Exam: " + exam->name;
+  start.title = core::TranslateWith("Exam: {1}", {exam->name});
   start.exam = ExamSitting{page.file, page.examinee};
   return start;
 }
@@ -66,18 +68,21 @@ core::Result<ExamPage> IssueExamCertificate(const Access& access, ExamPage page,
   if (const auto written = core::WriteFile(file, *text); !written.ok()) return written.error();
   page.certificate = file;
   page.is_passed = certificate->is_passed;
-  page.finding = certificate->is_passed      ? "Passed. The certificate is signed."
-                 : certificate->is_completed ? "Completed, not passed. The certificate is signed and says so."
-                                             : "Not completed. The certificate is signed and says so.";
+  page.finding = certificate->is_passed ? core::Translate("Passed. The certificate is signed.")
+                 : certificate->is_completed
+                     ? core::Translate("Completed, not passed. The certificate is signed and says so.")
+                     : core::Translate("Not completed. The certificate is signed and says so.");
   // the file is what counts; the store keeps a copy where it is there
   auto desk = OpenDesk({access.place, access.settings, {}});
   if (!desk.ok()) {
-    page.finding += " The store does not have it yet: " + desk.error().Text();
+    page.finding +=
+        core::TranslateWith(" The store does not have it yet: {1}", {core::ShownText(desk.error())});
     return page;
   }
   const auto kept =
       store::AddCertificate(desk->store, desk->viewer, {certificate->recording_hash, page.examinee, *text});
-  if (!kept.ok()) page.finding += " The store does not have it: " + kept.error().Text();
+  if (!kept.ok())
+    page.finding += core::TranslateWith(" The store does not have it: {1}", {core::ShownText(kept.error())});
   return page;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/centre/judged_attempt.h"
+#include "trocar/core/translate.h"
 #include "trocar/store/attempts.h"
 #include "words.h"
 
@@ -51,16 +52,18 @@ GroupPage::Cell MakeCell(const Tally& tally, TaskBook& tasks, const std::string&
   GroupPage::Cell cell;
   cell.attempts = tally.attempts;
   if (tally.attempts == 0) return cell;
-  cell.text = Count(tally.attempts, "attempt");
+  cell.text = core::TranslateCount("{1} attempt", "{1} attempts", tally.attempts);
   if (tally.last) {
     const bool is_percent = tasks.IsScorePercent(task, tally.level);
-    cell.text +=
-        "\nlast " + ScoreText(*tally.last, is_percent) + ", best " + ScoreText(*tally.best, is_percent);
+    cell.text += "\n" + core::TranslateWith("last {1}, best {2}", {ScoreText(*tally.last, is_percent),
+                                                                   ScoreText(*tally.best, is_percent)});
   } else {
-    cell.text += "\n" + std::to_string(tally.completed) + " completed";
+    cell.text += "\n" + core::TranslateWith("{1} completed", {std::to_string(tally.completed)});
   }
   cell.is_passed = tally.is_passed;
-  cell.text += tally.is_passed ? "\npassed" : tally.is_judged ? "\nnot passed yet" : "";
+  cell.text += tally.is_passed   ? "\n" + core::Translate("passed")
+               : tally.is_judged ? "\n" + core::Translate("not passed yet")
+                                 : "";
   cell.tone = tally.is_passed ? Tone::kGood : tally.is_judged ? Tone::kCaution : Tone::kPlain;
   return cell;
 }

@@ -7,6 +7,7 @@
 
 #include "trocar/assessment/learning.h"
 #include "trocar/centre/judged_attempt.h"
+#include "trocar/core/translate.h"
 #include "trocar/report/charts.h"
 #include "trocar/scene/scene.h"
 #include "trocar/store/attempts.h"
@@ -23,16 +24,17 @@ HistoryPage::Row MakeRow(const Access& access, TaskBook& tasks, const store::Sto
   HistoryPage::Row row;
   row.id = stored.id;
   row.when = report::FormatDate(attempt.started);
-  row.task = tasks.NameOf(attempt.task) + (attempt.level.empty() ? "" : ", " + attempt.level);
+  row.task =
+      tasks.NameOf(attempt.task) + (attempt.level.empty() ? "" : ", " + core::Translate(attempt.level));
   row.person = NameOf(access, attempt.trainee);
   if (!attempt.is_completed) {
-    row.outcome = "not completed";
+    row.outcome = core::Translate("not completed");
     row.tone = Tone::kCaution;
   } else if (attempt.is_passed) {
-    row.outcome = *attempt.is_passed ? "passed" : "not passed";
+    row.outcome = *attempt.is_passed ? core::Translate("passed") : core::Translate("not passed");
     row.tone = *attempt.is_passed ? Tone::kGood : Tone::kCaution;
   } else {
-    row.outcome = "completed";
+    row.outcome = core::Translate("completed");
   }
   if (attempt.score && attempt.is_completed)
     row.score = ScoreText(*attempt.score, tasks.IsScorePercent(attempt.task, attempt.level));
@@ -65,24 +67,30 @@ void AddCurve(const std::vector<double>& seconds, const std::string& task, Histo
   if (seconds.empty()) return;
   report::LearningCurve curve;
   curve.task = task;
-  curve.measure = "Time";
+  curve.measure = core::Translate("Time");
   curve.unit = "s";
   curve.values = seconds;
   if (const auto fit = assessment::FitLearningCurve(seconds); fit.ok()) {
     curve.fit = report::CurveFit{fit->plateau, fit->gain, fit->rate};
     page.findings.push_back(
-        fit->gain == 0 ? "Time: no learning to be seen in " + Count(seconds.size(), "completed attempt") + "."
-                       : "Time: practice leads towards " + report::FormatDuration(fit->plateau) +
-                             (fit->is_rate_at_bound ? "; too few attempts to tell how fast." : "."));
+        fit->gain == 0
+            ? core::TranslateCount("Time: no learning to be seen in {1} completed attempt.",
+                                   "Time: no learning to be seen in {1} completed attempts.", seconds.size())
+            : core::TranslateWith(
+                  fit->is_rate_at_bound
+                      ? core::Mark("Time: practice leads towards {1}; too few attempts to tell how fast.")
+                      : core::Mark("Time: practice leads towards {1}."),
+                  {report::FormatDuration(fit->plateau)}));
   } else {
-    page.findings.push_back("A learning curve takes " + std::to_string(assessment::kLeastAttempts) +
-                            " completed attempts; there " + (seconds.size() == 1 ? "is " : "are ") +
-                            std::to_string(seconds.size()) + ".");
+    page.findings.push_back(
+        core::TranslateWith("A learning curve takes {1} completed attempts; so far: {2}.",
+                            {std::to_string(assessment::kLeastAttempts), std::to_string(seconds.size())}));
   }
   if (const auto trend = assessment::CalcTrend(seconds, assessment::Better::kLower); trend.ok()) {
-    const char* const words[] = {"no trend", "getting faster", "getting slower"};
-    page.findings.push_back(
-        "Trend of the time: " + std::string(words[static_cast<std::size_t>(trend->verdict)]) + ".");
+    const char* const words[] = {core::Mark("no trend"), core::Mark("getting faster"),
+                                 core::Mark("getting slower")};
+    page.findings.push_back(core::TranslateWith(
+        "Trend of the time: {1}.", {core::Translate(words[static_cast<std::size_t>(trend->verdict)])}));
   }
   page.drawings.push_back(report::DrawLearningCurve(curve));
 }
@@ -95,8 +103,8 @@ void AddCusum(const std::vector<bool>& failed, const std::string& task, HistoryP
   chart.task = task;
   chart.values = cusum->values;
   chart.lower = cusum->h0, chart.upper = cusum->h1;
-  chart.verdict = assessment::VerdictSentence(cusum->verdict);
-  page.findings.push_back("CUSUM: " + chart.verdict);
+  chart.verdict = core::Translate(assessment::VerdictSentence(cusum->verdict));
+  page.findings.push_back(core::TranslateWith("CUSUM: {1}", {chart.verdict}));
   page.drawings.push_back(report::DrawCusum(chart));
 }
 
@@ -113,19 +121,20 @@ void AddPlaces(Desk& desk, const HistoryQuery& query, const store::Attempt& newe
     const auto place = store::CalcPercentile(desk.store, desk.viewer, group.name, key, *newest.score);
     if (!place.ok()) {
       if (place.error().code == core::ErrorCode::kStoreRefused)
-        page.findings.push_back("Group \"" + group.name + "\": a place is shown from " +
-                                std::to_string(store::kFewestTrainees) + " trainees on.");
+        page.findings.push_back(core::TranslateWith("Group \"{1}\": a place is shown from {2} trainees on.",
+                                                    {group.name, std::to_string(store::kFewestTrainees)}));
       continue;
     }
-    page.findings.push_back("Group \"" + group.name + "\": percentile " +
-                            report::FormatShown(place->Percent()) + " of " +
-                            Count(static_cast<std::size_t>(place->trainees), "trainee") + ", by score.");
+    page.findings.push_back(core::TranslateWith(
+        "Group \"{1}\": percentile {2} of {3}, by score.",
+        {group.name, report::FormatShown(place->Percent()),
+         core::TranslateCount("{1} trainee", "{1} trainees", static_cast<std::size_t>(place->trainees))}));
   }
 }
 
 void AddTasks(HistoryPage& page) {
   if (const auto tasks = scene::ListTasks(); tasks.ok()) {
-    for (const scene::TaskEntry& task : *tasks) page.tasks.push_back({task.key, task.name});
+    for (const scene::TaskEntry& task : *tasks) page.tasks.push_back({task.key, core::Translate(task.name)});
   }
   page.tasks.push_back({"cholecystectomy", TaskNameOf("cholecystectomy")});
 }
@@ -137,7 +146,7 @@ core::Result<HistoryPage> LoadHistory(const Access& access, const HistoryQuery& 
   if (!desk.ok()) return desk.error();
   HistoryPage page;
   page.query = query;
-  page.who = query.person.empty() ? "Everyone" : NameOf(access, query.person);
+  page.who = query.person.empty() ? core::Translate("Everyone") : NameOf(access, query.person);
   AddTasks(page);
   store::AttemptFilter filter;
   filter.trainee = query.person;

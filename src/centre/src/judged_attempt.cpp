@@ -8,6 +8,7 @@
 #include "trocar/assessment/course.h"
 #include "trocar/assessment/judge_recording.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/translate.h"
 #include "trocar/record/replay.h"
 #include "trocar/scene/scene.h"
 #include "trocar/store/keep_attempt.h"
@@ -208,14 +209,14 @@ StepName FindStepName(const store::Attempt& attempt) {
 std::string TaskNameOf(const std::string& key) {
   if (const auto tasks = scene::ListTasks(); tasks.ok()) {
     for (const scene::TaskEntry& task : *tasks) {
-      if (task.key == key) return task.name;
+      if (task.key == key) return core::Translate(task.name);
     }
   }
   std::string words = key;
   std::replace(words.begin(), words.end(), '_', ' ');
   if (!words.empty() && words[0] >= 'a' && words[0] <= 'z')
     words[0] = static_cast<char>(words[0] - 'a' + 'A');
-  return words;
+  return core::Translate(words);
 }
 
 }  // namespace trocar::centre

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/core/safe_file.h"
+#include "trocar/core/translate.h"
 #include "trocar/record/recording.h"
 #include "trocar/report/charts.h"
 #include "trocar/report/report_files.h"
@@ -26,51 +27,57 @@ void SetVerdict(const JudgedAttempt& judged, ResultPage& page) {
   const bool is_completed = judged.attempt.is_completed;
   if (judged.report.facts.task_key.empty() ||
       (!judged.report.is_operation && !judged.report.score && !judged.verdict)) {
-    page.verdict = "Nothing is judged in this scene";
+    page.verdict = core::Translate("Nothing is judged in this scene");
     return;
   }
   if (!is_completed) {
-    page.verdict = "Not completed";
+    page.verdict = core::Translate("Not completed");
     page.tone = Tone::kCaution;
     return;
   }
   if (!judged.verdict) {
-    page.verdict = "Completed; there are no thresholds for this task";
+    page.verdict = core::Translate("Completed; there are no thresholds for this task");
     return;
   }
   if (judged.verdict->is_passed) {
-    page.verdict = "Passed";
+    page.verdict = core::Translate("Passed");
     page.tone = Tone::kGood;
     return;
   }
   const auto missed =
       static_cast<std::size_t>(std::count_if(judged.verdict->metrics.begin(), judged.verdict->metrics.end(),
                                              [](const auto& m) { return !m.is_met; }));
-  page.verdict = "Completed, not passed: " + std::to_string(missed) + " of " +
-                 Count(judged.verdict->metrics.size(), "threshold") + " missed";
+  page.verdict = core::TranslateWith(
+      "Completed, not passed: {1} of {2} missed",
+      {std::to_string(missed),
+       core::TranslateCount("{1} threshold", "{1} thresholds", judged.verdict->metrics.size())});
   page.tone = judged.verdict->is_safe ? Tone::kCaution : Tone::kBad;
 }
 
 void AddTiles(const JudgedAttempt& judged, ResultPage& page) {
   const report::AttemptReport& r = judged.report;
   if (r.score && r.is_completed)
-    page.tiles.push_back({"Score", ScoreText(*r.score, r.facts.best_score.has_value()), ""});
-  page.tiles.push_back({"Time", report::FormatClock(r.seconds), "min:s"});
+    page.tiles.push_back({core::Translate("Score"), ScoreText(*r.score, r.facts.best_score.has_value()), ""});
+  page.tiles.push_back({core::Translate("Time"), report::FormatClock(r.seconds), core::Translate("min:s")});
   const auto critical = std::count_if(r.errors.begin(), r.errors.end(), [](const report::ErrorRow& error) {
     return error.severity == training::Severity::kCritical;
   });
-  page.tiles.push_back({"Errors", std::to_string(r.errors.size()),
-                        critical > 0 ? std::to_string(critical) + " critical" : ""});
+  page.tiles.push_back({core::Translate("Errors"), std::to_string(r.errors.size()),
+                        critical > 0 ? core::TranslateWith("{1} critical", {std::to_string(critical)}) : ""});
   if (!r.goals.empty()) {
     const auto done = std::count_if(r.goals.begin(), r.goals.end(),
                                     [](const report::GoalRow& goal) { return goal.time.has_value(); });
-    page.tiles.push_back({"Goals", std::to_string(done) + " of " + std::to_string(r.goals.size()), ""});
+    page.tiles.push_back(
+        {core::Translate("Goals"),
+         core::TranslateWith("{1} of {2}", {std::to_string(done), std::to_string(r.goals.size())}), ""});
   }
-  if (r.blood_ml) page.tiles.push_back({"Blood", report::FormatShown(*r.blood_ml) + " mL", ""});
+  if (r.blood_ml)
+    page.tiles.push_back({core::Translate("Blood"), report::FormatShown(*r.blood_ml) + " mL", ""});
   if (r.is_operation) {
-    page.tiles.push_back({"Critical view",
-                          r.critical_view_time ? report::FormatClock(*r.critical_view_time) : "not achieved",
-                          r.critical_view_time ? "achieved at, min:s" : ""});
+    page.tiles.push_back(
+        {core::Translate("Critical view"),
+         r.critical_view_time ? report::FormatClock(*r.critical_view_time) : core::Translate("not achieved"),
+         r.critical_view_time ? core::Translate("achieved at, min:s") : ""});
   }
 }
 
@@ -79,10 +86,11 @@ void AddErrors(const report::AttemptReport& from, ResultPage& page) {
     ResultPage::ErrorRow row;
     row.time = error.time;
     row.clock = report::FormatClock(error.time);
-    row.what = error.what;
-    if (!error.where.empty()) row.what += " (" + error.where + ")";
-    if (error.hand >= 0) row.what += error.hand == 0 ? ", left hand" : ", right hand";
-    row.severity = std::string(training::NameOf(error.severity));
+    row.what = core::TranslateComposed(error.what);
+    if (!error.where.empty()) row.what += " (" + core::TranslateComposed(error.where) + ")";
+    if (error.hand >= 0)
+      row.what += error.hand == 0 ? core::Translate(", left hand") : core::Translate(", right hand");
+    row.severity = core::Translate(training::NameOf(error.severity));
     row.tone = error.severity == training::Severity::kMinor   ? Tone::kPlain
                : error.severity == training::Severity::kMajor ? Tone::kCaution
                                                               : Tone::kBad;
@@ -126,10 +134,12 @@ void AddMetrics(const JudgedAttempt& judged, const Access* access, ResultPage& p
   for (const MetricRow& row : judged.report.metrics) {
     if (!row.phase.empty() || !row.tool.empty()) continue;
     ResultPage::MetricRow shown;
-    shown.name = row.name + (row.hand.empty() ? "" : ", " + report::HandName(row.hand));
-    shown.about = row.about;
+    shown.name = core::Translate(row.name) + (row.hand.empty() ? "" : ", " + report::HandName(row.hand));
+    shown.about = core::Translate(row.about);
     if (row.separates && !*row.separates)
-      shown.about += "\nIt does not tell scripted novices from experts in this task (docs/validity.md).";
+      shown.about +=
+          "\n" +
+          core::Translate("It does not tell scripted novices from experts in this task (docs/validity.md).");
     shown.value = report::FormatShown(row.value) + (row.unit.empty() ? "" : " " + row.unit);
     shown.expert = RangeText(row);
     shown.is_outside = IsOutside(row);
@@ -143,24 +153,27 @@ void AddMetrics(const JudgedAttempt& judged, const Access* access, ResultPage& p
 ResultPage MakeResultPage(const JudgedAttempt& judged, const Access* access) {
   const report::AttemptReport& r = judged.report;
   ResultPage page;
-  page.title = r.facts.task + (r.facts.level.empty() ? "" : ", " + r.facts.level);
-  page.subtitle = report::FormatDate(r.facts.started) + "  ·  " + r.facts.player;
+  page.title =
+      core::Translate(r.facts.task) + (r.facts.level.empty() ? "" : ", " + core::Translate(r.facts.level));
+  page.subtitle = report::FormatDate(r.facts.started) + "  ·  " + core::TranslateComposed(r.facts.player);
   if (access != nullptr) page.subtitle += "  ·  " + NameOf(*access, judged.attempt.trainee);
   if (judged.is_demonstration)
-    page.subtitle += "  ·  a demonstration, which is nobody's attempt and is not stored";
+    page.subtitle += core::Translate("  ·  a demonstration, which is nobody's attempt and is not stored");
   SetVerdict(judged, page);
   page.outcome = r.outcome;
-  page.debriefing = judged.debriefing;
+  page.debriefing = core::Translate(judged.debriefing);
   AddTiles(judged, page);
   if (judged.verdict) {
     for (const assessment::ThresholdVerdict& one : judged.verdict->metrics) {
-      page.thresholds.push_back({MetricName(one.threshold.of),
-                                 one.value ? MetricText(one.threshold.of.metric, *one.value) : "not measured",
-                                 LimitText(one.threshold), one.threshold.source, one.is_met});
+      page.thresholds.push_back(
+          {MetricName(one.threshold.of),
+           one.value ? MetricText(one.threshold.of.metric, *one.value) : core::Translate("not measured"),
+           LimitText(one.threshold), one.threshold.source, one.is_met});
     }
   }
   for (const report::Advice& advice : r.advice)
-    page.advice.push_back({advice.sentence, advice.why, advice.practise, advice.exercise, advice.time});
+    page.advice.push_back({core::TranslateComposed(advice.sentence), core::Translate(advice.why),
+                           core::Translate(advice.practise), advice.exercise, advice.time});
   AddErrors(r, page);
   AddMetrics(judged, access, page);
   page.drawings = {report::DrawTimeline(r), report::DrawPaths(r, report::PathView::kFromFront),
@@ -225,9 +238,10 @@ core::Result<ReviewPage> LoadReview(const Access& access, const store::Attempt& 
   for (const std::string& key : report::ListRatingForms()) {
     const auto form = report::FindRatingForm(key);
     if (!form.ok()) return form.error();
-    ReviewPage::Form shown{form->key, form->name, form->about, {}};
+    ReviewPage::Form shown{form->key, form->name, core::Translate(form->about), {}};
     for (const report::RatingItem& item : form->items)
-      shown.items.push_back({item.key, item.name, item.lowest, item.highest, 0});
+      shown.items.push_back({item.key, core::Translate(item.name), core::Translate(item.lowest),
+                             core::Translate(item.highest), 0});
     page.forms.push_back(std::move(shown));
   }
   if (page.attempt == 0) return page;

@@ -4,19 +4,16 @@
 #include <cstdio>
 
 #include "trocar/centre/judged_attempt.h"
+#include "trocar/core/translate.h"
 #include "trocar/report/attempt_report.h"
 #include "trocar/scene/scene.h"
 #include "trocar/training/metric_definition.h"
 
 namespace trocar::centre {
 
-std::string Count(std::size_t count, const std::string& one) {
-  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
-}
-
 std::string MetricName(const assessment::MetricKey& key) {
   const training::MetricDefinition* definition = training::FindMetric(key.metric);
-  std::string name = definition == nullptr ? key.metric : definition->name;
+  std::string name = definition == nullptr ? key.metric : core::Translate(definition->name);
   if (!key.hand.empty()) name += ", " + report::HandName(key.hand);
   if (!key.phase.empty()) name += ", " + report::PhaseName(key.phase);
   return name;
@@ -31,7 +28,8 @@ std::string MetricText(const std::string& metric, double value) {
 }
 
 std::string LimitText(const assessment::Threshold& threshold) {
-  return (threshold.better == assessment::Better::kLower ? "at most " : "at least ") +
+  return (threshold.better == assessment::Better::kLower ? core::Translate("at most ")
+                                                         : core::Translate("at least ")) +
          MetricText(threshold.of.metric, threshold.value);
 }
 
@@ -41,8 +39,9 @@ std::string ThresholdText(const assessment::Threshold& threshold) {
 
 std::string ScoreText(double score, bool is_percent) {
   char text[48];
-  std::snprintf(text, sizeof text, is_percent ? "%.1f %%" : "%.1f points", score);
-  return text;
+  std::snprintf(text, sizeof text, "%.1f", score);
+  const std::string number = core::LocalNumber(text);
+  return is_percent ? number + " %" : core::TranslateWith("{1} points", {number});
 }
 
 const std::string& TaskBook::NameOf(const std::string& task) {

@@ -10,8 +10,6 @@
 
 namespace trocar::centre {
 
-/// "1 attempt", "3 attempts"
-std::string Count(std::size_t count, const std::string& one);
 /// "Path length, left hand"
 std::string MetricName(const assessment::MetricKey& key);
 /// "1 240 mm" in the unit that is shown.

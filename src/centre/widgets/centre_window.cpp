@@ -8,6 +8,7 @@
 #include "group_view.h"
 #include "history_view.h"
 #include "result_view.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
 #include "view_parts.h"
@@ -27,7 +28,7 @@ CentreWindow::CentreWindow(const Access& access, int threads, AttemptFiling* fil
       courses_(std::make_unique<CourseView>()),
       group_(std::make_unique<GroupView>()),
       exam_(std::make_unique<ExamView>()) {
-  set_title("Trocar: training centre");
+  set_title(core::Translate("Trocar: training centre"));
   add_css_class("trocar");
   set_default_size(kWidth, kHeight);
   set_titlebar(bar_);
@@ -90,19 +91,18 @@ void CentreWindow::MakeWho() {
   who_card_.set_spacing(8);
   who_card_.set_visible(false);
   who_card_.set_size_request(kWhoWidth, -1);
-  who_card_.append(MakeLine("Who are you?", "page-title"));
+  who_card_.append(MakeLine(core::Translate("Who are you?"), "page-title"));
   who_card_.append(
-      MakeText("A name or a pseudonym, or nothing. Attempts from now on are kept under a pseudonym; your "
-               "name stays in a "
-               "protected file on this computer.",
+      MakeText(core::Translate("A name or a pseudonym, or nothing. Attempts from now on are kept under a "
+                               "pseudonym; your name stays in a protected file on this computer."),
                "value"));
-  who_.set_placeholder_text("nobody in particular");
+  who_.set_placeholder_text(core::Translate("nobody in particular"));
   const auto be = [this] { presenter_->BeSomebody(who_.get_text().raw()); };
   who_.signal_activate().connect(be);
   who_card_.append(who_);
   Gtk::Box& row = gui::MakeRow(8, {});
-  row.append(MakeButton("That is me", be, "primary"));
-  row.append(MakeButton("Cancel", [this] { presenter_->Do(CentreAction::kCloseCards); }));
+  row.append(MakeButton(core::Translate("That is me"), be, "primary"));
+  row.append(MakeButton(core::Translate("Cancel"), [this] { presenter_->Do(CentreAction::kCloseCards); }));
   who_card_.append(row);
 }
 
@@ -138,7 +138,9 @@ void CentreWindow::Show(const CentrePage& page) {
   const bool is_busy = !page.busy.empty() || (page.kind == PageKind::kResult && !page.result);
   spinner_.set_spinning(is_busy);
   spinner_.set_visible(is_busy);
-  gui::SetText(busy_, !page.busy.empty() ? page.busy + " …" : is_busy ? "Measuring the attempt …" : page.who);
+  gui::SetText(busy_, !page.busy.empty() ? page.busy + " …"
+                      : is_busy          ? core::Translate("Measuring the attempt …")
+                                         : page.who);
   progress_.set_visible(is_busy && page.progress >= 0);
   if (page.progress >= 0) progress_.set_fraction(page.progress);
   if (page.version == shown_version_) return;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "view_parts.h"
 
@@ -13,14 +14,14 @@ using assessment::StepState;
 
 constexpr int kMapWidth = 520, kGap = 14;  // [pixels]
 
-const char* WordOf(StepState state) {
+std::string WordOf(StepState state) {
   switch (state) {
     case StepState::kDone:
-      return "✓ done";
+      return core::Translate("✓ done");
     case StepState::kOpen:
-      return "open";
+      return core::TranslateIn("step", "open");
     case StepState::kLocked:
-      return "locked";
+      return core::Translate("locked");
   }
   return "";
 }
@@ -40,7 +41,7 @@ void CourseView::Show(const CentrePage& shown) {
   all->add_css_class("page");
   all->set_spacing(kGap);
   Gtk::Box& head = gui::MakeRow(10, {});
-  Gtk::Label& title = MakeText(page.name.empty() ? "Courses" : page.name, "page-title");
+  Gtk::Label& title = MakeText(page.name.empty() ? core::Translate("Courses") : page.name, "page-title");
   title.set_hexpand(true);
   head.append(title);
   auto* courses = Gtk::make_managed<Gtk::DropDown>();
@@ -90,11 +91,14 @@ void CourseView::ShowMap(const CoursePage& page, Gtk::Box& into) {
     content->append(place);
     auto* words = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
     words->set_hexpand(true);
-    words->append(MakeText(step.name + (step.key == page.next ? "  ·  next" : ""), "key-text"));
-    words->append(MakeText(step.locked_by.empty() ? step.progress : "after " + step.locked_by, "fine"));
+    words->append(
+        MakeText(step.name + (step.key == page.next ? core::Translate("  ·  next") : ""), "key-text"));
+    words->append(MakeText(
+        step.locked_by.empty() ? step.progress : core::TranslateWith("after {1}", {step.locked_by}), "fine"));
     if (!step.due.empty()) words->append(MakeText(step.due, step.is_overdue ? "caution" : "fine"));
     content->append(*words);
-    content->append(MakeLine(WordOf(step.state), step.state == StepState::kDone ? "good" : "name"));
+    content->append(
+        MakeLine(WordOf(step.state), step.state == StepState::kDone ? "good" : "name"));
     auto* button = Gtk::make_managed<Gtk::Button>();
     button->add_css_class("step");
     button->set_child(*content);
@@ -115,22 +119,24 @@ void CourseView::ShowStep(const CoursePage& page) {
   detail_->append(MakeText(step.name, "page-title"));
   detail_->append(MakeText(step.what, "name"));
   detail_->append(MakeText(step.goal, "key-text"));
-  detail_->append(MakeLine("Before you begin", "card-title"));
+  detail_->append(MakeLine(core::Translate("Before you begin"), "card-title"));
   detail_->append(MakeText(step.briefing, "value"));
-  detail_->append(MakeLine("What passes", "card-title"));
-  if (step.thresholds.empty()) detail_->append(MakeText("Whoever completes it passes.", "value"));
+  detail_->append(MakeLine(core::Translate("What passes"), "card-title"));
+  if (step.thresholds.empty())
+    detail_->append(MakeText(core::Translate("Whoever completes it passes."), "value"));
   for (const std::string& threshold : step.thresholds) detail_->append(MakeText("•  " + threshold, "value"));
-  detail_->append(MakeText("So far: " + step.progress, "value"));
+  detail_->append(MakeText(core::TranslateWith("So far: {1}", {step.progress}), "value"));
   const bool is_locked = step.state == StepState::kLocked;
   Gtk::Button& start = MakeButton(
-      is_locked ? "Practise" : "Start",
+      is_locked ? core::Translate("Practise") : core::Translate("Start"),
       [this, name = StepName{page.course, step.key}] { presenter_->StartStep(name); },
       is_locked ? nullptr : "primary");
   start.set_halign(Gtk::Align::START);
   start.set_margin_top(8);
   if (is_locked) {
     detail_->append(MakeText(
-        "It is locked until " + step.locked_by + " is done: an attempt now is practice and does not count.",
+        core::TranslateWith("It is locked until {1} is done: an attempt now is practice and does not count.",
+                            {step.locked_by}),
         "caution"));
   }
   detail_->append(start);

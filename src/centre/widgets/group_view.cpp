@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "group_view.h"
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "view_parts.h"
 
@@ -15,7 +16,7 @@ void GroupView::Show(const CentrePage& shown) {
   all->add_css_class("page");
   all->set_spacing(14);
   Gtk::Box& head = gui::MakeRow(10, {});
-  Gtk::Label& title = MakeLine(page.group.empty() ? "Group" : page.group, "page-title");
+  Gtk::Label& title = MakeLine(page.group.empty() ? core::Translate("Group") : page.group, "page-title");
   title.set_hexpand(true);
   head.append(title);
   if (page.groups.size() > 1) {
@@ -32,26 +33,25 @@ void GroupView::Show(const CentrePage& shown) {
   }
   all->append(head);
   if (page.group.empty()) {
-    all->append(
-        MakeText("There is no group yet. `trocar store group add NAME` makes one, `trocar store group join "
-                 "NAME PSEUDONYM` "
-                 "puts people into it.",
-                 "value"));
+    all->append(MakeText(core::Translate("There is no group yet. `trocar store group add NAME` makes one, "
+                                         "`trocar store group join NAME PSEUDONYM` puts people into it."),
+                         "value"));
     append(MakePage(*all));
     return;
   }
   if (page.is_cut)
-    all->append(MakeText("Only the newest " + std::to_string(kMostGroupAttempts) + " attempts are counted.",
+    all->append(MakeText(core::TranslateWith("Only the newest {1} attempts are counted.",
+                                             {std::to_string(kMostGroupAttempts)}),
                          "caution"));
-  Gtk::Box& card = MakeCard("Members and tasks");
-  if (page.members.empty()) card.append(MakeText("This group has no trainees.", "value"));
-  std::vector<std::string> names = {"member"};
+  Gtk::Box& card = MakeCard(core::Translate("Members and tasks"));
+  if (page.members.empty()) card.append(MakeText(core::Translate("This group has no trainees."), "value"));
+  std::vector<std::string> names = {core::Translate("member")};
   for (const GroupPage::Task& task : page.tasks) names.push_back(task.name);
   auto* table = Gtk::make_managed<Table>(names);
   for (const GroupPage::Member& member : page.members) {
     Gtk::Button& open = MakeButton(
         member.name, [this, who = member.pseudonym] { presenter_->ChoosePerson(who); }, "small");
-    open.set_tooltip_text("Open the history");
+    open.set_tooltip_text(core::Translate("Open the history"));
     table->Add(open);
     for (const GroupPage::Cell& cell : member.cells)
       table->AddText(cell.text.empty() ? "–" : cell.text, cell.text.empty() ? "fine" : StyleOf(cell.tone));

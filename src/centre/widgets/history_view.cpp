@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "history_view.h"
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "view_parts.h"
 
@@ -30,12 +31,13 @@ void HistoryView::Show(const CentrePage& shown) {
 
 Gtk::Box& HistoryView::MakeHead(const HistoryPage& page) {
   Gtk::Box& head = gui::MakeRow(10, {});
-  Gtk::Label& title = MakeLine("History: " + (page.who.empty() ? std::string("…") : page.who), "page-title");
+  Gtk::Label& title = MakeLine(
+      core::TranslateWith("History: {1}", {(page.who.empty() ? std::string("…") : page.who)}), "page-title");
   title.set_hexpand(true);
   head.append(title);
-  head.append(MakeLine("Task", "name"));
+  head.append(MakeLine(core::Translate("Task"), "name"));
   auto* tasks = Gtk::make_managed<Gtk::DropDown>();
-  std::vector<Glib::ustring> names = {"All tasks"};
+  std::vector<Glib::ustring> names = {core::Translate("All tasks")};
   guint chosen = 0;
   for (const HistoryPage::Task& task : page.tasks) {
     if (task.key == page.query.task) chosen = static_cast<guint>(names.size());
@@ -53,18 +55,24 @@ Gtk::Box& HistoryView::MakeHead(const HistoryPage& page) {
 }
 
 Gtk::Widget& HistoryView::MakeList(const HistoryPage& page) {
-  Gtk::Box& card = MakeCard("Attempts, the newest first");
+  Gtk::Box& card = MakeCard(core::Translate("Attempts, the newest first"));
   card.set_hexpand(true);
   card.set_valign(Gtk::Align::START);
   if (page.rows.empty()) {
-    card.append(MakeText(
-        "No attempt is kept here yet. Every attempt in the simulator enters by itself when it has ended.",
-        "value"));
+    card.append(MakeText(core::Translate("No attempt is kept here yet. Every attempt in the simulator enters "
+                                         "by itself when it has ended."),
+                         "value"));
     return card;
   }
   const bool is_everyone = page.query.person.empty();
-  std::vector<std::string> head = {"when", "task", "outcome", "score", "time", "", ""};
-  if (is_everyone) head.insert(head.begin() + 1, "who");
+  std::vector<std::string> head = {core::Translate("when"),
+                                   core::Translate("task"),
+                                   core::Translate("outcome"),
+                                   core::Translate("score"),
+                                   core::Translate("time"),
+                                   "",
+                                   ""};
+  if (is_everyone) head.insert(head.begin() + 1, core::Translate("who"));
   auto* table = Gtk::make_managed<Table>(head);
   for (const HistoryPage::Row& row : page.rows) {
     table->AddText(row.when);
@@ -74,21 +82,22 @@ Gtk::Widget& HistoryView::MakeList(const HistoryPage& page) {
     table->AddText(row.score);
     table->AddText(row.time);
     Gtk::Button& result = MakeButton(
-        "Result", [this, row] { presenter_->OpenResultOf(row); }, "small");
+        core::Translate("Result"), [this, row] { presenter_->OpenResultOf(row); }, "small");
     Gtk::Button& replay = MakeButton(
-        "Replay", [this, row] { presenter_->OpenReplayOf(row); }, "small");
+        core::Translate("Replay"), [this, row] { presenter_->OpenReplayOf(row); }, "small");
     for (Gtk::Button* button : {&result, &replay}) {
       button->set_sensitive(!row.recording.empty());
-      if (row.recording.empty()) button->set_tooltip_text("Its recording is not on this computer");
+      if (row.recording.empty())
+        button->set_tooltip_text(core::Translate("Its recording is not on this computer"));
       table->Add(*button);
     }
     table->EndRow();
   }
   card.append(*table);
   Gtk::Box& pages = gui::MakeRow(8, {});
-  Gtk::Button& newest = MakeButton("Newest", [this] { presenter_->GoToFirstPage(); });
+  Gtk::Button& newest = MakeButton(core::Translate("Newest"), [this] { presenter_->GoToFirstPage(); });
   newest.set_sensitive(!page.query.page.empty());
-  Gtk::Button& older = MakeButton("Older", [this] { presenter_->GoToNextPage(); });
+  Gtk::Button& older = MakeButton(core::Translate("Older"), [this] { presenter_->GoToNextPage(); });
   older.set_sensitive(!page.next.empty());
   pages.append(newest);
   pages.append(older);
@@ -97,16 +106,17 @@ Gtk::Widget& HistoryView::MakeList(const HistoryPage& page) {
 }
 
 Gtk::Box& HistoryView::MakeLearning(const HistoryPage& page) {
-  Gtk::Box& card =
-      MakeCard("How it is learnt" + (page.level.empty() ? std::string() : ", level " + page.level));
+  Gtk::Box& card = MakeCard(
+      page.level.empty() ? core::Translate("How it is learnt")
+                         : core::TranslateWith("How it is learnt, level {1}", {core::Translate(page.level)}));
   card.set_size_request(kPlotWidth, -1);
   card.set_valign(Gtk::Align::START);
   if (page.query.task.empty()) {
-    card.append(MakeText("Choose a task to see its learning curve.", "value"));
+    card.append(MakeText(core::Translate("Choose a task to see its learning curve."), "value"));
     return card;
   }
   if (page.drawings.empty() && page.findings.empty())
-    card.append(MakeText("There is no attempt at this task.", "value"));
+    card.append(MakeText(core::Translate("There is no attempt at this task."), "value"));
   for (const std::string& finding : page.findings) card.append(MakeText(finding, "value"));
   for (const report::Drawing& drawing : page.drawings) card.append(MakePlot(drawing, kPlotWidth));
   return card;

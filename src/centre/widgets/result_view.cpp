@@ -2,6 +2,7 @@
 #include "result_view.h"
 
 #include "review_view.h"
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/report/attempt_report.h"
 #include "view_parts.h"
@@ -24,13 +25,12 @@ void ResultView::Show(const CentrePage& shown) {
     wait->set_halign(Gtk::Align::CENTER);
     wait->set_vexpand(true);
     wait->set_spacing(10);
-    Gtk::Label& title = MakeLine("Measuring the attempt", "page-title");
+    Gtk::Label& title = MakeLine(core::Translate("Measuring the attempt"), "page-title");
     title.set_halign(Gtk::Align::CENTER);
     wait->append(title);
-    Gtk::Label& what = MakeLine(
-        "It is played again from its recording, to the bit, and measured. It is kept whatever you do "
-        "meanwhile.",
-        "name");
+    Gtk::Label& what = MakeLine(core::Translate("It is played again from its recording, to the bit, and "
+                                                "measured. It is kept whatever you do meanwhile."),
+                                "name");
     wait->append(what);
     append(*wait);
     return;
@@ -47,10 +47,10 @@ void ResultView::Show(const CentrePage& shown) {
   ShowAdvice(page, *left);
   ShowErrors(page, *left);
 
-  Gtk::Box& plots = MakeCard("What happened when");
+  Gtk::Box& plots = MakeCard(core::Translate("What happened when"));
   if (!page.drawings.empty()) plots.append(MakePlot(page.drawings[0], kPlotWidth));
   right->append(plots);
-  Gtk::Box& ways = MakeCard("Where both tips went, and how that compares");
+  Gtk::Box& ways = MakeCard(core::Translate("Where both tips went, and how that compares"));
   Gtk::Box* row = nullptr;  // of two narrow plots
   for (std::size_t i = 1; i < page.drawings.size(); ++i) {
     const report::Drawing& drawing = page.drawings[i];
@@ -108,9 +108,10 @@ void ResultView::ShowHead(const ResultPage& page, Gtk::Box& into) {
 }
 
 void ResultView::ShowAdvice(const ResultPage& page, Gtk::Box& into) {
-  Gtk::Box& card = MakeCard("What cost most");
+  Gtk::Box& card = MakeCard(core::Translate("What cost most"));
   if (page.advice.empty())
-    card.append(MakeText("Nothing stands out against what the coach knows of this task.", "value"));
+    card.append(
+        MakeText(core::Translate("Nothing stands out against what the coach knows of this task."), "value"));
   int number = 0;
   for (const ResultPage::AdviceRow& advice : page.advice) {
     auto* row = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
@@ -118,33 +119,34 @@ void ResultView::ShowAdvice(const ResultPage& page, Gtk::Box& into) {
     row->set_margin_top(number == 0 ? 0 : 8);
     row->append(MakeText(std::to_string(++number) + ". " + advice.sentence, "key-text"));
     row->append(MakeText(advice.why, "value"));
-    row->append(MakeText("Practise: " + advice.practise, "value"));
+    row->append(MakeText(core::TranslateWith("Practise: {1}", {advice.practise}), "value"));
     if (advice.time) {
       Gtk::Button& look = MakeButton(
-          "Look at " + report::FormatClock(*advice.time),
+          core::TranslateWith("Look at {1}", {report::FormatClock(*advice.time)}),
           [this, time = *advice.time] { presenter_->Jump(time); }, "small");
       look.set_halign(Gtk::Align::START);
-      look.set_tooltip_text("Opens the replay a little before this moment");
+      look.set_tooltip_text(core::Translate("Opens the replay a little before this moment"));
       row->append(look);
     }
     card.append(*row);
   }
-  card.append(MakeText("Training feedback, not certified assessment.", "fine"));
+  card.append(MakeText(core::Translate("Training feedback, not certified assessment."), "fine"));
   into.append(card);
 }
 
 void ResultView::ShowErrors(const ResultPage& page, Gtk::Box& into) {
-  Gtk::Box& card = MakeCard("Errors");
+  Gtk::Box& card = MakeCard(core::Translate("Errors"));
   if (page.errors.empty()) {
-    card.append(MakeText(
-        page.tone == Tone::kCaution ? "None was noted, but the attempt is not complete." : "None was noted.",
-        "value"));
+    card.append(MakeText(page.tone == Tone::kCaution
+                             ? core::Translate("None was noted, but the attempt is not complete.")
+                             : core::Translate("None was noted."),
+                         "value"));
   }
   for (const ResultPage::ErrorRow& error : page.errors) {
     Gtk::Box& row = gui::MakeRow(10, {});
     Gtk::Button& jump = MakeButton(
         error.clock + "  ▸", [this, time = error.time] { presenter_->Jump(time); }, "small");
-    jump.set_tooltip_text("Opens the replay a little before this error");
+    jump.set_tooltip_text(core::Translate("Opens the replay a little before this error"));
     row.append(jump);
     Gtk::Label& what = MakeText(error.what, "value");
     what.set_hexpand(true);
@@ -157,10 +159,12 @@ void ResultView::ShowErrors(const ResultPage& page, Gtk::Box& into) {
 
 void ResultView::ShowNumbers(const ResultPage& page, Gtk::Box& into) {
   if (!page.thresholds.empty()) {
-    Gtk::Box& card = MakeCard("What passes");
-    auto* table = Gtk::make_managed<Table>(std::vector<std::string>{"", "", "reached", "needed"});
+    Gtk::Box& card = MakeCard(core::Translate("What passes"));
+    auto* table = Gtk::make_managed<Table>(
+        std::vector<std::string>{"", "", core::Translate("reached"), core::Translate("needed")});
     for (const ResultPage::ThresholdRow& row : page.thresholds) {
-      table->AddText(row.is_met ? "✓ met" : "✗ missed", row.is_met ? "good" : "caution");
+      table->AddText(row.is_met ? core::Translate("✓ met") : core::Translate("✗ missed"),
+                     row.is_met ? "good" : "caution");
       table->AddText(row.name, "value", true);
       table->AddText(row.value);
       table->AddText(row.limit);
@@ -169,15 +173,16 @@ void ResultView::ShowNumbers(const ResultPage& page, Gtk::Box& into) {
     card.append(*table);
     into.append(card);
   }
-  Gtk::Box& card = MakeCard("All metrics");
-  auto* table =
-      Gtk::make_managed<Table>(std::vector<std::string>{"", "this attempt", "range of experts", "own best"});
+  Gtk::Box& card = MakeCard(core::Translate("All metrics"));
+  auto* table = Gtk::make_managed<Table>(std::vector<std::string>{
+      "", core::Translate("this attempt"), core::Translate("range of experts"), core::Translate("own best")});
   for (const ResultPage::MetricRow& row : page.metrics) {
     Gtk::Label& name = MakeText(row.name, "name");
     name.set_hexpand(true);
     name.set_tooltip_text(row.about);
     table->Add(name);
-    table->AddText(row.value + (row.is_outside ? "  outside" : ""), row.is_outside ? "caution" : "value");
+    table->AddText(row.value + (row.is_outside ? core::Translate("  outside") : ""),
+                   row.is_outside ? "caution" : "value");
     table->AddText(row.expert);
     table->AddText(row.best);
     table->EndRow();
@@ -191,23 +196,24 @@ Gtk::Box& ResultView::MakeActions(const ResultPage& page) {
   line->add_css_class("actions");
   line->set_spacing(8);
   line->append(MakeButton(
-      "Again", [this] { presenter_->PlayAgain(); }, "primary"));
+      core::Translate("Again"), [this] { presenter_->PlayAgain(); }, "primary"));
   const bool is_course = page.step.IsSet() || page.advice.empty();
   line->append(
-      MakeButton(is_course ? "Next exercise" : "Exercise that helps", [this] { presenter_->PlayNext(); }));
-  line->append(MakeButton("See the replay", [this] { presenter_->Jump(0); }));
-  line->append(MakeButton("Save the report…", [this] { ChooseReport(); }));
+      MakeButton(is_course ? core::Translate("Next exercise") : core::Translate("Exercise that helps"),
+                 [this] { presenter_->PlayNext(); }));
+  line->append(MakeButton(core::Translate("See the replay"), [this] { presenter_->Jump(0); }));
+  line->append(MakeButton(core::Translate("Save the report…"), [this] { ChooseReport(); }));
   return *line;
 }
 
 void ResultView::ChooseReport() {
   gui::FileRequest request;
-  request.title = "Save the report";
+  request.title = core::Translate("Save the report");
   request.new_name = file_name_ + ".html";
-  request.kinds = {{"Page (HTML)", "*.html"},
-                   {"For print (PDF)", "*.pdf"},
-                   {"Table (CSV)", "*.csv"},
-                   {"Data (JSON)", "*.json"}};
+  request.kinds = {{core::Translate("Page (HTML)"), "*.html"},
+                   {core::Translate("For print (PDF)"), "*.pdf"},
+                   {core::Translate("Table (CSV)"), "*.csv"},
+                   {core::Translate("Data (JSON)"), "*.json"}};
   file_dialog_.Ask(*this, request,
                    [this](const std::filesystem::path& file) { presenter_->SaveReport(file); });
 }

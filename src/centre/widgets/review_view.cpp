@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "review_view.h"
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 #include "view_parts.h"
 
@@ -18,7 +19,7 @@ ReviewView::ReviewView(const ReviewPage& review, CentrePresenter& presenter)
   AddRemarks(review);
   if (!review.may_review) return;
   for (std::size_t i = 0; i < forms_.size(); ++i) {
-    Gtk::Box& card = MakeCard("Rate by " + forms_[i].name);
+    Gtk::Box& card = MakeCard(core::TranslateWith("Rate by {1}", {forms_[i].name}));
     card.append(MakeText(forms_[i].about, "fine"));
     AddForm(i, card);
     append(card);
@@ -26,8 +27,9 @@ ReviewView::ReviewView(const ReviewPage& review, CentrePresenter& presenter)
 }
 
 void ReviewView::AddRemarks(const ReviewPage& review) {
-  Gtk::Box& card = MakeCard("Remarks");
-  if (review.remarks.empty()) card.append(MakeText("Nobody has remarked anything.", "value"));
+  Gtk::Box& card = MakeCard(core::Translate("Remarks"));
+  if (review.remarks.empty())
+    card.append(MakeText(core::Translate("Nobody has remarked anything."), "value"));
   for (const ReviewPage::Remark& remark : review.remarks) {
     Gtk::Box& row = gui::MakeRow(10, {});
     row.append(MakeButton(
@@ -39,24 +41,25 @@ void ReviewView::AddRemarks(const ReviewPage& review) {
     card.append(row);
   }
   if (review.may_review) {
-    remark_.set_placeholder_text("A remark for the trainee");
+    remark_.set_placeholder_text(core::Translate("A remark for the trainee"));
     remark_.set_hexpand(true);
     seconds_.set_adjustment(Gtk::Adjustment::create(0, 0, kMostSeconds, 1, 10));
-    seconds_.set_tooltip_text("Second of the attempt to which it belongs");
+    seconds_.set_tooltip_text(core::Translate("Second of the attempt to which it belongs"));
     const auto keep = [this] { presenter_.AddRemark(seconds_.get_value(), remark_.get_text().raw()); };
     remark_.signal_activate().connect(keep);
     Gtk::Box& line = gui::MakeRow(8, {});
-    line.append(MakeLine("at second", "name"));
+    line.append(MakeLine(core::Translate("at second"), "name"));
     line.append(seconds_);
     line.append(remark_);
-    line.append(MakeButton("Remark", keep));
+    line.append(MakeButton(core::Translate("Remark"), keep));
     card.append(line);
   }
   append(card);
 }
 
 void ReviewView::AddForm(std::size_t index, Gtk::Box& into) {
-  auto* table = Gtk::make_managed<Table>(std::vector<std::string>{"", "least", "points", "most"});
+  auto* table = Gtk::make_managed<Table>(std::vector<std::string>{
+      "", core::Translate("least"), core::Translate("points"), core::Translate("most")});
   ReviewPage::Form& form = forms_[index];
   for (std::size_t i = 0; i < form.items.size(); ++i) {
     const ReviewPage::Item& item = form.items[i];
@@ -76,7 +79,8 @@ void ReviewView::AddForm(std::size_t index, Gtk::Box& into) {
     table->EndRow();
   }
   into.append(*table);
-  Gtk::Button& keep = MakeButton("Keep the rating", [this, index] { presenter_.Rate(forms_[index]); });
+  Gtk::Button& keep =
+      MakeButton(core::Translate("Keep the rating"), [this, index] { presenter_.Rate(forms_[index]); });
   keep.set_halign(Gtk::Align::START);
   into.append(keep);
 }

@@ -8,6 +8,7 @@
 #include "console.h"
 #include "trocar/core/printable.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/translate.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/replay.h"
 #include "trocar/render/image.h"
@@ -29,9 +30,11 @@ core::Error WrongEnding(const std::string& path, const std::string& endings) {
 
 /// What the published score says of each criterion (0 to 2).
 std::string DescribeScore(const training::CriticalViewScore& score) {
-  const auto of = [](int points) { return std::to_string(points) + " of 2"; };
-  return "hepatocystic triangle cleared " + of(score.criteria[0]) + ", lower gallbladder off the liver " +
-         of(score.criteria[1]) + ", two and only two structures " + of(score.criteria[2]);
+  const auto of = [](int points) { return core::TranslateWith("{1} of {2}", {std::to_string(points), "2"}); };
+  return core::TranslateWith(
+      "hepatocystic triangle cleared {1}, lower gallbladder off the liver {2}, two and only two structures "
+      "{3}",
+      {of(score.criteria[0]), of(score.criteria[1]), of(score.criteria[2])});
 }
 
 /// A simulation as it was at a moment.
@@ -56,7 +59,8 @@ core::Result<report::DoubletView> DrawDoublet(const scene::Scene& scene,
   if (!back.ok()) return back.error();
   const auto doublet = view::RenderCriticalViewDoublet(*front, *back, kPictureWidth, kPictureHeight);
   if (!doublet.ok()) {
-    view.verdict = "It was achieved. It could not be drawn here: " + doublet.error().Text();
+    view.verdict = core::TranslateWith("It was achieved. It could not be drawn here: {1}",
+                                       {core::ShownText(doublet.error())});
     return view;
   }
   const auto front_png = render::FormatPng(doublet->front.image),
@@ -65,10 +69,10 @@ core::Result<report::DoubletView> DrawDoublet(const scene::Scene& scene,
     view.front_png = *front_png;
     view.back_png = *back_png;
   }
-  view.verdict =
-      "Achieved: " + DescribeScore(score) +
-      "; seen from the front and from behind. Each picture shows the moment at which that view came to "
-      "count, for a person to judge.";
+  view.verdict = core::TranslateWith(
+      "Achieved: {1}; seen from the front and from behind. Each picture shows the moment at which that view "
+      "came to count, for a person to judge.",
+      {DescribeScore(score)});
   return view;
 }
 
@@ -167,8 +171,9 @@ core::Result<report::AttemptReport> ReportWatch::MakeReport(report::AttemptFacts
     if (!doublet.ok()) return doublet.error();
     report.doublet = std::move(*doublet);
   } else if (report.is_operation) {
-    report.doublet = report::DoubletView{"", "", report.seconds, report.seconds,
-                                         "Not achieved. At the end: " + DescribeScore(last_score_) + "."};
+    report.doublet = report::DoubletView{
+        "", "", report.seconds, report.seconds,
+        core::TranslateWith("Not achieved. At the end: {1}.", {DescribeScore(last_score_)})};
   }
   return report;
 }
@@ -238,7 +243,9 @@ core::Status RunReport::Write(const std::vector<view::DemoPicture>& pictures) co
   for (const view::DemoPicture& picture : pictures) {
     auto png = core::ReadFile(picture.path);
     if (!png.ok()) return png.error();
-    report->pictures.push_back({std::move(*png), "after " + FormatNumber(picture.time, 3) + " s"});
+    report->pictures.push_back(
+        {std::move(*png),
+         core::TranslateWith("after {1} s", {core::LocalNumber(FormatNumber(picture.time, 3))})});
   }
   return WriteReport(*report, path_);
 }

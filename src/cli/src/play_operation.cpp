@@ -13,6 +13,7 @@
 #include "trocar/core/json.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/statistics.h"
+#include "trocar/core/translate.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/training/injury.h"
 #include "trocar/training/operation_end.h"
@@ -110,7 +111,7 @@ void PrintForPerson(const scene::Scene& scene, const OperationResult& result, co
               result.was_critical_view_achieved ? "achieved" : "not achieved");
   if (!result.was_critical_view_achieved) {
     for (const std::string& reason : training::ExplainCriticalView(result.facts, result.critical_view))
-      std::printf("  %s\n", reason.c_str());
+      std::printf("  %s\n", core::TranslateComposed(reason).c_str());
   }
   for (std::size_t i = 0; i < training::kOperationErrorCount; ++i) {
     const auto error = static_cast<training::OperationError>(i);

@@ -20,6 +20,7 @@
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/core/translate.h"
 #include "trocar/core/version.h"
 #include "trocar/record/outcome.h"
 #include "trocar/record/replay.h"
@@ -173,7 +174,7 @@ core::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) 
   std::printf("Triangle cleared %d of 2, lower third off the plate %d of 2, two structures %d of 2\n",
               score.criteria[0], score.criteria[1], score.criteria[2]);
   for (const std::string& reason : training::ExplainCriticalView(result.facts, score))
-    std::printf("  %s\n", reason.c_str());
+    std::printf("  %s\n", core::TranslateComposed(reason).c_str());
   return {};
 }
 

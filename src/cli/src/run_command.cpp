@@ -46,9 +46,10 @@ constexpr const char* kExamples =
 
 int Fail(const core::Error& error, int exit_status) {
   std::fflush(stdout);
-  const std::string meaning = core::TranslatedMeaning(error.code);
-  if (!meaning.empty()) std::fprintf(stderr, "trocar: %s\n", meaning.c_str());
-  std::fprintf(stderr, "trocar: %s\n", error.Text().c_str());
+  const std::string text = core::ShownText(error), meaning = core::TranslatedMeaning(error.code);
+  // the catalogue has the messages that a window can show; of others it says at least what the code means
+  if (!meaning.empty() && text == error.Text()) std::fprintf(stderr, "trocar: %s\n", meaning.c_str());
+  std::fprintf(stderr, "trocar: %s\n", text.c_str());
   return exit_status;
 }
 

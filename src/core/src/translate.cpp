@@ -6,7 +6,12 @@
 #include <clocale>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <optional>
 #include <system_error>
+#include <vector>
+
+#include "catalogue.h"
 
 #include "trocar/core/program.h"
 namespace trocar::core {
@@ -15,6 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kDomain = "trocar";
+constexpr int kDeepestComposition = 4;  // of texts within places of texts
+
+// what TranslateComposed compares with, of the language that was last asked for
+std::mutex patterns_guard;
+std::filesystem::path catalogue_folder;
+std::string patterns_language;
+std::vector<CataloguePattern> patterns;
 
 /// "es" of "es_MX.UTF-8"; empty for none and for "C".
 std::string LanguageOf(const char* name) {
@@ -53,6 +65,11 @@ void UseLanguage(const fs::path& folder) {
       }
     }
   }
+  {
+    const std::lock_guard lock(patterns_guard);
+    catalogue_folder = folder;
+    patterns_language.clear();
+  }
   bindtextdomain(kDomain, folder.c_str());
   bind_textdomain_codeset(kDomain, "UTF-8");
   textdomain(kDomain);
@@ -62,6 +79,90 @@ std::string Translate(std::string_view text) {
   if (text.empty()) return {};
   const std::string english(text);
   return dgettext(kDomain, english.c_str());
+}
+
+std::string TranslateIn(std::string_view context, std::string_view text) {
+  const std::string key = std::string(context) + '\004' + std::string(text);
+  const char* found = dgettext(kDomain, key.c_str());
+  return found == key.c_str() ? std::string(text) : found;
+}
+
+std::string TranslateWith(std::string_view pattern, std::initializer_list<std::string_view> values) {
+  const std::string text = Translate(pattern);
+  std::string filled;
+  for (std::size_t at = 0; at < text.size();) {
+    const bool is_place = text[at] == '{' && at + 2 < text.size() && text[at + 2] == '}' &&
+                          text[at + 1] >= '1' && text[at + 1] <= '9';
+    const std::size_t place = is_place ? static_cast<std::size_t>(text[at + 1] - '1') : values.size();
+    if (place < values.size()) {
+      filled += values.begin()[place];
+      at += 3;
+    } else {
+      filled += text[at++];
+    }
+  }
+  return filled;
+}
+
+std::string TranslateCount(const char* one, const char* many, std::size_t count) {
+  const std::string text = dngettext(kDomain, one, many, count);
+  const std::string number = std::to_string(count);
+  const std::size_t place = text.find("{1}");
+  return place == std::string::npos ? text : text.substr(0, place) + number + text.substr(place + 3);
+}
+
+namespace {
+
+bool IsPlainNumber(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("-0123456789.") == std::string_view::npos &&
+         text.find('.') == text.rfind('.');
+}
+
+std::string TranslateComposed(std::string_view text, int depth) {
+  if (std::string exact = Translate(text); exact != text || depth == 0) return exact;
+  for (const CataloguePattern& pattern : patterns) {
+    if (auto places = MatchPattern(pattern, text)) {
+      for (auto& [name, value] : *places)
+        value = IsPlainNumber(value) ? LocalNumber(value) : TranslateComposed(value, depth - 1);
+      return FillPattern(pattern.translation, *places);
+    }
+  }
+  return std::string(text);
+}
+
+}  // namespace
+
+std::string TranslateComposed(std::string_view text) {
+  if (text.empty()) return {};
+  const std::lock_guard lock(patterns_guard);
+  // the catalogue's own name for the language that gettext has chosen
+  if (const std::string language = Translate("en"); language != patterns_language) {
+    patterns_language = language;
+    patterns.clear();
+    if (language != "en")
+      patterns = ReadPatterns(catalogue_folder / language / "LC_MESSAGES" / (std::string(kDomain) + ".mo"));
+  }
+  return TranslateComposed(text, kDeepestComposition);
+}
+
+std::string LocalNumber(std::string number) {
+  const std::string mark = Translate(".");
+  if (const std::size_t point = number.find('.'); point != std::string::npos && mark != ".")
+    number.replace(point, 1, mark);
+  return number;
+}
+
+std::string LocalCount(std::uint64_t count) {
+  // a comma between groups would be read as the decimal mark
+  const char* const between = Translate(".") == "." ? "," : "\u00a0";
+  std::string text = std::to_string(count);
+  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)
+    text.insert(static_cast<std::size_t>(at), between);
+  return text;
+}
+
+std::string ShownText(const Error& error) {
+  return std::string(CodeText(error.code)) + " " + TranslateComposed(error.message);
 }
 
 std::string TranslatedMeaning(ErrorCode code) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::editor {
 
 namespace {
@@ -12,7 +14,7 @@ using contours::ContourId;
 
 constexpr double kZoomStep = 1.25;  // of a key
 constexpr auto kRefused = core::ErrorCode::kEditRefused;
-constexpr const char* kNoContour = "choose a contour first: click one of its points";
+constexpr const char* kNoContour = core::Mark("choose a contour first: click one of its points");
 
 }  // namespace
 
@@ -230,13 +232,13 @@ void ContourEditor::Propagate(int direction) {
   if (!carried.ok()) return EmitError(carried.error());
   SetSlice(to);
   const int percent = static_cast<int>(100 * carried->confidence + 0.5);
-  EmitEvent("Carried " + std::to_string(carried->contours) +
-            (carried->contours == 1 ? " contour" : " contours") + " to slice " + std::to_string(to) +
-            "; the least certain point agrees to " + std::to_string(percent) +
-            " %. Correct it where it is wrong.");
+  EmitEvent(core::TranslateWith(
+      "Carried {1} to slice {2}; the least certain point agrees to {3} %. Correct it where it is wrong.",
+      {core::TranslateCount("{1} contour", "{1} contours", carried->contours), std::to_string(to),
+       std::to_string(percent)}));
 }
 
-void ContourEditor::GoTo(const std::optional<contours::EditPlace>& place, const char* verb) {
+void ContourEditor::GoTo(const std::optional<contours::EditPlace>& place, const std::string& verb) {
   if (!place) return;
   choice_.reset();
   ChooseStructure(place->structure);
@@ -244,7 +246,7 @@ void ContourEditor::GoTo(const std::optional<contours::EditPlace>& place, const 
   structure_ = std::clamp(
       structure_, 0, std::max(0, static_cast<int>(workspace_->Document().Points().structures.size()) - 1));
   if (place->slice) SetSlice(*place->slice);
-  EmitEvent(std::string(verb) + ": " + place->what);
+  EmitEvent(verb + ": " + core::TranslateComposed(place->what));
 }
 
 void ContourEditor::GoTo(const std::optional<int>& slice) {
@@ -267,7 +269,7 @@ void ContourEditor::Cancel() {
     choice_.reset();
   } else if (!Here().open.empty()) {
     EmitError(document.DropOpenContour(structure_, slice_));
-    EmitEvent("The open contour was dropped; Ctrl+Z brings it back");
+    EmitEvent(core::Translate("The open contour was dropped; Ctrl+Z brings it back"));
   }
 }
 
@@ -299,12 +301,12 @@ void ContourEditor::ChooseNextOrgan() {
 
 void ContourEditor::Undo() {
   Release();
-  GoTo(workspace_->Document().Undo(), "Undone");
+  GoTo(workspace_->Document().Undo(), core::Translate("Undone"));
 }
 
 void ContourEditor::Redo() {
   Release();
-  GoTo(workspace_->Document().Redo(), "Done again");
+  GoTo(workspace_->Document().Redo(), core::Translate("Done again"));
 }
 
 void ContourEditor::FitWhole() {

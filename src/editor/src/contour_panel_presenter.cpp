@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "trocar/core/translate.h"
 #include "trocar/editor/contour_read_outs.h"
 #include "trocar/editor/organ_colour.h"
 
@@ -15,13 +16,13 @@ namespace {
 constexpr int kNewOrganTriangles = 1500;
 
 std::string CountSlices(std::size_t count) {
-  return std::to_string(count) + (count == 1 ? " slice" : " slices");
+  return core::TranslateCount("{1} slice", "{1} slices", count);
 }
 
 SliderPage InPixels(double pixels) {
   char text[32];
   std::snprintf(text, sizeof(text), "%g px", pixels);
-  return {pixels, text};
+  return {pixels, core::LocalNumber(text)};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/core/log.h"
+#include "trocar/core/translate.h"
 #include "trocar/editor/contour_read_outs.h"
 
 namespace trocar::editor {
@@ -45,7 +46,7 @@ void ContourPresenter::Open(contours::WorkspaceOptions options) {
   if (loading_.IsRunning()) return;
   loading_options_ = std::move(options);
   page_.is_busy = true;
-  ShowHint("Opening the pictures ...");
+  ShowHint(core::Translate("Opening the pictures ..."));
   loading_.Start([this, options = loading_options_] {
     return contours::ContourWorkspace::Open(options, [this](std::string_view what, double fraction) {
       progress_.Set(what, fraction);
@@ -97,7 +98,8 @@ void ContourPresenter::UseWorkspace(contours::ContourWorkspace workspace) {
   if (is_kept) OfferRecovered();
   editor_ = std::make_unique<ContourEditor>(*workspace_);
   editor_->on_error = [this](const core::Error& error) {
-    if (error.code == core::ErrorCode::kEditRefused) return ShowHint(error.message, true);
+    if (error.code == core::ErrorCode::kEditRefused)
+      return ShowHint(core::TranslateComposed(error.message), true);
     Report(error);
   };
   editor_->on_event = [this](const std::string& text) { ShowHint(text); };
@@ -124,10 +126,12 @@ bool ContourPresenter::TakeSideFile() {
     return false;
   }
   core::Log(core::LogLevel::kWarning, taken.error().Text());
-  screen_->Ask({"These contours are open in another window: " + taken.error().message +
-                    ". Whichever saves last overwrites the other.",
-                {{"Close this window", [this] { screen_->DoInWindow(ContourAction::kQuit); }, true},
-                 {"Go on without autosave", [] {}}}});
+  screen_->Ask(
+      {core::TranslateWith(
+           "These contours are open in another window: {1}. Whichever saves last overwrites the other.",
+           {core::TranslateComposed(taken.error().message)}),
+       {{core::Mark("Close this window"), [this] { screen_->DoInWindow(ContourAction::kQuit); }, true},
+        {core::Mark("Go on without autosave"), [] {}}}});
   return false;
 }
 
@@ -152,8 +156,10 @@ void ContourPresenter::OfferRecovered() {
     side_file_.Discard();
     OnEdited();
   };
-  screen_->Ask({"The last session ended without saving. What it had is shown; it is not in the file yet.",
-                {{"Go on with it", [] {}, true}, {"Back to the file", back}}});
+  screen_->Ask(
+      {core::Translate(
+           "The last session ended without saving. What it had is shown; it is not in the file yet."),
+       {{core::Mark("Go on with it"), [] {}, true}, {core::Mark("Back to the file"), back}}});
 }
 
 bool ContourPresenter::OnTimer(ContourTimer timer) {
@@ -210,7 +216,7 @@ gui::ButtonState ContourPresenter::FindButton(const ContourCommand& command) con
 
 void ContourPresenter::Do(ContourAction action) {
   if (action == ContourAction::kBuild && building_.IsRunning())
-    return ShowHint("A patient is being built already", true);
+    return ShowHint(core::Translate("A patient is being built already"), true);
   // a command that the editor refuses says so itself
   const ContourNeeds needs = FindNeeds(action);
   const bool is_editors = needs == ContourNeeds::kUndo || needs == ContourNeeds::kRedo;
@@ -318,9 +324,10 @@ void ContourPresenter::ChooseAndOpen() {
       side_file_.Discard();
       open();
     };
-    screen_->Ask(
-        {"The contours that are open are not saved.",
-         {{"Save, then open", save_first, true}, {"Open without saving", discard}, {"Stay", [] {}}}});
+    screen_->Ask({core::Translate("The contours that are open are not saved."),
+                  {{core::Mark("Save, then open"), save_first, true},
+                   {core::Mark("Open without saving"), discard},
+                   {core::Mark("Stay"), [] {}}}});
   });
 }
 
@@ -335,7 +342,7 @@ bool ContourPresenter::Save() {
     return false;
   }
   side_file_.Discard();
-  ShowHint("Saved " + file.filename().string());
+  ShowHint(core::TranslateWith("Saved {1}", {file.filename().string()}));
   return true;
 }
 
@@ -348,7 +355,7 @@ void ContourPresenter::SaveAs(std::function<void()> then) {
                         side_file_.Discard();
                         side_file_.Release();
                         if (TakeSideFile()) StartAutosave();
-                        ShowHint("Saved " + file.filename().string());
+                        ShowHint(core::TranslateWith("Saved {1}", {file.filename().string()}));
                         then();
                       });
 }
@@ -398,17 +405,18 @@ void ContourPresenter::FinishBuild() {
   const auto report = building_.Take();
   page_.is_busy = page_.is_building = false;
   if (!report.ok() && report.error().code == core::ErrorCode::kCancelled) {
-    ShowHint("The patient was given up; nothing was written");
+    ShowHint(core::Translate("The patient was given up; nothing was written"));
   } else if (!report.ok()) {
     Report(report.error());
   } else {
-    std::string text = "Wrote the patient " + build_folder_.string() + ":";
+    std::string text = core::TranslateWith("Wrote the patient {1}:", {build_folder_.string()});
     for (const auto& organ : report->organs) {
-      text += " " + organ.name + " " + std::to_string(organ.triangles) + " triangles, " +
-              std::to_string(static_cast<int>(organ.volume_ml + 0.5)) + " mL;";
+      text += core::TranslateWith(" {1} {2} triangles, {3} mL;",
+                                  {organ.name, std::to_string(organ.triangles),
+                                   std::to_string(static_cast<int>(organ.volume_ml + 0.5))});
     }
     text.back() = '.';
-    screen_->ShowNotice(text + " Check it with: trocar anatomy check");
+    screen_->ShowNotice(core::TranslateWith("{1} Check it with: trocar anatomy check", {text}));
   }
   Refresh();
 }
@@ -439,8 +447,10 @@ bool ContourPresenter::OnClose() {
     const auto save = [this, leave] {
       workspace_->Options().points.empty() ? SaveAs(leave) : Save() ? leave() : void();
     };
-    screen_->Ask({"The contours are not saved.",
-                  {{"Save and close", save, true}, {"Close without saving", leave}, {"Stay", [] {}}}});
+    screen_->Ask({core::Translate("The contours are not saved."),
+                  {{core::Mark("Save and close"), save, true},
+                   {core::Mark("Close without saving"), leave},
+                   {core::Mark("Stay"), [] {}}}});
     return true;
   }
   if (building_.IsRunning()) {
@@ -448,10 +458,10 @@ bool ContourPresenter::OnClose() {
       build_stop_.request_stop();
       CloseAnyway();
     };
-    screen_->Ask({"The patient is still being built.",
-                  {{"Wait", [] {}, true},
-                   {"Give it up and close", give_up},
-                   {"Close when it is done", [this] { CloseAnyway(); }}}});
+    screen_->Ask({core::Translate("The patient is still being built."),
+                  {{core::Mark("Wait"), [] {}, true},
+                   {core::Mark("Give it up and close"), give_up},
+                   {core::Mark("Close when it is done"), [this] { CloseAnyway(); }}}});
     return true;
   }
   side_file_.Discard();
@@ -481,7 +491,7 @@ void ContourPresenter::TakeSurfaces() {
     if (outcome.result.ok()) {
       screen_->ShowSurface(outcome.structure, std::move(*outcome.result));
     } else if (outcome.result.error().code != core::ErrorCode::kCancelled) {
-      screen_->ShowSurfaceProblem(outcome.structure, outcome.result.error().message);
+      screen_->ShowSurfaceProblem(outcome.structure, core::TranslateComposed(outcome.result.error().message));
     }
   }
   screen_->ShowSurfaceJob(surfaces_->GetState());
@@ -517,15 +527,16 @@ void ContourPresenter::Report(const core::Error& error) {
 
 std::string ContourPresenter::DescribeState() const {
   if (workspace_->Document().IsDirty())
-    return side_file_.WrittenCount() > 0 ? "Not saved \u00b7 autosaved" : "Not saved";
-  return workspace_->Options().points.empty() ? "New" : "Saved";
+    return side_file_.WrittenCount() > 0 ? core::Translate("Not saved \u00b7 autosaved")
+                                         : core::Translate("Not saved");
+  return workspace_->Options().points.empty() ? core::Translate("New") : core::Translate("Saved");
 }
 
 void ContourPresenter::Refresh() {
   page_.is_document_open = editor_ != nullptr;
   if (editor_ != nullptr) {
     const auto& file = workspace_->Options().points;
-    const std::string name = file.empty() ? "new contours" : file.filename().string();
+    const std::string name = file.empty() ? core::Translate("new contours") : file.filename().string();
     page_.title = (workspace_->Document().IsDirty() ? "\u2022 " : "") + name;
     if (!page_.is_busy) page_.state = DescribeState();
   }

@@ -6,6 +6,8 @@
 #include <map>
 #include <span>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::editor {
 namespace {
 
@@ -13,11 +15,7 @@ template <typename... Values>
 std::string Format(const char* format, Values... values) {
   char text[256];
   std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
-
-std::string Count(std::size_t count, const char* noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+  return core::LocalNumber(text);
 }
 
 double ShoelaceArea(std::span<const Vec2> polygon) {
@@ -27,12 +25,6 @@ double ShoelaceArea(std::span<const Vec2> polygon) {
     twice += a.x * b.y - b.x * a.y;
   }
   return 0.5 * std::fabs(twice);
-}
-
-std::string Thousands(std::size_t value) {
-  std::string text = std::to_string(value);
-  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, ",");
-  return text;
 }
 
 }  // namespace
@@ -46,29 +38,32 @@ double CalcArea(const contours::SliceFit& fit, double pixel_mm) {
 
 std::string SliceTitle(const ContourEditor& editor) {
   const auto& structures = editor.Workspace().Document().Points().structures;
-  std::string title = "Slice " + std::to_string(editor.Slice());
+  std::string title = core::TranslateWith("Slice {1}", {std::to_string(editor.Slice())});
   if (editor.Structure() < static_cast<int>(structures.size())) {
-    title += " \u00b7 " + structures[editor.Structure()].name;
+    title += " \u00b7 " + core::Translate(structures[editor.Structure()].name);
   }
   return title;
 }
 
 std::string SliceText(ContourEditor& editor) {
-  if (editor.Workspace().Document().Points().structures.empty()) return "Add an organ to begin.";
+  if (editor.Workspace().Document().Points().structures.empty())
+    return core::Translate("Add an organ to begin.");
   const auto& here = editor.Here();
   if (!here.open.empty()) {
-    return Count(here.open.size(), "point") + " of an open contour" +
-           (here.open.size() < 3 ? "" : "; Enter or a double click closes it");
+    std::string text = core::TranslateCount("{1} point of an open contour", "{1} points of an open contour",
+                                            here.open.size());
+    if (here.open.size() >= 3) text += core::Translate("; Enter or a double click closes it");
+    return text;
   }
   if (here.contours.empty())
-    return "No contour. Click points around the organ, or carry one here from a neighbour.";
+    return core::Translate("No contour. Click points around the organ, or carry one here from a neighbour.");
   std::size_t points = 0;
   for (const auto* group : {&here.contours, &here.holes}) {
     for (const auto& polygon : *group) points += polygon.size();
   }
-  std::string text = Count(here.contours.size(), "contour");
-  if (!here.holes.empty()) text += ", " + Count(here.holes.size(), "hole");
-  text += " \u00b7 " + Count(points, "point");
+  std::string text = core::TranslateCount("{1} contour", "{1} contours", here.contours.size());
+  if (!here.holes.empty()) text += ", " + core::TranslateCount("{1} hole", "{1} holes", here.holes.size());
+  text += " \u00b7 " + core::TranslateCount("{1} point", "{1} points", points);
   const auto fit = editor.Fit();
   constexpr double kSquareMmPerSquareCm = 100.0;
   if (fit.ok()) {
@@ -95,8 +90,9 @@ std::string SliceNotes(ContourEditor& editor) {
   const double pixel_mm = editor.Workspace().Series().pixel_mm;
   for (const auto& [problem, sum] : problems) {
     if (!text.empty()) text += "\n";
-    text += Count(sum.first, "place") + Format(" (%.0f mm): ", sum.second * pixel_mm) +
-            std::string(contours::FitProblemText(problem));
+    text += core::TranslateCount("{1} place", "{1} places", sum.first) +
+            Format(" (%.0f mm): ", sum.second * pixel_mm) +
+            core::Translate(contours::FitProblemText(problem));
   }
   return text;
 }
@@ -104,23 +100,34 @@ std::string SliceNotes(ContourEditor& editor) {
 std::string PointerText(const ContourEditor& editor) {
   const auto& pointer = editor.Pointer();
   if (!pointer) return {};
-  std::string text = Format("pixel %.1f, %.1f", pointer->x, pointer->y);
+  std::string text =
+      core::TranslateWith("pixel {1}, {2}", {Format("%.1f", pointer->x), Format("%.1f", pointer->y)});
   if (const auto place = contours::FindPatientPlace(editor.Workspace().Series(), editor.Slice(), *pointer)) {
-    text += Format("   LPS %.1f, %.1f, %.1f mm", (*place)[0], (*place)[1], (*place)[2]);
+    text += core::TranslateWith(
+        "   LPS {1}, {2}, {3} mm",
+        {Format("%.1f", (*place)[0]), Format("%.1f", (*place)[1]), Format("%.1f", (*place)[2])});
   }
   return text;
 }
 
 std::string SeriesText(const images::ImageSeriesInfo& series) {
-  return Format("%s, %d x %d pixels of %.4g mm, slices of %.4g mm \u00b7 ", series.format.c_str(),
-                series.width, series.height, series.pixel_mm, series.slice_mm) +
-         "columns to " + series.axes[0] + ", rows to " + series.axes[1] + ", slices to " + series.axes[2] +
-         (series.file_frame.empty() ? "" : " \u00b7 file in " + series.file_frame);
+  std::string text =
+      core::TranslateWith("{1}, {2} x {3} pixels of {4} mm, slices of {5} mm",
+                          {series.format, std::to_string(series.width), std::to_string(series.height),
+                           Format("%.4g", series.pixel_mm), Format("%.4g", series.slice_mm)});
+  text += " \u00b7 " + core::TranslateWith("columns to {1}, rows to {2}, slices to {3}",
+                                           {core::Translate(series.axes[0]), core::Translate(series.axes[1]),
+                                            core::Translate(series.axes[2])});
+  if (!series.file_frame.empty())
+    text += " \u00b7 " + core::TranslateWith("file in {1}", {series.file_frame});
+  return text;
 }
 
 std::string MeshText(const std::string& name, const contours::OrganMesh& mesh) {
-  return name + ": " + Thousands(mesh.mesh.triangles.size()) + Format(" triangles, %.0f mL", mesh.volume_ml) +
-         (mesh.is_closed && mesh.is_manifold ? "" : ", NOT CLOSED") +
+  return core::TranslateWith("{1}: {2} triangles, {3} mL",
+                             {core::Translate(name), core::LocalCount(mesh.mesh.triangles.size()),
+                              Format("%.0f", mesh.volume_ml)}) +
+         (mesh.is_closed && mesh.is_manifold ? "" : core::Translate(", NOT CLOSED")) +
          Format(" \u00b7 %.1f mm", mesh.spacing_mm);
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "trocar/core/log.h"
+#include "trocar/core/translate.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::editor {
@@ -40,18 +41,19 @@ std::optional<EditorTool> FindTool(PatientAction action) {
 
 }  // namespace
 
-const char* HintText(EditorTool tool) noexcept {
+std::string HintText(EditorTool tool) {
   switch (tool) {
     case EditorTool::kLook:
-      return "Drag turns · right button moves · wheel zooms · 1 to 4 choose a tool";
+      return core::Translate("Drag turns · right button moves · wheel zooms · 1 to 4 choose a tool");
     case EditorTool::kPaint:
-      return "Drag over the organ paints · Shift erases · Ctrl+wheel: radius · beside the organ the drag "
-             "turns";
+      return core::Translate(
+          "Drag over the organ paints · Shift erases · Ctrl+wheel: radius · beside the organ the drag turns");
     case EditorTool::kTubes:
-      return "Click a duct, drag its points · wheel over a point: radius · Shift+click inserts · Delete "
-             "removes";
+      return core::Translate(
+          "Click a duct, drag its points · wheel over a point: radius · Shift+click inserts · Delete "
+          "removes");
     case EditorTool::kLandmarks:
-      return "Drag a landmark's disc in the plane of the view";
+      return core::Translate("Drag a landmark's disc in the plane of the view");
   }
   return "";
 }
@@ -68,14 +70,15 @@ PatientEditorPresenter::PatientEditorPresenter(const PatientEditorOptions& optio
 void PatientEditorPresenter::Start() {
   if (!options_.run.IsAttended() || !anatomy::PatientDocument::HasAutosave(options_.patient))
     return Load(false);
-  Ask({"Unsaved changes were found",
-       {{"Leave them", [this] { Load(false); }}, {"Go on with them", [this] { Load(true); }, true}},
-       "The editor ended before these changes were saved. Go on with them?"});
+  Ask({core::Translate("Unsaved changes were found"),
+       {{core::Mark("Leave them"), [this] { Load(false); }},
+        {core::Mark("Go on with them"), [this] { Load(true); }, true}},
+       core::Translate("The editor ended before these changes were saved. Go on with them?")});
 }
 
 void PatientEditorPresenter::Load(bool is_recovered) {
   is_recovered_ = is_recovered;
-  Announce("Opening the patient …");
+  Announce(core::Translate("Opening the patient …"));
   loading_.Start([folder = options_.patient, is_recovered] {
     return anatomy::PatientDocument::Open(folder, is_recovered);
   });
@@ -98,8 +101,9 @@ void PatientEditorPresenter::FinishLoading() {
   if (editor_->tool == EditorTool::kTubes) editor_->look.liver_opacity = kTubeOpacity;
   screen_->UseEditor(editor_.get());
   Refresh();
-  Announce("Opened " + options_.patient.string() +
-           (is_recovered_ ? " with the changes that were not saved" : ""));
+  Announce(core::TranslateWith(
+      "Opened {1}{2}", {options_.patient.string(),
+                        (is_recovered_ ? core::Translate(" with the changes that were not saved") : "")}));
   screen_->StartTimer(PatientTimer::kAutosave, kAutosavePeriod);
 }
 
@@ -247,14 +251,16 @@ void PatientEditorPresenter::Save() {
     may_overwrite_ = true;
     SaveTo(folder);
   };
-  Ask({"Change the patient that came with Trocar?",
-       {{"Cancel", [] {}}, {"Change it", overwrite}, {"Save as…", [this] { SaveAs(); }, true}},
-       "Scenes, samples and other people's results use it as it was delivered."});
+  Ask({core::Translate("Change the patient that came with Trocar?"),
+       {{core::Mark("Cancel"), [] {}},
+        {core::Mark("Change it"), overwrite},
+        {core::Mark("Save as…"), [this] { SaveAs(); }, true}},
+       core::Translate("Scenes, samples and other people's results use it as it was delivered.")});
 }
 
 void PatientEditorPresenter::SaveTo(const std::filesystem::path& folder) {
   if (const auto status = editor_->Document().Save(folder); !status) return Refuse(status.error());
-  Announce("Saved " + folder.string());
+  Announce(core::TranslateWith("Saved {1}", {folder.string()}));
   Refresh();
 }
 
@@ -279,9 +285,9 @@ bool PatientEditorPresenter::OnClose() {
     Save();
     if (!editor_->Document().IsDirty()) screen_->Close();
   };
-  Ask({"Save the changes?",
-       {{"Cancel", [] {}}, {"Do not save", leave}, {"Save", save, true}},
-       "Without saving they are lost."});
+  Ask({core::Translate("Save the changes?"),
+       {{core::Mark("Cancel"), [] {}}, {core::Mark("Do not save"), leave}, {core::Mark("Save"), save, true}},
+       core::Translate("Without saving they are lost.")});
   return true;
 }
 
@@ -306,7 +312,7 @@ void PatientEditorPresenter::Announce(const std::string& text, bool is_warning) 
 }
 
 void PatientEditorPresenter::Refuse(const core::Error& error) {
-  Announce(error.Text(), true);
+  Announce(core::ShownText(error), true);
 }
 
 void PatientEditorPresenter::Fail(const core::Error& error) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::editor {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr double kMmPerMetre = 1000.0;
 /// Words of a name as a person reads them: "cystic duct".
 std::string Spoken(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
+  return core::TranslateComposed(name);
 }
 
 /// What a tube can begin or end at; the first, empty one leaves the scene.
@@ -28,18 +30,22 @@ std::vector<std::string> FindEnds(const anatomy::Patient& patient, const anatomy
 ChoicePage ChooseEnd(const std::vector<std::string>& names, const std::string& chosen) {
   ChoicePage page;
   for (const std::string& name : names)
-    page.names.push_back(name.empty() ? "leaves the scene" : Spoken(name));
+    page.names.push_back(name.empty() ? core::Translate("leaves the scene") : Spoken(name));
   page.chosen = static_cast<std::size_t>(std::find(names.begin(), names.end(), chosen) - names.begin());
   return page;
 }
 
 std::string DescribeTube(const anatomy::Tube& tube) {
-  char text[160];
+  const auto millimetres = [](const char* format, double metres) {
+    char text[32];
+    std::snprintf(text, sizeof(text), format, kMmPerMetre * metres);
+    return core::LocalNumber(text);
+  };
   const auto [thin, thick] = std::minmax_element(tube.line.radii.begin(), tube.line.radii.end());
-  std::snprintf(text, sizeof(text), "%.1f mm long, radius %.2f to %.2f mm, %zu points",
-                kMmPerMetre * geometry::CalcLength(tube.line), kMmPerMetre * *thin, kMmPerMetre * *thick,
-                tube.line.points.size());
-  return text;
+  return core::TranslateWith(
+      "{1} mm long, radius {2} to {3} mm, {4} points",
+      {millimetres("%.1f", geometry::CalcLength(tube.line)), millimetres("%.2f", *thin),
+       millimetres("%.2f", *thick), std::to_string(tube.line.points.size())});
 }
 
 void AddRegions(const PatientEditor& editor, PatientPanelPage& page) {
@@ -58,11 +64,11 @@ void AddTubes(const PatientEditor& editor, PatientPanelPage& page) {
   for (const std::string& name : anatomy::FindMissingTubes(patient))
     page.missing.names.push_back(Spoken(name));
   page.can_add = !page.missing.names.empty();
-  if (!page.can_add) page.missing.names = {"no usual duct is missing"};
+  if (!page.can_add) page.missing.names = {core::Translate("no usual duct is missing")};
   page.reach_mm = kMmPerMetre * editor.reach;
   page.tube = editor.Tube();
   page.has_tube_point = editor.TubePoint().has_value();
-  page.tube_facts = "Choose a duct here or in the picture.";
+  page.tube_facts = core::Translate("Choose a duct here or in the picture.");
   if (!page.tube) return;
   const anatomy::Tube& tube = patient.tubes[*page.tube];
   const std::vector<std::string> ends = FindEnds(patient, tube);
@@ -97,11 +103,12 @@ PatientPanelPage MakePatientPanelPage(const PatientEditor& editor) {
 FindingsPage MakeFindingsPage(const anatomy::LintReport& report) {
   FindingsPage page;
   for (const anatomy::LintFinding& finding : report.findings)
-    page.rows.push_back({finding.code + "  " + finding.where, finding.text, finding.where});
+    page.rows.push_back(
+        {finding.code + "  " + Spoken(finding.where), core::TranslateComposed(finding.text), finding.where});
   const std::size_t count = page.rows.size();
-  page.title = count == 0 ? "No findings: this patient can be operated on."
-                          : std::to_string(count) + (count == 1 ? " finding" : " findings") +
-                                "; click one to look at it";
+  page.title = count == 0 ? core::Translate("No findings: this patient can be operated on.")
+                          : core::TranslateCount("{1} finding; click one to look at it",
+                                                 "{1} findings; click one to look at it", count);
   return page;
 }
 

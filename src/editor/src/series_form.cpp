@@ -9,6 +9,8 @@
 #include <set>
 #include <string_view>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::editor {
 namespace {
 
@@ -55,9 +57,9 @@ SeriesForm MakeSeriesForm(const images::ImageSeriesOptions& series) {
 
 core::Result<images::ImageSeriesOptions> ReadSeriesForm(const SeriesForm& form,
                                                         images::ImageSeriesOptions series) {
-  const auto pixel_mm = ReadLength(form.pixel_mm, "Pixel", 0.01, 20.0);
+  const auto pixel_mm = ReadLength(form.pixel_mm, core::Mark("Pixel"), 0.01, 20.0);
   if (!pixel_mm) return pixel_mm.error();
-  const auto slice_mm = ReadLength(form.slice_mm, "Slice distance", 0.01, 50.0);
+  const auto slice_mm = ReadLength(form.slice_mm, core::Mark("Slice distance"), 0.01, 50.0);
   if (!slice_mm) return slice_mm.error();
   series.pixel_mm = *pixel_mm;
   series.slice_mm = *slice_mm;

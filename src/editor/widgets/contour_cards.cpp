@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/labels.h"
 
 namespace trocar::editor {
@@ -19,7 +20,7 @@ std::string HexColour(const render::SrgbColour& c) {
   return text;
 }
 
-void MakeSmall(Gtk::Button& button, const char* tip) {
+void MakeSmall(Gtk::Button& button, const std::string& tip) {
   button.add_css_class("small");
   button.set_focus_on_click(false);
   button.set_tooltip_text(tip);
@@ -38,13 +39,13 @@ OrganCard::OrganCard(ContourPanelPresenter& presenter)
     : gui::Card("Organs", kCardSpacing), presenter_(presenter) {
   organs_.set_spacing(3);
   append(organs_);
-  MakeSmall(add_, "Add an organ");
-  MakeSmall(rename_, "Rename the chosen organ");
-  MakeSmall(delete_, "Delete the chosen organ with its contours (Ctrl+Z brings it back)");
+  MakeSmall(add_, core::Translate("Add an organ"));
+  MakeSmall(rename_, core::Translate("Rename the chosen organ"));
+  MakeSmall(delete_, core::Translate("Delete the chosen organ with its contours (Ctrl+Z brings it back)"));
   Gtk::Box& row = gui::MakeRow(kRowSpacing, {&add_, &rename_, &delete_});
   append(row);
   name_popover_.set_parent(row);
-  name_entry_.set_placeholder_text("name, then Enter");
+  name_entry_.set_placeholder_text(core::Translate("name, then Enter"));
   name_popover_.set_child(name_entry_);
   add_.signal_clicked().connect([this] { AskName(true); });
   rename_.signal_clicked().connect([this] { AskName(false); });
@@ -77,7 +78,7 @@ Gtk::Widget& OrganCard::MakeRow(const ContourPanelPage::Organ& organ, int struct
   button->set_active(organ.is_chosen);
   auto* swatch = Gtk::make_managed<Gtk::Label>();
   swatch->set_markup("<span foreground=\"" + HexColour(organ.colour) + "\">\u25cf</span>");
-  auto* name = Gtk::make_managed<Gtk::Label>(organ.name);
+  auto* name = Gtk::make_managed<Gtk::Label>(core::Translate(organ.name));
   name->set_ellipsize(Pango::EllipsizeMode::END);
   name->set_hexpand(true);
   name->set_xalign(0);
@@ -112,15 +113,17 @@ SliceCard::SliceCard() : gui::Card(nullptr, kCardSpacing) {
     ContourAction action;
   };
   constexpr Entry kEntries[] = {
-      {"\u25c2 Carry", "Carry the contours to the slice before (Shift+P)", ContourAction::kPropagateBack},
-      {"Carry \u25b8", "Carry the contours to the next slice (P)", ContourAction::kPropagateForward},
-      {"Hole", "The chosen contour is a hole (H)", ContourAction::kToggleHole},
-      {"Clear", "Remove all contours of this organ from the slice (Ctrl+Delete)",
+      {core::Mark("\u25c2 Carry"), core::Mark("Carry the contours to the slice before (Shift+P)"),
+       ContourAction::kPropagateBack},
+      {core::Mark("Carry \u25b8"), core::Mark("Carry the contours to the next slice (P)"),
+       ContourAction::kPropagateForward},
+      {core::Mark("Hole"), core::Mark("The chosen contour is a hole (H)"), ContourAction::kToggleHole},
+      {core::Mark("Clear"), core::Mark("Remove all contours of this organ from the slice (Ctrl+Delete)"),
        ContourAction::kClearSlice}};
   Gtk::Box& row = gui::MakeRow(kRowSpacing, {});
   for (const Entry& entry : kEntries) {
-    auto* button = Gtk::make_managed<Gtk::Button>(entry.text);
-    MakeSmall(*button, entry.tip);
+    auto* button = Gtk::make_managed<Gtk::Button>(core::Translate(entry.text));
+    MakeSmall(*button, core::Translate(entry.tip));
     button->signal_clicked().connect([this, action = entry.action] { signal_action_.emit(action); });
     row.append(*button);
   }
@@ -137,19 +140,21 @@ void SliceCard::Show(const ContourPanelPage& page) {
 
 EdgeCard::EdgeCard(ContourPanelPresenter& presenter) : gui::Card("Edge search and steps", kCardSpacing) {
   constexpr double kMost = ContourPanelPresenter::kMostReach;
-  Add(reach_, "Reach", "How far a clicked point may move to an edge; 0 leaves points where they were clicked",
-      0, kMost, 0.5, [&presenter](double value) { presenter.SetReach(value); });
-  Add(skipped_, "Skipped",
-      "How far the edges of slices that you skip may move the contour between yours when the patient is "
-      "built; 0 keeps the shape in between",
+  Add(reach_, core::Mark("Reach"),
+      core::Mark("How far a clicked point may move to an edge; 0 leaves points where they were clicked"), 0,
+      kMost, 0.5, [&presenter](double value) { presenter.SetReach(value); });
+  Add(skipped_, core::Mark("Skipped"),
+      core::Mark(
+          "How far the edges of slices that you skip may move the contour between yours when the patient is "
+          "built; 0 keeps the shape in between"),
       0, kMost, 0.5, [&presenter](double value) { presenter.SetSkippedReach(value); });
-  Add(step_, "Step", "Slices that Page Up, Page Down and Carry go at once", 1, 20, 1,
+  Add(step_, core::Mark("Step"), core::Mark("Slices that Page Up, Page Down and Carry go at once"), 1, 20, 1,
       [&presenter](double value) { presenter.SetSliceStep(value); });
 }
 
 void EdgeCard::Add(Row& row, const char* name, const char* tip, double low, double high, double step,
                    std::function<void(double)> act) {
-  auto* label = Gtk::make_managed<Gtk::Label>(name);
+  auto* label = Gtk::make_managed<Gtk::Label>(core::Translate(name));
   label->add_css_class("name");
   label->set_size_request(kNameWidth, -1);
   label->set_xalign(0);
@@ -157,7 +162,7 @@ void EdgeCard::Add(Row& row, const char* name, const char* tip, double low, doub
   row.scale.set_increments(step, step);
   row.scale.set_draw_value(false);
   row.scale.set_hexpand(true);
-  row.scale.set_tooltip_text(tip);
+  row.scale.set_tooltip_text(core::Translate(tip));
   row.value.add_css_class("value");
   row.value.set_size_request(kValueWidth, -1);
   row.value.set_xalign(1);
@@ -190,12 +195,13 @@ SurfaceCard::SurfaceCard() : gui::Card("Surface (preview)", kCardSpacing) {
   append(view_);
   SetWrapped(text_, "stage");
   text_.set_tooltip_text(
-      "A preview; the last number is the distance of the lattice it was made on. Build patient makes the "
-      "finer one");
+      core::Translate("A preview; the last number is the distance of the lattice it was made on. Build "
+                      "patient makes the finer one"));
   append(text_);
   progress_.set_hexpand(true);
   progress_.set_valign(Gtk::Align::CENTER);
-  MakeSmall(cancel_, "Give up the surfaces that are being made; the next change makes them again");
+  MakeSmall(cancel_,
+            core::Translate("Give up the surfaces that are being made; the next change makes them again"));
   cancel_.signal_clicked().connect([this] { signal_cancel_.emit(); });
   append(gui::MakeRow(8, {&progress_, &cancel_}));
   ShowJob({});

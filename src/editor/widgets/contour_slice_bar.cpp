@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "trocar/core/translate.h"
 #include "trocar/editor/organ_colour.h"
 
 namespace trocar::editor {
@@ -18,7 +19,7 @@ constexpr int kHeight = 40;
 ContourSliceBar::ContourSliceBar() {
   set_content_height(kHeight);
   set_hexpand(true);
-  set_tooltip_text("Slices; marks show where contours are. Click or drag to go there");
+  set_tooltip_text(core::Translate("Slices; marks show where contours are. Click or drag to go there"));
   set_draw_func(sigc::mem_fun(*this, &ContourSliceBar::Draw));
   const auto drag = Gtk::GestureDrag::create();
   drag->signal_drag_begin().connect([this](double x, double) { Go(x); });

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "trocar/core/translate.h"
 #include "trocar/editor/contour_read_outs.h"
 #include "trocar/editor/contour_run.h"
 #include "trocar/gui/labels.h"
@@ -15,16 +16,16 @@ constexpr int kWidth = 1280, kHeight = 800;
 struct ChooserText {
   const char *title, *accept, *name;  // an empty name: the file has to be there
 };
-constexpr ChooserText kChoosers[] = {{"Open contours", "Open", ""},
-                                     {"Save contours", "Save", "control_points.json"},
-                                     {"Folder for the patient", "Build", "patient"}};
+constexpr ChooserText kChoosers[] = {{core::Mark("Open contours"), core::Mark("Open"), ""},
+                                     {core::Mark("Save contours"), core::Mark("Save"), "control_points.json"},
+                                     {core::Mark("Folder for the patient"), core::Mark("Build"), "patient"}};
 
 }  // namespace
 
 ContourWindow::ContourWindow(const ContourOptions& options, const core::Stopwatch& since_start)
     : bar_(ContourCommands(), tips_,
            [this](const ContourCommand& command) { presenter_->Do(command.action); }) {
-  set_title("Trocar: contours");
+  set_title(core::Translate("Trocar: contours"));
   add_css_class("trocar");
   set_default_size(kWidth, kHeight);
   set_titlebar(bar_);
@@ -92,7 +93,7 @@ void ContourWindow::MakeStatus(Gtk::Box& status) {
   busy_.set_visible(false);
   stop_build_.set_visible(false);
   stop_build_.add_css_class("small");
-  tips_.Set(stop_build_, "Give up the patient that is being built; nothing is written");
+  tips_.Set(stop_build_, core::Translate("Give up the patient that is being built; nothing is written"));
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&series_text_), static_cast<Gtk::Widget*>(&place_),
                               static_cast<Gtk::Widget*>(&busy_), static_cast<Gtk::Widget*>(&stop_build_),
                               static_cast<Gtk::Widget*>(&state_)})
@@ -138,9 +139,9 @@ void ContourWindow::MakeRoutes() {
   canvas_.SignalStep().connect([this](int steps) { presenter_->StepSlice(steps); });
   canvas_.SignalWindow().connect([this] {
     const auto& window = canvas_.Options().window;
-    presenter_->ShowHint("Window " + std::to_string(static_cast<int>(window.width)) + ", level " +
-                         std::to_string(static_cast<int>(window.centre)) +
-                         "; edges are still sought in the suggested window");
+    presenter_->ShowHint(core::TranslateWith(
+        "Window {1}, level {2}; edges are still sought in the suggested window",
+        {std::to_string(static_cast<int>(window.width)), std::to_string(static_cast<int>(window.centre))}));
   });
   canvas_.SignalFailed().connect([this](const core::Error& error) { presenter_->Report(error); });
   slices_.SignalSlice().connect([this](int slice) { presenter_->GoToSlice(slice); });
@@ -193,8 +194,9 @@ void ContourWindow::UseEditor(ContourEditor* editor) {
 void ContourWindow::ChooseFile(FileQuestion what, std::function<void(std::filesystem::path)> act) {
   const ChooserText& text = kChoosers[static_cast<std::size_t>(what)];
   gui::FileRequest request;
-  request.title = text.title, request.accept = text.accept, request.new_name = text.name;
-  if (request.new_name.empty()) request.kinds = {{"Contours (JSON)", "*.json"}};
+  request.title = core::Translate(text.title), request.accept = core::Translate(text.accept);
+  request.new_name = text.name;
+  if (request.new_name.empty()) request.kinds = {{core::Translate("Contours (JSON)"), "*.json"}};
   file_dialog_.Ask(*this, request, std::move(act));
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::editor {
 namespace {
 
@@ -14,13 +16,13 @@ struct ViewButton {
   const char* tooltip;
 };
 constexpr ViewButton kButtons[] = {
-    {render::Viewpoint::kAnterior, "A", "Look from anterior (the patient's front)"},
-    {render::Viewpoint::kPosterior, "P", "Look from posterior (the back)"},
-    {render::Viewpoint::kRight, "R", "Look from the patient's right"},
-    {render::Viewpoint::kLeft, "L", "Look from the patient's left"},
-    {render::Viewpoint::kSuperior, "S", "Look from superior (the head)"},
-    {render::Viewpoint::kInferior, "I", "Look from inferior (the feet), as on a CT slice"},
-    {render::Viewpoint::kUmbilicus, "U", "Look from the umbilicus, as the laparoscope does"},
+    {render::Viewpoint::kAnterior, "A", core::Mark("Look from anterior (the patient's front)")},
+    {render::Viewpoint::kPosterior, "P", core::Mark("Look from posterior (the back)")},
+    {render::Viewpoint::kRight, "R", core::Mark("Look from the patient's right")},
+    {render::Viewpoint::kLeft, "L", core::Mark("Look from the patient's left")},
+    {render::Viewpoint::kSuperior, "S", core::Mark("Look from superior (the head)")},
+    {render::Viewpoint::kInferior, "I", core::Mark("Look from inferior (the feet), as on a CT slice")},
+    {render::Viewpoint::kUmbilicus, "U", core::Mark("Look from the umbilicus, as the laparoscope does")},
 };
 
 }  // namespace
@@ -51,16 +53,16 @@ void MeshView::MakeButtons() {
   buttons_.set_margin(8);
   buttons_.add_css_class("linked");
   const auto add = [this](const char* text, const char* tooltip, std::function<void()> act) {
-    auto* button = Gtk::make_managed<Gtk::Button>(text);
+    auto* button = Gtk::make_managed<Gtk::Button>(core::Translate(text));
     button->add_css_class("small");
-    button->set_tooltip_text(tooltip);
+    button->set_tooltip_text(core::Translate(tooltip));
     button->set_focus_on_click(false);
     button->signal_clicked().connect(std::move(act));
     buttons_.append(*button);
   };
   for (const ViewButton& each : kButtons)
     add(each.letter, each.tooltip, [this, viewpoint = each.viewpoint] { LookFrom(viewpoint); });
-  add("Fit", "Show everything again", [this] { LookFrom(first_viewpoint_); });
+  add(core::Mark("Fit"), core::Mark("Show everything again"), [this] { LookFrom(first_viewpoint_); });
   add_overlay(buttons_);
 }
 

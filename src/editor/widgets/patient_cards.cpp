@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/labels.h"
 
 namespace trocar::editor {
@@ -95,8 +96,8 @@ PaintCard::PaintCard(PatientPanelPresenter& presenter)
   append(regions_);
   erase_.set_group(paint_);
   paint_.set_active(true);
-  paint_.set_tooltip_text("Drag over the organ to add (Shift: erase)");
-  erase_.set_tooltip_text("Drag over the organ to erase (E switches)");
+  paint_.set_tooltip_text(core::Translate("Drag over the organ to add (Shift: erase)"));
+  erase_.set_tooltip_text(core::Translate("Drag over the organ to erase (E switches)"));
   erase_.signal_toggled().connect([this, &presenter] {
     if (!is_showing_) presenter.SetErasing(erase_.get_active());
   });
@@ -104,7 +105,7 @@ PaintCard::PaintCard(PatientPanelPresenter& presenter)
   row.add_css_class("linked");
   row.set_homogeneous(true);
   append(row);
-  append(*gui::MakeLabel("Radius of the brush [mm], Ctrl+wheel", "name"));
+  append(*gui::MakeLabel(core::Translate("Radius of the brush [mm], Ctrl+wheel"), "name"));
   append(brush_);
 }
 
@@ -133,7 +134,7 @@ TubeCard::TubeCard(PatientPanelPresenter& presenter)
   facts_.add_css_class("fine");
   append(facts_);
   AddEnds();
-  append(*gui::MakeLabel("Neighbours follow over [mm]", "name"));
+  append(*gui::MakeLabel(core::Translate("Neighbours follow over [mm]"), "name"));
   append(reach_);
   AddButtons(presenter);
 }
@@ -142,26 +143,26 @@ void TubeCard::AddEnds() {
   auto* ends = Gtk::make_managed<Gtk::Grid>();
   ends->set_column_spacing(8);
   ends->set_row_spacing(4);
-  ends->attach(*gui::MakeLabel("Begins at", "name"), 0, 0);
+  ends->attach(*gui::MakeLabel(core::Translate("Begins at"), "name"), 0, 0);
   ends->attach(from_, 1, 0);
-  ends->attach(*gui::MakeLabel("Ends at", "name"), 0, 1);
+  ends->attach(*gui::MakeLabel(core::Translate("Ends at"), "name"), 0, 1);
   ends->attach(to_, 1, 1);
   from_.set_hexpand(true);
   append(*ends);
 }
 
 void TubeCard::AddButtons(PatientPanelPresenter& presenter) {
-  const auto make = [](Gtk::Button& button, const char* tip, std::function<void()> act) {
+  const auto make = [](Gtk::Button& button, const std::string& tip, std::function<void()> act) {
     button.add_css_class("small");
     button.set_tooltip_text(tip);
     button.set_focus_on_click(false);
     button.signal_clicked().connect(std::move(act));
   };
-  make(insert_, "Halfway to the next point (Insert; or Shift+click on the duct)",
+  make(insert_, core::Translate("Halfway to the next point (Insert; or Shift+click on the duct)"),
        [&presenter] { presenter.InsertPoint(); });
-  make(delete_, "The chosen point (Delete)", [&presenter] { presenter.DeletePoint(); });
-  make(remove_, "The whole duct or artery", [&presenter] { presenter.RemoveTube(); });
-  make(add_, "Add a duct that the images did not show: placed by the landmarks",
+  make(delete_, core::Translate("The chosen point (Delete)"), [&presenter] { presenter.DeletePoint(); });
+  make(remove_, core::Translate("The whole duct or artery"), [&presenter] { presenter.RemoveTube(); });
+  make(add_, core::Translate("Add a duct that the images did not show: placed by the landmarks"),
        [this, &presenter] { presenter.AddMissingTube(missing_.get_selected()); });
   append(gui::MakeRow(4, {&insert_, &delete_, &remove_}));
   missing_.set_hexpand(true);
@@ -171,9 +172,9 @@ void TubeCard::AddButtons(PatientPanelPresenter& presenter) {
 Gtk::Widget& TubeCard::MakeRow(const PatientPanelPage::Tube& tube) {
   Gtk::Box& row = gui::MakeRow(8, {MakeSwatch(tube.colour), gui::MakeLabel(tube.name, "name")});
   if (tube.is_placed) {
-    auto* placed = gui::MakeLabel("placed", "fine");
+    auto* placed = gui::MakeLabel(core::Translate("placed"), "fine");
     placed->set_hexpand(false);
-    placed->set_tooltip_text("The images do not show it: it was placed by landmarks");
+    placed->set_tooltip_text(core::Translate("The images do not show it: it was placed by landmarks"));
     row.append(*placed);
   }
   return row;
@@ -211,7 +212,8 @@ LandmarkCard::LandmarkCard(PatientPanelPresenter& presenter) : gui::Card("Landma
     if (!is_showing_ && row != nullptr) presenter.ChooseLandmark(static_cast<std::size_t>(row->get_index()));
   });
   append(MakeScrolled(landmarks_));
-  append(*MakeSmallPrint("Drag a disc in the picture. Fundus and infundibulum stay on the gallbladder."));
+  append(*MakeSmallPrint(
+      core::Translate("Drag a disc in the picture. Fundus and infundibulum stay on the gallbladder.")));
 }
 
 void LandmarkCard::Show(const PatientPanelPage& page) {
@@ -244,7 +246,7 @@ LookCard::LookCard(PatientPanelPresenter& presenter) : gui::Card("Show", kCardSp
   };
   for (Gtk::CheckButton* each : {&colours_, &edges_, &strands_}) each->signal_toggled().connect(act);
   append(gui::MakeRow(10, {&colours_, &edges_, &strands_}));
-  append(*gui::MakeLabel("Opacity of the liver", "name"));
+  append(*gui::MakeLabel(core::Translate("Opacity of the liver"), "name"));
   opacity_.set_range(0, 1);
   opacity_.set_value(1);
   opacity_.signal_value_changed().connect(act);
@@ -283,7 +285,7 @@ void FindingsCard::Show(const FindingsPage& page) {
     auto* box = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
     box->append(*gui::MakeLabel(row.title, "hand"));
     box->append(*MakeSmallPrint(row.text));
-    box->set_tooltip_text("Click to look there");
+    box->set_tooltip_text(core::Translate("Click to look there"));
     findings_.append(*box);
     wheres_.push_back(row.where);
   }

@@ -3,6 +3,8 @@
 
 #include <iterator>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::editor {
 namespace {
 
@@ -12,10 +14,11 @@ struct ToolText {
   const char *name, *tip;
 };
 constexpr ToolText kTools[] = {
-    {"Look", "Turn and look (1)"},
-    {"Regions", "Paint where the liver is held and where the gallbladder grows on it (2)"},
-    {"Ducts", "Move, insert and delete points of ducts and arteries (3)"},
-    {"Landmarks", "Move landmarks (4)"}};
+    {core::Mark("Look"), core::Mark("Turn and look (1)")},
+    {core::Mark("Regions"),
+     core::Mark("Paint where the liver is held and where the gallbladder grows on it (2)")},
+    {core::Mark("Ducts"), core::Mark("Move, insert and delete points of ducts and arteries (3)")},
+    {core::Mark("Landmarks"), core::Mark("Move landmarks (4)")}};
 
 }  // namespace
 
@@ -37,8 +40,8 @@ void PatientEditorPanel::AddTools() {
   row.add_css_class("linked");
   row.set_homogeneous(true);
   for (std::size_t i = 0; i < std::size(kTools); ++i) {
-    auto* button = Gtk::make_managed<Gtk::ToggleButton>(kTools[i].name);
-    button->set_tooltip_text(kTools[i].tip);
+    auto* button = Gtk::make_managed<Gtk::ToggleButton>(core::Translate(kTools[i].name));
+    button->set_tooltip_text(core::Translate(kTools[i].tip));
     button->set_focus_on_click(false);
     if (!tools_.empty()) button->set_group(*tools_.front());
     button->signal_toggled().connect([this, button, i] {

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "trocar/core/translate.h"
 #include "trocar/editor/patient_editor_run.h"
 #include "trocar/gui/labels.h"
 
@@ -20,7 +21,7 @@ bool Has(Gdk::ModifierType state, Gdk::ModifierType wanted) {
 PatientEditorWindow::PatientEditorWindow(const PatientEditorOptions& options)
     : bar_(PatientCommands(), tips_,
            [this](const PatientCommand& command) { presenter_->Do(command.action); }) {
-  set_title("Trocar: patient");
+  set_title(core::Translate("Trocar: patient"));
   add_css_class("trocar");
   set_default_size(kWidth, kHeight);
   set_titlebar(bar_);
@@ -154,7 +155,7 @@ void PatientEditorWindow::Ask(gui::Question question) {
 void PatientEditorWindow::ChooseFolder(const std::string& name,
                                        std::function<void(std::filesystem::path)> act) {
   gui::FileRequest request;
-  request.title = "Save the patient's folder";
+  request.title = core::Translate("Save the patient's folder");
   request.new_name = name;
   file_dialog_.Ask(*this, request, std::move(act));
 }

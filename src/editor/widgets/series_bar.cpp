@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::editor {
 namespace {
 
-constexpr const char* kUnsaid = "not said";
+constexpr const char* kUnsaid = core::Mark("not said");
 
 }  // namespace
 
@@ -16,20 +18,19 @@ SeriesBar::SeriesBar() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   add_css_class("question");
   set_spacing(6);
   set_visible(false);
-  const auto add_text = [](Gtk::Box& box, const char* text, bool is_wrapped = false) {
+  const auto add_text = [](Gtk::Box& box, const std::string& text, bool is_wrapped = false) {
     auto* label = Gtk::make_managed<Gtk::Label>(text);
     label->set_xalign(0);
     label->set_wrap(is_wrapped);
     box.append(*label);
   };
-  add_text(
-      *this,
-      "The files do not say how large the patient is or how it lies. Say what you know of them; what they do "
-      "say can stay empty.",
-      true);
+  add_text(*this,
+           core::Translate("The files do not say how large the patient is or how it lies. Say what you know "
+                           "of them; what they do say can stay empty."),
+           true);
   auto* row = Gtk::make_managed<Gtk::Box>();
   row->set_spacing(8);
-  const auto add_entry = [&](const char* name, Gtk::Entry& entry, const char* tooltip) {
+  const auto add_entry = [&](const std::string& name, Gtk::Entry& entry, const std::string& tooltip) {
     add_text(*row, name);
     entry.set_width_chars(7);
     entry.set_max_width_chars(7);
@@ -38,18 +39,21 @@ SeriesBar::SeriesBar() : Gtk::Box(Gtk::Orientation::VERTICAL) {
     entry.signal_activate().connect([this] { Answer(); });
     row->append(entry);
   };
-  add_entry("Pixel", pixel_, "Side of a pixel [mm]; resolutions in pictures (dots an inch) are for printers");
-  add_entry("Slice distance", slice_, "From one slice number to the next [mm]");
-  std::vector<Glib::ustring> directions = {kUnsaid};
-  for (const char* direction : PatientDirections()) directions.emplace_back(direction);
-  const char* const names[] = {"Columns grow to", "rows to", "slice numbers to"};
+  add_entry(core::Translate("Pixel"), pixel_,
+            core::Translate("Side of a pixel [mm]; resolutions in pictures (dots an inch) are for printers"));
+  add_entry(core::Translate("Slice distance"), slice_,
+            core::Translate("From one slice number to the next [mm]"));
+  std::vector<Glib::ustring> directions = {core::Translate(kUnsaid)};
+  for (const char* direction : PatientDirections()) directions.emplace_back(core::Translate(direction));
+  const char* const names[] = {core::Mark("Columns grow to"), core::Mark("rows to"),
+                               core::Mark("slice numbers to")};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    add_text(*row, names[i]);
+    add_text(*row, core::Translate(names[i]));
     axes_[i].set_model(Gtk::StringList::create(directions));
-    axes_[i].set_tooltip_text("Side of the patient, not of the picture");
+    axes_[i].set_tooltip_text(core::Translate("Side of the patient, not of the picture"));
     row->append(axes_[i]);
   }
-  auto* open = Gtk::make_managed<Gtk::Button>("Open");
+  auto* open = Gtk::make_managed<Gtk::Button>(core::Translate("Open"));
   open->add_css_class("primary");
   open->signal_clicked().connect([this] { Answer(); });
   row->append(*open);
@@ -65,7 +69,9 @@ void SeriesBar::Ask(const images::ImageSeriesOptions& series) {
   Fill(MakeSeriesForm(series));
   const bool is_again = series.pixel_mm || series.slice_mm || series.axes;
   complaint_.set_text(
-      is_again ? "What is left empty is not in the files either, or what is given contradicts them." : "");
+      is_again ? core::Translate(
+                     "What is left empty is not in the files either, or what is given contradicts them.")
+               : "");
   complaint_.set_visible(is_again);
   set_visible(true);
   pixel_.grab_focus();
@@ -89,7 +95,7 @@ void SeriesBar::Answer() {
     if (chosen >= 1 && chosen <= directions.size()) form.axes[i] = directions[chosen - 1];
   }
   const auto read = ReadSeriesForm(form, series_);
-  complaint_.set_text(read.ok() ? "" : read.error().message);
+  complaint_.set_text(read.ok() ? "" : core::TranslateComposed(read.error().message));
   complaint_.set_visible(!read.ok());
   if (!read.ok()) return;
   set_visible(false);

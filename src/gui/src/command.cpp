@@ -10,13 +10,22 @@ struct NamedKey {
   std::uint32_t key;
   const char* name;
 };
-constexpr NamedKey kNamedKeys[] = {
-    {' ', "Space"},          {',', "Comma"},           {key::kBackSpace, "Backspace"},
-    {key::kTab, "Tab"},      {key::kReturn, "Enter"},  {key::kEscape, "Esc"},
-    {key::kHome, "Home"},    {key::kLeft, "Left"},     {key::kUp, "Up"},
-    {key::kRight, "Right"},  {key::kDown, "Down"},     {key::kPageUp, "Page Up"},
-    {key::kEnd, "End"},      {key::kInsert, "Insert"}, {key::kPageDown, "Page Down"},
-    {key::kDelete, "Delete"}};
+constexpr NamedKey kNamedKeys[] = {{' ', core::Mark("Space")},
+                                   {',', core::Mark("Comma")},
+                                   {key::kBackSpace, core::Mark("Backspace")},
+                                   {key::kTab, core::Mark("Tab")},
+                                   {key::kReturn, core::Mark("Enter")},
+                                   {key::kEscape, core::Mark("Esc")},
+                                   {key::kHome, core::Mark("Home")},
+                                   {key::kLeft, core::Mark("Left")},
+                                   {key::kUp, core::Mark("Up")},
+                                   {key::kRight, core::Mark("Right")},
+                                   {key::kDown, core::Mark("Down")},
+                                   {key::kPageUp, core::Mark("Page Up")},
+                                   {key::kEnd, core::Mark("End")},
+                                   {key::kInsert, core::Mark("Insert")},
+                                   {key::kPageDown, core::Mark("Page Down")},
+                                   {key::kDelete, core::Mark("Delete")}};
 constexpr std::uint32_t kF12 = 0xffc9;
 
 constexpr const char* kBetweenKeys = "   ";

@@ -3,15 +3,19 @@
 
 #include <utility>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::gui {
 
 void FileDialog::Ask(Gtk::Window& parent, const FileRequest& request,
                      std::function<void(std::filesystem::path)> act) {
   const bool is_new = !request.new_name.empty();
-  const std::string accept = !request.accept.empty() ? request.accept : is_new ? "Save" : "Open";
+  const std::string accept = !request.accept.empty() ? request.accept
+                             : is_new                ? core::Translate("Save")
+                                                     : core::Translate("Open");
   dialog_ = Gtk::FileChooserNative::create(
       request.title, parent, is_new ? Gtk::FileChooser::Action::SAVE : Gtk::FileChooser::Action::OPEN, accept,
-      "Cancel");
+      core::Translate("Cancel"));
   for (const FileRequest::Kind& kind : request.kinds) {
     const auto filter = Gtk::FileFilter::create();
     filter->set_name(kind.name);

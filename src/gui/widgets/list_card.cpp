@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/gui/list_card.h"
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/card.h"
 
 namespace trocar::gui {
@@ -80,7 +81,7 @@ void ListCard::AddPictureRow(const std::filesystem::path& picture, const std::st
 
 void ListCard::AddFoot(std::initializer_list<Gtk::Widget*> widgets) {
   Gtk::Box& foot = MakeRow(8, widgets);
-  auto* close = Gtk::make_managed<Gtk::Button>("Close");
+  auto* close = Gtk::make_managed<Gtk::Button>(core::Translate("Close"));
   close->set_hexpand(true);
   close->set_halign(Gtk::Align::END);
   close->signal_clicked().connect([this] { signal_closed_.emit(); });

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::gui {
 namespace {
 
@@ -52,13 +54,14 @@ void MessageBars::Remove(Gtk::Widget& bar) {
 }
 
 void MessageBars::ShowError(const core::Error& error) {
+  const std::string message = core::TranslateComposed(error.message);
   for (Shown& shown : shown_) {
-    if (shown.text != error.message) continue;
-    shown.count->set_text(std::to_string(++shown.times) + " times");
+    if (shown.text != message) continue;
+    shown.count->set_text(core::TranslateWith("{1} times", {std::to_string(++shown.times)}));
     return;
   }
-  Gtk::Box& bar = AddBar("error", std::string(core::CodeText(error.code)), error.message);
-  auto* close = Gtk::make_managed<Gtk::Button>("Read");
+  Gtk::Box& bar = AddBar("error", std::string(core::CodeText(error.code)), message);
+  auto* close = Gtk::make_managed<Gtk::Button>(core::Translate("Read"));
   close->add_css_class("small");
   close->set_valign(Gtk::Align::CENTER);
   close->signal_clicked().connect(
@@ -68,7 +71,7 @@ void MessageBars::ShowError(const core::Error& error) {
 
 void MessageBars::ShowNotice(const std::string& text) {
   Gtk::Box& bar = AddBar("notice", "", text);
-  auto* close = Gtk::make_managed<Gtk::Button>("Read");
+  auto* close = Gtk::make_managed<Gtk::Button>(core::Translate("Read"));
   close->add_css_class("small");
   close->set_valign(Gtk::Align::CENTER);
   close->signal_clicked().connect(
@@ -83,7 +86,7 @@ void MessageBars::Ask(Question question) {
   const std::string between = question.detail.empty() ? "" : " ";
   Gtk::Box& bar = AddBar("question", "", question.text + between + question.detail);
   for (const Answer& answer : question.answers) {
-    auto* button = Gtk::make_managed<Gtk::Button>(answer.label);
+    auto* button = Gtk::make_managed<Gtk::Button>(core::Translate(answer.label));
     button->set_valign(Gtk::Align::CENTER);
     if (answer.is_suggested) button->add_css_class("primary");
     // the bar goes after the click is over: it holds the button

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "trocar/core/log.h"
+#include "trocar/core/translate.h"
 #include "trocar/presenter/patient_list.h"
 #include "trocar/presenter/simulator_presenter.h"
 
@@ -31,21 +32,22 @@ void SimulatorPresenter::ChoosePatient(const std::filesystem::path& folder) {
   settings_.patient = folder.string();
   page_.home.problem.reset();
   KeepSettings();
-  Announce("Operations are on " + ShortPatientName(folder) + " from now on.");
+  Announce(core::TranslateWith("Operations are on {1} from now on.", {ShortPatientName(folder)}));
 }
 
 // keys
 
 void SimulatorPresenter::SayPointerIsFree() {
-  Announce(
-      "This display lets no program hold the pointer: where it leaves the picture, the hand stands still.");
+  Announce(core::Translate(
+      "This display lets no program hold the pointer: where it leaves the picture, the hand stands still."));
 }
 
 /// Those of the settings; what cannot be used is said and left out.
 void SimulatorPresenter::UseBindings() {
   bindings_.SetLayout(settings_.is_left_handed ? KeyLayout::kLeftHanded : KeyLayout::kRightHanded);
   for (const std::string& refused : bindings_.Use({settings_.keys, settings_.buttons})) {
-    const std::string text = "The window's settings name " + refused + ", which cannot be; it is left out";
+    const std::string text =
+        core::TranslateWith("The window's settings name {1}, which cannot be; it is left out", {refused});
     core::Log(core::LogLevel::kWarning, text);
     page_.event = text;
     page_.is_event_warning = true;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::presenter {
 namespace {
 
@@ -15,8 +17,10 @@ using device::Pose;
 constexpr std::size_t kMostPoses = 400;
 constexpr double kDegree = 57.29577951308232;
 
-const char* HandName(device::Channel hand) {
-  return hand == device::kLeftHand ? "left" : hand == device::kRightHand ? "right" : "laparoscope's";
+std::string InstrumentName(device::Channel hand) {
+  return hand == device::kLeftHand    ? core::Translate("the left instrument")
+         : hand == device::kRightHand ? core::Translate("the right instrument")
+                                      : core::Translate("the laparoscope");
 }
 
 std::vector<Pose> Thin(const std::vector<Pose>& poses) {
@@ -41,16 +45,20 @@ std::string_view StepName(CalibrationStep step) noexcept {
 }
 
 std::string StepHint(CalibrationStep step, device::Channel hand) {
-  const std::string instrument = std::string("the ") + HandName(hand) + " instrument";
+  const std::string instrument = InstrumentName(hand);
   switch (step) {
     case CalibrationStep::kTip:
-      return "Put the tip of " + instrument +
-             " into a small hole and keep it there; swing the handle round by more than 30 degrees.";
+      return core::TranslateWith(
+          "Put the tip of {1} into a small hole and keep it there; swing the handle round by more than 30 "
+          "degrees.",
+          {instrument});
     case CalibrationStep::kTrocar:
-      return "Leave " + instrument +
-             " in its trocar; swing it in all directions by more than 30 degrees, in and out.";
+      return core::TranslateWith(
+          "Leave {1} in its trocar; swing it in all directions by more than 30 degrees, in and out.",
+          {instrument});
     case CalibrationStep::kJaw:
-      return "First hold the jaws of " + instrument + " closed; from the middle on fully open.";
+      return core::TranslateWith("First hold the jaws of {1} closed; from the middle on fully open.",
+                                 {instrument});
   }
   return "";
 }
@@ -107,7 +115,8 @@ double DeviceBench::Progress() const {
 
 std::string DeviceBench::Hint() const {
   if (step_ == CalibrationStep::kJaw && IsMeasuring())
-    return Progress() < 0.5 ? "Hold the jaws closed." : "Now hold the jaws fully open.";
+    return Progress() < 0.5 ? core::Translate("Hold the jaws closed.")
+                            : core::Translate("Now hold the jaws fully open.");
   return StepHint(step_, hand_);
 }
 
@@ -148,8 +157,10 @@ core::Status DeviceBench::KeepTracker(bool is_tip) {
   }
   store.trackers[spec->kind] = entry;
   if (core::Status saved = device::SaveDeviceStore(store_path_, store); !saved) return saved;
-  result_ = {true, quality.residual,
-             std::string(is_tip ? "Tip" : "Trocar") + " kept, " + FormatQuality(quality, poses.size()) + "."};
+  result_ = {
+      true, quality.residual,
+      core::TranslateWith("{1} kept, {2}.", {is_tip ? core::Translate("Tip") : core::Translate("Trocar"),
+                                             FormatQuality(quality, poses.size())})};
   return {};
 }
 
@@ -162,8 +173,8 @@ core::Status DeviceBench::KeepJaw() {
   kept = *fit;
   if (core::Status saved = device::SaveDeviceStore(store_path_, store); !saved) return saved;
   result_ = {true, 0.0,
-             "Jaw kept: closed " + std::to_string(kept.closed) + ", open " + std::to_string(kept.open) +
-                 " of 0 to 1023."};
+             core::TranslateWith("Jaw kept: closed {1}, open {2} of 0 to 1023.",
+                                 {std::to_string(kept.closed), std::to_string(kept.open)})};
   return {};
 }
 
@@ -172,13 +183,13 @@ void DeviceBench::Finish() {
   const core::Status done =
       step_ == CalibrationStep::kJaw ? KeepJaw() : KeepTracker(step_ == CalibrationStep::kTip);
   if (!done) {
-    result_ = {false, 0.0, done.error().Text()};
+    result_ = {false, 0.0, core::ShownText(done.error())};
     return;
   }
   // what was measured holds from now on
   const Result kept = result_;
   if (const core::Status opened = Open(std::string(spec_)); !opened)
-    result_.text += " " + opened.error().Text();
+    result_.text += " " + core::ShownText(opened.error());
   result_ = kept;
 }
 

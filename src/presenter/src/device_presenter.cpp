@@ -7,6 +7,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/core/log.h"
+#include "trocar/core/translate.h"
 #include "trocar/device/device_spec.h"
 
 namespace trocar::presenter {
@@ -45,12 +46,13 @@ void DevicePresenter::ChooseFound(std::size_t place) {
 
 void DevicePresenter::Test() {
   said_.clear();
-  if (const core::Status opened = bench_.Open(state_.spec); !opened) Say(opened.error().Text(), true);
+  if (const core::Status opened = bench_.Open(state_.spec); !opened)
+    Say(core::ShownText(opened.error()), true);
 }
 
 void DevicePresenter::Stop() {
   bench_.Close();
-  Say("Closed.");
+  Say(core::Translate("Closed."));
 }
 
 // calibration
@@ -58,11 +60,12 @@ void DevicePresenter::Stop() {
 void DevicePresenter::Begin(CalibrationStep step) {
   state_.result.clear();
   const double seconds = options_.run.IsAttended() ? kMeasureSeconds : kUnattendedSeconds;
-  if (const core::Status begun = bench_.Begin(step, hand_, seconds); !begun) Say(begun.error().Text(), true);
+  if (const core::Status begun = bench_.Begin(step, hand_, seconds); !begun)
+    Say(core::ShownText(begun.error()), true);
 }
 
 void DevicePresenter::SwapHands() {
-  Say(bench_.SwapHands(), "Left and right are exchanged.");
+  Say(bench_.SwapHands(), core::Translate("Left and right are exchanged."));
 }
 
 void DevicePresenter::TakeMeasurement(bool was_measuring) {
@@ -82,18 +85,20 @@ void DevicePresenter::Use() {
   bench_.Close();
   const device::DeviceStore store = device::LoadDeviceStore(store_).store;
   auto driver = device::MakeDriver(state_.spec, store, device::SystemClock());
-  if (!driver) return Say(driver.error().Text(), true);
+  if (!driver) return Say(core::ShownText(driver.error()), true);
   control_->UseDevice(std::move(*driver), device::FindButtons(state_.spec, store));
-  Say("The device holds the instruments.");
+  Say(core::Translate("The device holds the instruments."));
 }
 
 void DevicePresenter::UseHaptics(const std::string& name) {
   TROCAR_ASSERT(control_ != nullptr);
   if (control_->Haptics() != nullptr)
-    return Say("A haptic device is in use already; to change it, start the window with --haptics.", true);
+    return Say(
+        core::Translate("A haptic device is in use already; to change it, start the window with --haptics."),
+        true);
   const device::DeviceStore store = device::LoadDeviceStore(store_).store;
   Say(control_->UseHaptics(name, store.Buttons("haptics")),
-      "Now check the pose, hold the safety switch, and ask for force.");
+      core::Translate("Now check the pose, hold the safety switch, and ask for force."));
 }
 
 void DevicePresenter::CheckPose() {
@@ -159,7 +164,7 @@ void DevicePresenter::Say(const std::string& text, bool is_warning) {
 }
 
 void DevicePresenter::Say(const core::Status& status, const std::string& success) {
-  status.ok() ? Say(success) : Say(status.error().Text(), true);
+  status.ok() ? Say(success) : Say(core::ShownText(status.error()), true);
 }
 
 }  // namespace trocar::presenter

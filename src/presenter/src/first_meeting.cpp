@@ -7,27 +7,18 @@
 #include <utility>
 
 #include "trocar/core/log.h"
+#include "trocar/core/translate.h"
 #include "trocar/presenter/guides.h"
 #include "trocar/presenter/patient_list.h"
 #include "trocar/presenter/read_outs.h"
 #include "trocar/presenter/simulator_presenter.h"
+#include "trocar/report/attempt_report.h"
 
 namespace trocar::presenter {
 namespace {
 
 /// A shorter attempt is not worth a question [s].
 constexpr double kWorthAsking = 5.0;
-
-/// "CalotTriangleDissection": "Calot triangle dissection".
-std::string SplitWords(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    const bool is_capital = c >= 'A' && c <= 'Z';
-    if (is_capital && !text.empty()) text += ' ';
-    text += is_capital && !text.empty() ? static_cast<char>(c - 'A' + 'a') : c;
-  }
-  return text;
-}
 
 std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapshot& snapshot,
                              const OperationEnd& end) {
@@ -40,7 +31,7 @@ std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapsh
   if (!scene.operation) return text;
   if (std::isfinite(end.TimeLimit()))
     text = FormatTime(end.Elapsed(snapshot)) + " / " + FormatTime(end.TimeLimit());
-  text += kBetween + SplitWords(training::NameOf(snapshot.operation.phase));
+  text += kBetween + report::PhaseName(std::string(training::NameOf(snapshot.operation.phase)));
   for (const scene::Hand hand : {scene::kLeft, scene::kRight})
     text += kBetween + ToolLabel(scene, snapshot, hand);
   return text;
@@ -139,7 +130,8 @@ void SimulatorPresenter::KeepSettings() {
   const core::Status saved = SaveWindowSettings(options_.settings, settings_);
   if (saved) return;
   core::Log(core::LogLevel::kWarning, saved.error().Text());
-  Announce("The window's settings cannot be kept: " + saved.error().Text(), true);
+  Announce(core::TranslateWith("The window's settings cannot be kept: {1}", {core::ShownText(saved.error())}),
+           true);
   options_.settings.clear();  // said once
 }
 
@@ -157,10 +149,10 @@ void SimulatorPresenter::ToggleLeftHanded() {
   settings_.is_left_handed = !settings_.is_left_handed;
   bindings_.SetLayout(settings_.is_left_handed ? KeyLayout::kLeftHanded : KeyLayout::kRightHanded);
   if (control_ != nullptr) control_->Device().ReleaseAll();
-  Announce(
-      settings_.is_left_handed
-          ? bindings_.Fill("Left-handed: mouse buttons and letters have changed sides. {help} shows them.")
-          : "Right-handed.");
+  Announce(settings_.is_left_handed
+               ? bindings_.Fill(core::Translate(
+                     "Left-handed: mouse buttons and letters have changed sides. {help} shows them."))
+               : core::Translate("Right-handed."));
   KeepSettings();
 }
 
@@ -169,7 +161,8 @@ void SimulatorPresenter::ToggleLeftHanded() {
 void SimulatorPresenter::ToggleTutorial() {
   if (tutorial_.IsOn()) {
     tutorial_.Leave();
-    Announce("The tutorial goes on where you left it. What you do now is no attempt before a task is begun.");
+    Announce(core::Translate(
+        "The tutorial goes on where you left it. What you do now is no attempt before a task is begun."));
     return;
   }
   tutorial_.Begin(settings_.tutorial_step >= kTutorialSteps ? 0 : settings_.tutorial_step);
@@ -244,15 +237,16 @@ void SimulatorPresenter::RefreshFirstMeeting() {
   page_.progress = control_ == nullptr || page_.failure
                        ? ""
                        : DescribeProgress(control_->GetScene(), control_->Now(), operation_end_);
-  page_.question = asked_ == Action::kQuit
-                       ? "Leave Trocar? The attempt ends here; what is recorded of it is kept."
-                   : asked_ == Action::kToggleDemonstration
-                       ? "Play the demonstration? It begins anew, and your attempt ends here."
-                       : "";
+  page_.question =
+      asked_ == Action::kQuit
+          ? core::Translate("Leave Trocar? The attempt ends here; what is recorded of it is kept.")
+      : asked_ == Action::kToggleDemonstration
+          ? core::Translate("Play the demonstration? It begins anew, and your attempt ends here.")
+          : "";
   if (!page_.is_home_open) return;
   page_.home = MakeHomePage(settings_, page_.home.who, page_.home.problem);
   page_.home.patient = ShortPatientName(options_.operation.patient);
-  if (control_ != nullptr) page_.home.last = "Back to the operation that is open";
+  if (control_ != nullptr) page_.home.last = core::Translate("Back to the operation that is open");
   page_.hint.clear();
   page_.badge.clear();
 }

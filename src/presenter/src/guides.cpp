@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/core/translate.h"
 #include "trocar/presenter/read_outs.h"
 
 namespace trocar::presenter {
@@ -205,14 +206,15 @@ std::string DescribeJaws(const scene::Scene& scene, const simulation::Snapshot& 
   if (now.object >= 0) {
     std::string name = scene.objects[static_cast<std::size_t>(now.object)].name;
     std::replace(name.begin(), name.end(), '_', ' ');
-    return "holds " + name;
+    return core::TranslateWith("holds {1}", {core::TranslateComposed(name)});
   }
-  if (now.is_grasping) return "holds the " + OrganLabel(scene.patient, now.organ);
+  if (now.is_grasping) return core::TranslateWith("holds the {1}", {OrganLabel(scene.patient, now.organ)});
   const scene::InstrumentSetup& setup = scene.instruments[hand];
   const std::size_t place = snapshot.operation.tools[hand];
   const instrument::Tool& tool = place < setup.tray.size() ? setup.tray[place] : setup.tool;
   if (!(tool.max_jaw > 0)) return "";
-  return now.joints.jaw > kClosedJaw ? "open" : "closed";
+  return now.joints.jaw > kClosedJaw ? core::TranslateIn("jaws", "open")
+                                     : core::TranslateIn("jaws", "closed");
 }
 
 }  // namespace trocar::presenter

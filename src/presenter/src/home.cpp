@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "trocar/core/translate.h"
 #include "trocar/presenter/tutorial.h"
+#include "trocar/scene/scene.h"
 
 namespace trocar::presenter {
 namespace {
@@ -20,6 +22,13 @@ constexpr HomeEntry kEntries[] = {
     {HomeChoice::kKeys, "Keys and buttons", "What each of them does, and how to change it"},
 };
 
+/// "peg transfer" of "peg_transfer"
+std::string InWords(std::string key) {
+  std::replace(key.begin(), key.end(), '_', ' ');
+  std::replace(key.begin(), key.end(), '-', ' ');
+  return key;
+}
+
 }  // namespace
 
 std::span<const HomeEntry> HomeEntries() noexcept {
@@ -32,17 +41,16 @@ HomePage MakeHomePage(const WindowSettings& settings, const std::string& who,
   page.who = who;
   page.problem = problem;
   if (!settings.last_task.empty()) {
-    page.last = settings.last_task;
-    if (!settings.last_part.empty()) page.last += ", " + settings.last_part;
-    std::replace(page.last.begin(), page.last.end(), '_', ' ');
-    std::replace(page.last.begin(), page.last.end(), '-', ' ');
-    if (settings.last_level != "normal") page.last += ", " + settings.last_level;
+    page.last = core::Translate(InWords(settings.last_task));
+    if (!settings.last_part.empty()) page.last += ", " + core::Translate(InWords(settings.last_part));
+    if (settings.last_level != scene::kNormalLevel) page.last += ", " + core::Translate(settings.last_level);
   }
   const int step = settings.tutorial_step;
-  page.tutorial = step == 0 ? "Start"
+  page.tutorial = step == 0 ? core::Translate("Start")
                   : step >= kTutorialSteps
-                      ? "Again"
-                      : "Go on: " + std::to_string(step + 1) + " of " + std::to_string(kTutorialSteps);
+                      ? core::Translate("Again")
+                      : core::TranslateWith("Go on: {1} of {2}",
+                                            {std::to_string(step + 1), std::to_string(kTutorialSteps)});
   page.is_tutorial_suggested = settings.last_task.empty() && step < kTutorialSteps;
   return page;
 }

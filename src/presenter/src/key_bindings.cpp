@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::presenter {
 namespace {
 
@@ -86,10 +88,11 @@ std::optional<std::uint32_t> FindNamedKey(std::string_view name) {
 
 std::string DescribeCommand(const SimulatorCommand& command) {
   const std::string meaning = command.help.meaning;
-  if (!meaning.empty()) return meaning;
+  if (!meaning.empty()) return core::Translate(meaning);
   std::string id = command.id;
   std::replace(id.begin(), id.end(), '-', ' ');
-  return command.action.action == Action::kMove ? "tip or spin: " + id : id;
+  id = core::Translate(id);
+  return command.action.action == Action::kMove ? core::TranslateWith("tip or spin: {1}", {id}) : id;
 }
 
 bool KeyBindings::CanChange(const SimulatorCommand& command) noexcept {
@@ -104,7 +107,8 @@ std::vector<std::string> KeyBindings::Use(const Own& own) {
   std::vector<std::string> refused;
   for (const auto& [id, name] : own.keys) {
     const auto found = FindNamedKey(name);
-    if (!found || !SetKey(id, *found).ok()) refused.push_back("the key \"" + name + "\" of \"" + id + "\"");
+    if (!found || !SetKey(id, *found).ok())
+      refused.push_back(core::TranslateWith("the key \"{1}\" of \"{2}\"", {name, id}));
   }
   for (const auto& [name, button_name] : own.buttons) {
     const auto act = FindAct(name);
@@ -112,7 +116,7 @@ std::vector<std::string> KeyBindings::Use(const Own& own) {
     if (act && button) {
       own_buttons_[*act] = *button;
     } else {
-      refused.push_back("the button \"" + button_name + "\" of \"" + name + "\"");
+      refused.push_back(core::TranslateWith("the button \"{1}\" of \"{2}\"", {button_name, name}));
     }
   }
   // three buttons for three acts, or none of it
@@ -120,7 +124,7 @@ std::vector<std::string> KeyBindings::Use(const Own& own) {
   for (const ButtonAct act : kButtonActs) ++uses[static_cast<std::size_t>(ButtonOf(act))];
   if (std::any_of(uses.begin(), uses.end(), [](int count) { return count > 1; })) {
     own_buttons_.clear();
-    refused.emplace_back("mouse buttons of which one has two acts");
+    refused.emplace_back(core::Translate("mouse buttons of which one has two acts"));
   }
   return refused;
 }
@@ -207,7 +211,8 @@ std::string KeyBindings::ConflictOf(const SimulatorCommand& command) const {
   }
   if (others.empty()) return {};
   const bool works = Find(key, false) == command.action;
-  return (works ? "The same key as: " : "Without a key now, which does: ") + others;
+  return (works ? core::Translate("The same key as: ") : core::Translate("Without a key now, which does: ")) +
+         others;
 }
 
 std::string KeyBindings::Fill(std::string_view text) const {
@@ -221,7 +226,7 @@ std::string KeyBindings::Fill(std::string_view text) const {
     constexpr std::string_view kButton = "button:";
     if (name.starts_with(kButton)) {
       const auto act = FindAct(name.substr(kButton.size()));
-      filled += act ? NameOf(ButtonOf(*act)) : name;
+      filled += act ? core::TranslateIn("mouse button", NameOf(ButtonOf(*act))) : std::string(name);
     } else if (const SimulatorCommand* command = FindById(name)) {
       filled += gui::KeyText(StrokesOf(*command)[0]);
     } else {
@@ -236,8 +241,9 @@ std::string KeyBindings::Fill(std::string_view text) const {
 std::vector<gui::KeyHelp> KeyBindings::Help() const {
   constexpr const char* kGroups[] = {"Instruments", "Operation", "Laparoscope", "Simulation", "View"};
   std::vector<SimulatorCommand> commands(SimulatorCommands().begin(), SimulatorCommands().end());
-  const std::string closing = Fill("{button:close} button"), opening = Fill("{button:open} button"),
-                    looking = Fill("{button:look} button");
+  const std::string closing = Fill(core::Translate("{button:close} button")),
+                    opening = Fill(core::Translate("{button:open} button")),
+                    looking = Fill(core::Translate("{button:look} button"));
   const auto capital = [](std::string text) {
     if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
     return text;

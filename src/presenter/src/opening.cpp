@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "trocar/core/log.h"
+#include "trocar/core/translate.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/presenter/scene_choice.h"
 #include "trocar/presenter/simulator_presenter.h"
@@ -55,12 +56,13 @@ void SimulatorPresenter::FinishLoading() {
                        start_ ? start_->until : assessment::Milestone::kCompleted, control_->Now());
   KeepLast();
   if (start_) {
-    page_.title = "Trocar: " + start_->title;
+    page_.title = "Trocar: " + core::TranslateComposed(start_->title);
     if (!start_->state.empty()) GoOn();
     // a person begins when the hands are ready
-    return Announce(start_->title + ". Start when your hands are ready.");
+    return Announce(core::TranslateWith("{1}. Start when your hands are ready.",
+                                        {core::TranslateComposed(start_->title)}));
   }
-  Announce("Ready.");
+  Announce(core::Translate("Ready."));
   if (options_.is_demonstration || unattended_.IsOn()) SetDemonstration(true);
   SetPaused(false);
 }
@@ -74,7 +76,7 @@ void SimulatorPresenter::GiveUpOpening() {
   tutorial_.Leave();
   page_.home.problem.reset();
   OpenHome();
-  Announce("Given up before it began.");
+  Announce(core::Translate("Given up before it began."));
 }
 
 /// Shows a simulation, paused. \return false where something failed
@@ -105,7 +107,7 @@ bool SimulatorPresenter::Use(simulation::Simulation simulation, record::Descript
               "OpenIGTLink: viewers may connect to localhost:" + std::to_string(control_->ServedPort()));
   }
   screen_->UseControl(control_.get());
-  page_.title = "Trocar: " + control_->GetScene().name;
+  page_.title = "Trocar: " + core::Translate(control_->GetScene().name);
   return true;
 }
 
@@ -143,15 +145,16 @@ void SimulatorPresenter::TakeOver(Branch branch) {
   if (!Use(std::move(branch.simulation), std::move(description))) return;
   control_->GoOnFrom(branch.last);
   seen_events_ = events;
-  char moment[48];
-  std::snprintf(moment, sizeof moment, " at %.1f s",
-                static_cast<double>(from.branched_tick) * from.tick_seconds);
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.1f", static_cast<double>(from.branched_tick) * from.tick_seconds);
+  const std::string moment = core::LocalNumber(seconds);
   if (branch.is_experts) {
     control_->LetExpertGoOn();
     SetPaused(false);
-    Announce("The expert goes on from " + from.branched_from + moment + ".");
+    Announce(core::TranslateWith("The expert goes on from {1} at {2} s.", {from.branched_from, moment}));
   } else {
-    Announce("Taken over from " + from.branched_from + moment + ". Start when your hands are ready.");
+    Announce(core::TranslateWith("Taken over from {1} at {2} s. Start when your hands are ready.",
+                                 {from.branched_from, moment}));
   }
   screen_->FocusPicture();
   Refresh();

@@ -7,6 +7,7 @@
 
 #include "trocar/assessment/course.h"
 #include "trocar/assessment/preparation.h"
+#include "trocar/core/translate.h"
 #include "trocar/presenter/read_outs.h"
 
 namespace trocar::presenter {
@@ -43,8 +44,9 @@ core::Result<centre::Start> PreparePart(const Options& options, const PartProgre
   settings.threads =
       options.threads > 0 ? options.threads : ChooseThreads(std::thread::hardware_concurrency());
   settings.progress = [&progress](double seconds, const std::string& doing) {
-    return !progress || progress("The expert brings the operation to where this part begins: " +
-                                 FormatTime(seconds) + ", " + doing);
+    return !progress ||
+           progress(core::TranslateWith("The expert brings the operation to where this part begins: {1}, {2}",
+                                        {FormatTime(seconds), core::TranslateComposed(doing)}));
   };
   const auto prepared = assessment::PrepareStep(*step, settings);
   if (!prepared.ok()) return prepared.error();
@@ -94,16 +96,16 @@ OperationEnd::Reason OperationEnd::See(const simulation::Snapshot& now) noexcept
   return Elapsed(now) >= time_limit_ ? Reason::kTimeOver : Reason::kNone;
 }
 
-std::string_view Describe(OperationEnd::Reason reason) noexcept {
+std::string Describe(OperationEnd::Reason reason) {
   switch (reason) {
     case OperationEnd::Reason::kNone:
       return "";
     case OperationEnd::Reason::kCompleted:
-      return "The operation is completed. Reset begins another.";
+      return core::Translate("The operation is completed. Reset begins another.");
     case OperationEnd::Reason::kPartDone:
-      return "This part is done. Reset begins it again.";
+      return core::Translate("This part is done. Reset begins it again.");
     case OperationEnd::Reason::kTimeOver:
-      return "The time is over. Reset begins another attempt.";
+      return core::Translate("The time is over. Reset begins another attempt.");
   }
   return "";
 }

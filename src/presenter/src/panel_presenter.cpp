@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::presenter {
 namespace {
 
@@ -15,14 +17,12 @@ ScenePage MakeScenePage(const scene::Scene& scene) {
   ScenePage page;
   page.has_task = scene.task.has_value();
   if (page.has_task) {
-    page.task_name = scene.task->name;
-    page.task_about = scene.task->about;
+    page.task_name = core::Translate(scene.task->name);
+    page.task_about = core::Translate(scene.task->about);
   }
   for (std::size_t hand = 0; hand < page.trays.size(); ++hand) {
     for (const instrument::Tool& tool : scene.instruments[hand].tray) {
-      std::string name = tool.name;
-      std::replace(name.begin(), name.end(), '_', ' ');
-      page.trays[hand].push_back(name);
+      page.trays[hand].push_back(ToolName(tool));
     }
     page.has_tools = page.has_tools || page.trays[hand].size() > 1;
   }
@@ -31,11 +31,14 @@ ScenePage MakeScenePage(const scene::Scene& scene) {
   page.patient_name = patient.name;
   page.patient_source = patient.provenance;
   for (std::size_t organ = 0; organ < patient.organs.size(); ++organ) {
-    page.patient_organs += (organ == 0 ? "" : "\n") + OrganLabel(patient, static_cast<std::int32_t>(organ)) +
-                           ": " + FormatCount(patient.organs[organ].mesh.triangles.size()) + " triangles";
+    page.patient_organs +=
+        (organ == 0 ? "" : "\n") +
+        core::TranslateWith("{1}: {2} triangles", {OrganLabel(patient, static_cast<std::int32_t>(organ)),
+                                                   FormatCount(patient.organs[organ].mesh.triangles.size())});
   }
   if (!patient.tubes.empty())
-    page.patient_organs += "\n" + std::to_string(patient.tubes.size()) + " ducts and arteries";
+    page.patient_organs +=
+        "\n" + core::TranslateWith("{1} ducts and arteries", {std::to_string(patient.tubes.size())});
   return page;
 }
 
@@ -51,8 +54,8 @@ HandPages MakeHandPages(const scene::Scene& scene, const simulation::Snapshot& s
     page.level = JudgeForce(page.force_n, page.thresholds);
     page.contact = DescribeContact(instrument, scene.patient);
     // said in words, too: colours are not seen by everybody
-    if (page.level == ForceLevel::kWarning) page.contact += ": strong";
-    if (page.level == ForceLevel::kDanger) page.contact += ": may tear";
+    if (page.level == ForceLevel::kWarning) page.contact += core::Translate(": strong");
+    if (page.level == ForceLevel::kDanger) page.contact += core::Translate(": may tear");
     page.is_chosen = static_cast<std::size_t>(chosen) == hand;
   }
   return pages;
@@ -67,9 +70,11 @@ OperationPage MakeOperationPage(const scene::Scene& scene, const scene::Input& i
     const std::size_t place = operation.tools[hand];
     const auto& tray = scene.instruments[hand].tray;
     if (place < tray.size() && tray[place].clips > 0)
-      page.clips += (page.clips.empty() ? "" : " and ") + std::to_string(operation.clips_left[hand]);
-    page.hands[hand] = (hand == scene::kLeft ? "1  Left " : "2  Right ") +
-                       ToolLabel(scene, snapshot, static_cast<scene::Hand>(hand));
+      page.clips +=
+          (page.clips.empty() ? "" : core::Translate(" and ")) + std::to_string(operation.clips_left[hand]);
+    page.hands[hand] = hand == scene::kLeft
+                           ? core::TranslateWith("1  Left {1}", {ToolLabel(scene, snapshot, scene::kLeft)})
+                           : core::TranslateWith("2  Right {1}", {ToolLabel(scene, snapshot, scene::kRight)});
   }
   if (page.clips.empty()) page.clips = kNothing;
   page.blood = DescribeFluid(operation.flow.ledger, surgery::Fluid::kBlood);
@@ -78,7 +83,7 @@ OperationPage MakeOperationPage(const scene::Scene& scene, const scene::Input& i
   page.has_assistant = operation.assistant.is_there;
   page.command = input.assistant;
   page.assistant = page.has_assistant ? DescribeAssistant(input.assistant, operation.assistant.is_holding)
-                                      : "none in this scene";
+                                      : core::Translate("none in this scene");
   return page;
 }
 
@@ -99,14 +104,15 @@ MeasuresPage MakeMeasuresPage(const simulation::Snapshot& snapshot,
   page.residual = FormatResidual(snapshot.residual);
   page.iterations = std::to_string(snapshot.iterations);
   page.tick = FormatMilliseconds(statistics.tick_median) + " / " + FormatMilliseconds(statistics.tick_p99);
-  page.late = FormatCount(statistics.late_ticks) + " of " + FormatCount(statistics.ticks) +
-              (statistics.is_real_time ? ", real-time" : "");
+  page.late =
+      core::TranslateWith("{1} of {2}{3}", {FormatCount(statistics.late_ticks), FormatCount(statistics.ticks),
+                                            (statistics.is_real_time ? core::Translate(", real-time") : "")});
   page.pictures = std::to_string(static_cast<int>(picture_rate + 0.5));
   page.time = FormatTime(snapshot.time);
   for (std::size_t stage = 0; stage < page.stages.size(); ++stage) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3f", 1e3 * stages.Seconds()[stage]);
-    page.stages[stage] = text;
+    page.stages[stage] = core::LocalNumber(text);
   }
   return page;
 }

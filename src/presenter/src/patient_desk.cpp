@@ -9,6 +9,7 @@
 #include "trocar/anatomy/patient.h"
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::presenter {
 namespace {
@@ -56,7 +57,7 @@ void PatientDesk::List() {
     return;
   }
   work_ = std::make_shared<Work>();
-  work_->progress.Set("Reading the patients", -1);
+  work_->progress.Set(core::Translate("Reading the patients"), -1);
   page_.can_cancel = false;
   job_.Start([folder = folder_, chosen = page_.chosen] {
     return Outcome{ListPatients(folder, chosen), std::nullopt, std::nullopt};
@@ -89,7 +90,7 @@ void PatientDesk::Make(const std::string& name, const std::string& doing, Maker 
     }
     if (!outcome.problem) {
       outcome.made = target;
-      work->progress.Set("Drawing its picture", -1);
+      work->progress.Set(core::Translate("Drawing its picture"), -1);
     }
     outcome.patients = ListPatients(folder, chosen);
     return outcome;
@@ -98,7 +99,7 @@ void PatientDesk::Make(const std::string& name, const std::string& doing, Maker 
 
 void PatientDesk::Generate(std::uint64_t seed) {
   const std::string number = std::to_string(seed);
-  Make("seed-" + number, "Making the patient of seed " + number,
+  Make("seed-" + number, core::TranslateWith("Making the patient of seed {1}", {number}),
        [seed](const fs::path& folder, Work& work) -> core::Status {
          const auto patient = anatomy::GeneratePatient(seed);
          if (!patient.ok()) return patient.error();
@@ -108,13 +109,15 @@ void PatientDesk::Generate(std::uint64_t seed) {
 }
 
 void PatientDesk::Import(const fs::path& labels) {
-  Make(FreeName(folder_, NameOf(labels)), "Reading " + labels.filename().string(),
+  Make(FreeName(folder_, NameOf(labels)), core::TranslateWith("Reading {1}", {labels.filename().string()}),
        [labels](const fs::path& folder, Work& work) -> core::Status {
          anatomy::LabelOptions options;
          options.labels = labels;
          options.output = folder;
-         const auto built = anatomy::BuildPatientFromLabels(
-             options, [&work](std::string_view what, double fraction) { work.progress.Set(what, fraction); });
+         const auto built =
+             anatomy::BuildPatientFromLabels(options, [&work](std::string_view what, double fraction) {
+               work.progress.Set(core::TranslateComposed(what), fraction);
+             });
          if (!built.ok()) return built.error();
          return {};
        });
@@ -140,7 +143,7 @@ const PatientPage& PatientDesk::Look() {
   page_.fraction = 0;
   if (job_.IsRunning()) {
     const gui::JobProgress::Value now = work_->progress.Get();
-    page_.doing = work_->is_cancelled ? "Giving it up" : now.what;
+    page_.doing = work_->is_cancelled ? core::Translate("Giving it up") : now.what;
     page_.fraction = now.fraction;
   }
   return page_;

@@ -10,6 +10,7 @@
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/core/translate.h"
 #include "trocar/core/user_folder.h"
 #include "trocar/render/figure_picture.h"
 #include "trocar/scene/scene.h"
@@ -21,6 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kBuiltIn = "assets/patients/visible-human-male/patient";
+constexpr std::string_view kGenerated = "seed-";
+/// Changes where a patient's picture would look other than one in the cache.
+constexpr const char* kPictureVersion = "2 ";
 constexpr int kWidth = 200, kHeight = 150;  // of a picture [pixels]
 constexpr double kLiverOpacity = 0.35;      // the ducts lie behind it
 
@@ -37,8 +41,10 @@ core::Status Draw(const anatomy::Patient& patient, const fs::path& path) {
   const render::OrbitCamera camera =
       render::LookFrom(render::Viewpoint::kUmbilicus, render::CalcFigureBox(figure.surfaces),
                        static_cast<double>(kWidth) / kHeight);
+  render::FigureOptions look;
+  look.has_axes = false;  // letters of directions are for the editor
   const auto pictures =
-      render::DrawPictures(figure.surfaces, figure.marks, {&camera, 1}, {}, kWidth, kHeight);
+      render::DrawPictures(figure.surfaces, figure.marks, {&camera, 1}, look, kWidth, kHeight);
   if (!pictures.ok()) return pictures.error();
   std::error_code ignored;
   fs::create_directories(path.parent_path(), ignored);
@@ -50,7 +56,7 @@ fs::path FindPicture(const fs::path& folder, const anatomy::Patient& patient) {
   const auto text = core::ReadFile(folder / "patient.json");
   if (!text.ok()) return {};
   core::StateHash hash;
-  core::AddStateTo(hash, fs::absolute(folder).string() + *text);
+  core::AddStateTo(hash, kPictureVersion + fs::absolute(folder).string() + *text);
   const fs::path path =
       core::FindCacheFolder() / "patient-pictures" / (core::HashText(hash.Value()) + ".png");
   std::error_code ignored;
@@ -74,17 +80,19 @@ std::string DescribeFindings(const anatomy::Patient& patient) {
     const anatomy::Parameter* parameter = patient.FindParameter(name);
     const double* value = parameter == nullptr ? nullptr : std::get_if<double>(&parameter->value);
     if (value == nullptr) continue;
-    sizes += (sizes.empty() ? "" : ", ") + std::string(shown) + " " + std::to_string(std::lround(*value)) +
-             " " + parameter->unit;
+    sizes += (sizes.empty() ? "" : ", ") + core::Translate(shown) + " " +
+             std::to_string(std::lround(*value)) + " " + parameter->unit;
   }
   for (const std::string name : kVariations) {
     const anatomy::Parameter* parameter = patient.FindParameter(name);
     if (parameter == nullptr) continue;
     const auto* word = std::get_if<std::string>(&parameter->value);
     const bool is_there = word != nullptr ? *word == "yes" : std::get<double>(parameter->value) > 0;
-    if (is_there) variations += (variations.empty() ? "" : ", ") + name;
+    if (!is_there) continue;
+    std::string words = name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    variations += (variations.empty() ? "" : ", ") + core::Translate(words);
   }
-  std::replace(variations.begin(), variations.end(), '_', ' ');
   return sizes + (sizes.empty() || variations.empty() ? "" : "; ") + variations;
 }
 
@@ -97,7 +105,7 @@ PatientEntry Describe(const fs::path& folder) {
     entry.problem = patient.error();
     return entry;
   }
-  if (!patient->name.empty()) entry.name = patient->name;
+  if (!patient->name.empty()) entry.name = core::TranslateComposed(patient->name);
   entry.about = DescribeFindings(*patient);
   if (patient->tubes.empty())
     entry.problem = core::Error{
@@ -119,7 +127,7 @@ std::vector<PatientEntry> ListPatients(const fs::path& folder, const fs::path& c
   if (data.ok()) {
     entries.push_back(Describe(*data / kBuiltIn));
     entries.back().folder.clear();
-    entries.back().about = "Built in; measured and trained on most";
+    entries.back().about = core::Translate("Built in; measured and trained on most");
   }
   std::vector<fs::path> folders;
   std::error_code failure;
@@ -137,11 +145,15 @@ std::vector<PatientEntry> ListPatients(const fs::path& folder, const fs::path& c
 }
 
 std::string ShortPatientName(const fs::path& folder) {
-  if (folder.empty()) return "the built-in patient";
+  if (folder.empty()) return core::Translate("the built-in patient");
   std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+  // as the desk names what it generates
+  if (name.starts_with(kGenerated) && name.size() > kGenerated.size() &&
+      name.find_first_not_of("0123456789", kGenerated.size()) == std::string::npos)
+    return core::TranslateWith("generated patient {1}", {name.substr(kGenerated.size())});
   std::replace(name.begin(), name.end(), '-', ' ');
   std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
+  return core::TranslateComposed(name);
 }
 
 }  // namespace trocar::presenter

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::presenter {
 namespace {
 
@@ -24,7 +26,7 @@ template <typename... Values>
 std::string Print(const char* format, Values... values) {
   char text[96];
   std::snprintf(text, sizeof text, format, values...);
-  return text;
+  return core::LocalNumber(text);
 }
 
 }  // namespace
@@ -59,36 +61,35 @@ TaskReadOut DescribeTask(const scene::Task& task, const scene::TaskSnapshot& now
   if (std::isfinite(task.time_limit)) text.time += " / " + FormatTime(task.time_limit);
   const auto done =
       std::count_if(now.goals.begin(), now.goals.end(), [](const auto& goal) { return goal.is_done; });
-  text.progress = Print("%td of %zu", done, task.goals.size());
+  text.progress =
+      core::TranslateWith("{1} of {2}", {std::to_string(done), std::to_string(task.goals.size())});
   text.score = now.IsOver() ? Print("%.1f", scene::CalcShownScore(task, now)) : "—";
   switch (now.phase) {
     case TaskPhase::kCompleted:
-      text.next = "Completed. Reset to try again.";
+      text.next = core::Translate("Completed. Reset to try again.");
       break;
     case TaskPhase::kTimeOver:
-      text.next = "The time is over. Reset to try again.";
+      text.next = core::Translate("The time is over. Reset to try again.");
       break;
     case TaskPhase::kEnded:
-      text.next = "Ended by an error. Reset to try again.";
+      text.next = core::Translate("Ended by an error. Reset to try again.");
       break;
     default:
       for (std::size_t g = 0; g < task.goals.size() && text.next.empty(); ++g) {
-        if (now.phase == TaskPhase::kReady || now.goals[g].is_open) text.next = "Next: " + task.goals[g].name;
+        if (now.phase == TaskPhase::kReady || now.goals[g].is_open)
+          text.next = core::TranslateWith("Next: {1}", {core::TranslateComposed(task.goals[g].name)});
       }
   }
   for (std::size_t e = 0; e < task.errors.size(); ++e) {
     if (now.errors[e] == 0) continue;
-    text.errors +=
-        (text.errors.empty() ? "" : "\n") + std::to_string(now.errors[e]) + " × " + task.errors[e].about;
+    text.errors += (text.errors.empty() ? "" : "\n") + std::to_string(now.errors[e]) + " × " +
+                   core::TranslateComposed(task.errors[e].about);
   }
   return text;
 }
 
 std::string FormatCount(std::uint64_t count) {
-  std::string text = std::to_string(count);
-  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)
-    text.insert(static_cast<std::size_t>(at), ",");
-  return text;
+  return core::LocalCount(count);
 }
 
 std::string FormatResidual(double residual) {
@@ -97,30 +98,36 @@ std::string FormatResidual(double residual) {
 
 std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ) {
   // organs first, then tubes, as in Simulation::Surfaces()
-  if (organ < 0) return "tissue";
+  if (organ < 0) return core::Translate("tissue");
   auto index = static_cast<std::size_t>(organ);
-  if (index < patient.organs.size()) return WithSpaces(patient.organs[index].name);
+  if (index < patient.organs.size()) return core::TranslateComposed(WithSpaces(patient.organs[index].name));
   index -= patient.organs.size();
-  return index < patient.tubes.size() ? WithSpaces(patient.tubes[index].name) : "tissue";
+  return index < patient.tubes.size() ? core::TranslateComposed(WithSpaces(patient.tubes[index].name))
+                                      : core::Translate("tissue");
 }
 
 std::string HandLabel(const scene::Scene& scene, std::int32_t hand) {
-  if (hand < 0 || hand >= scene::kHandCount) return "instrument";
+  if (hand < 0 || hand >= scene::kHandCount) return core::Translate("instrument");
   const scene::InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
   // where tools are exchanged, the one at the start may not be the one that is meant
-  return (hand == scene::kLeft ? "left " : "right ") +
-         (setup.tray.size() > 1 ? "hand" : WithSpaces(setup.tool.name));
+  const bool is_left = hand == scene::kLeft;
+  if (setup.tray.size() > 1) return is_left ? core::Translate("left hand") : core::Translate("right hand");
+  return core::TranslateWith(is_left ? core::Mark("left {1}") : core::Mark("right {1}"),
+                             {ToolName(setup.tool)});
+}
+
+std::string ToolName(const instrument::Tool& tool) {
+  return core::Translate(WithSpaces(tool.name));
 }
 
 std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand) {
   const scene::InstrumentSetup& setup = scene.instruments[hand];
   const std::size_t place = snapshot.operation.tools[hand];
   const instrument::Tool& tool = place < setup.tray.size() ? setup.tray[place] : setup.tool;
-  std::string label = WithSpaces(tool.name);
-  if (tool.clips > 0) {
-    const int left = snapshot.operation.clips_left[hand];
-    label += ", " + std::to_string(left) + (left == 1 ? " clip" : " clips");
-  }
+  std::string label = ToolName(tool);
+  if (tool.clips > 0)
+    label += ", " + core::TranslateCount("{1} clip", "{1} clips",
+                                         static_cast<std::size_t>(snapshot.operation.clips_left[hand]));
   return label;
 }
 
@@ -130,7 +137,8 @@ std::string FormatMillilitres(double volume) {
 
 std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid) {
   const surgery::FluidLedger::Account& account = fluids.fluids[static_cast<std::size_t>(fluid)];
-  return FormatMillilitres(account.left) + ", " + FormatMillilitres(account.pooled) + " in the abdomen";
+  return core::TranslateWith("{1}, {2} in the abdomen",
+                             {FormatMillilitres(account.left), FormatMillilitres(account.pooled)});
 }
 
 std::string DescribeStones(std::span<const simulation::StoneSnapshot> stones) {
@@ -143,74 +151,79 @@ std::string DescribeStones(std::span<const simulation::StoneSnapshot> stones) {
     return stone.place == StonePlace::kInside;
   });
   const auto retrieved = static_cast<std::ptrdiff_t>(stones.size()) - out - inside;
-  if (out + retrieved == 0) return "none spilled";
-  return Print("%td in the abdomen, %td retrieved", out, retrieved);
+  if (out + retrieved == 0) return core::Translate("none spilled");
+  return core::TranslateWith("{1} in the abdomen, {2} retrieved",
+                             {std::to_string(out), std::to_string(retrieved)});
 }
 
 std::string DescribeAssistant(scene::AssistantCommand command, bool is_holding) {
   switch (command) {
     case scene::AssistantCommand::kRetract:
-      return is_holding ? "retracts the fundus" : "reaches for the fundus";
+      return is_holding ? core::Translate("retracts the fundus") : core::Translate("reaches for the fundus");
     case scene::AssistantCommand::kRelax:
-      return is_holding ? "holds the fundus" : "reaches for the fundus";
+      return is_holding ? core::Translate("holds the fundus") : core::Translate("reaches for the fundus");
     case scene::AssistantCommand::kRelease:
-      return "lets go and withdraws";
+      return core::Translate("lets go and withdraws");
     default:
-      return "waits";
+      return core::Translate("waits");
   }
 }
 
 std::string DescribeContact(const simulation::InstrumentSnapshot& instrument,
                             const anatomy::Patient& patient) {
-  if (instrument.is_grasping) return "holds the " + OrganLabel(patient, instrument.organ);
-  if (instrument.is_touching) return "touches the " + OrganLabel(patient, instrument.organ);
-  return "free";
+  if (instrument.is_grasping)
+    return core::TranslateWith("holds the {1}", {OrganLabel(patient, instrument.organ)});
+  if (instrument.is_touching)
+    return core::TranslateWith("touches the {1}", {OrganLabel(patient, instrument.organ)});
+  return core::Translate("free");
 }
 
 std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) {
-  const std::string hand = Capitalised(HandLabel(scene, event.hand)) + ": ";
+  const std::string hand = Capitalised(HandLabel(scene, event.hand));
   const std::string organ = OrganLabel(scene.patient, event.organ);
   // a grasp begins with no force yet: "0.0 N" would say nothing
   const std::string force = event.force < 0.05 ? "" : ", " + FormatForce(event.force);
   switch (event.kind) {
     case scene::EventKind::kGrasp:
-      return hand + "grasped the " + organ + force;
+      return core::TranslateWith("{1}: grasped the {2}", {hand, organ}) + force;
     case scene::EventKind::kRelease:
-      return hand + "let the " + organ + " go";
+      return core::TranslateWith("{1}: let the {2} go", {hand, organ});
     case scene::EventKind::kSlip:
-      return hand + "the " + organ + " slipped" + force;
+      return core::TranslateWith("{1}: the {2} slipped", {hand, organ}) + force;
     case scene::EventKind::kGraspMissed:
-      return hand + "closed on nothing; open the jaws and go deeper";
+      return core::TranslateWith("{1}: closed on nothing; open the jaws and go deeper", {hand});
     case scene::EventKind::kStateRestored:
-      return Capitalised(organ) + ": was not finite, last good state restored (E-SIM-001)";
+      return core::TranslateWith("{1}: was not finite, last good state restored (E-SIM-001)",
+                                 {Capitalised(organ)});
     case scene::EventKind::kOrganFrozen:
-      return Capitalised(organ) + ": held still, press R to reset (E-SIM-002)";
+      return core::TranslateWith("{1}: held still, press R to reset (E-SIM-002)", {Capitalised(organ)});
     case scene::EventKind::kTear:
-      return event.organ < 0 ? "A duct or vessel was torn off" : Capitalised(organ) + ": an attachment tore";
+      return event.organ < 0 ? core::Translate("A duct or vessel was torn off")
+                             : core::TranslateWith("{1}: an attachment tore", {Capitalised(organ)});
     case scene::EventKind::kPinchDamage:
-      return hand + "pinched the " + organ + " too hard" + force;
+      return core::TranslateWith("{1}: pinched the {2} too hard", {hand, organ}) + force;
     case scene::EventKind::kToolsTouch:
-      return "The instruments met";
+      return core::Translate("The instruments met");
     case scene::EventKind::kExchangeRefused:
-      return hand + "open the jaws and let go before the tool is exchanged";
+      return core::TranslateWith("{1}: open the jaws and let go before the tool is exchanged", {hand});
     case scene::EventKind::kClipClosed:
-      return hand + "closed a clip on the " + organ;
+      return core::TranslateWith("{1}: closed a clip on the {2}", {hand, organ});
     case scene::EventKind::kTubeCut:
-      return hand + "cut the " + organ;
+      return core::TranslateWith("{1}: cut the {2}", {hand, organ});
     case scene::EventKind::kNoClipsLeft:
-      return hand + "there is no clip left; exchange the tool for a full one";
+      return core::TranslateWith("{1}: there is no clip left; exchange the tool for a full one", {hand});
     case scene::EventKind::kUsedOutside:
-      return hand + "the tool is out of its trocar; push it in before it is used";
+      return core::TranslateWith("{1}: the tool is out of its trocar; push it in before it is used", {hand});
     case scene::EventKind::kClipSlipped:
-      return "A clip slipped off the " + organ;
+      return core::TranslateWith("A clip slipped off the {1}", {organ});
     case scene::EventKind::kStoneSpilled:
-      return "A stone spilled out of the gallbladder";
+      return core::Translate("A stone spilled out of the gallbladder");
     case scene::EventKind::kStoneTaken:
-      return hand + "took a stone";
+      return core::TranslateWith("{1}: took a stone", {hand});
     case scene::EventKind::kStoneRetrieved:
-      return hand + "retrieved a stone";
+      return core::TranslateWith("{1}: retrieved a stone", {hand});
     case scene::EventKind::kOperationError:
-      return std::string(training::ExplanationOf(static_cast<training::OperationError>(event.error)));
+      return core::Translate(training::ExplanationOf(static_cast<training::OperationError>(event.error)));
   }
   return "";
 }
@@ -223,7 +236,7 @@ bool IsWarning(scene::EventKind kind) noexcept {
 }
 
 std::string StageLabel(simulation::Stage stage) {
-  return Capitalised(WithSpaces(simulation::StageName(stage)));
+  return Capitalised(core::Translate(WithSpaces(simulation::StageName(stage))));
 }
 
 void StageMeter::Add(const simulation::Snapshot& snapshot) noexcept {

@@ -10,6 +10,8 @@
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/log.h"
+#include "trocar/core/translate.h"
+#include "trocar/report/attempt_report.h"
 
 namespace trocar::presenter {
 namespace {
@@ -29,9 +31,10 @@ std::string Words(std::string name) {
 
 std::string DescribeSide(const record::Recording& recording) {
   const record::Description& d = recording.description;
-  std::string text = Words(std::filesystem::path(d.name).stem().string());
-  if (!d.level.empty()) text += ", " + d.level;
-  text += ", seed " + std::to_string(d.seed) + "  ·  " + d.player;
+  std::string text = core::Translate(Words(std::filesystem::path(d.name).stem().string()));
+  if (!d.level.empty()) text += ", " + core::Translate(d.level);
+  text +=
+      core::TranslateWith(", seed {1}  ·  {2}", {std::to_string(d.seed), core::TranslateComposed(d.player)});
   if (d.started.size() >= 16) text += "  ·  " + d.started.substr(0, 10) + " " + d.started.substr(11, 5);
   return text;
 }
@@ -42,7 +45,7 @@ std::string FormatClock(double seconds) {
   const auto tenths = static_cast<long long>(std::llround(10 * std::max(0.0, seconds)));
   char text[48];
   std::snprintf(text, sizeof text, "%lld:%02lld.%lld", tenths / 600, tenths / 10 % 60, tenths % 10);
-  return text;
+  return core::LocalNumber(text);
 }
 
 std::vector<ReplayMark> ListMarks(const record::Recording& recording) {
@@ -50,11 +53,12 @@ std::vector<ReplayMark> ListMarks(const record::Recording& recording) {
   const double tick_seconds = recording.description.tick_seconds;
   std::vector<ReplayMark> marks;
   for (const record::EventMark& event : recording.events) {
-    ReplayMark mark{static_cast<double>(event.tick) * tick_seconds, Kind::kEvent, Words(event.kind)};
+    ReplayMark mark{static_cast<double>(event.tick) * tick_seconds, Kind::kEvent,
+                    core::Translate(Words(event.kind))};
     if (event.is_error) mark.kind = Kind::kError;
     if (event.kind == record::kPhaseKind) {
       mark.kind = Kind::kPhase;
-      mark.text = Words(event.about);
+      mark.text = report::PhaseName(event.about);
     }
     marks.push_back(std::move(mark));
   }
@@ -132,7 +136,7 @@ void ReplayPresenter::FinishLoading() {
   auto opened = loading_.Take();
   if (!opened.ok()) {
     // what cannot be shown beside leaves what is shown
-    if (loading_side_ == kBeside) return Say(opened.error().Text(), true);
+    if (loading_side_ == kBeside) return Say(core::ShownText(opened.error()), true);
     page_.failure = opened.error();
     core::Log(core::LogLevel::kError, opened.error().Text());
     return Refresh();
@@ -151,13 +155,13 @@ void ReplayPresenter::UseSide(std::size_t side, Side opened) {
   screen_->UseReplay(side, now.replay.get());
   page_.end = std::max(page_.end, now.last);
   if (side == kOwn) {
-    page_.title = "Trocar: replay of " + now.path.filename().string();
+    page_.title = core::TranslateWith("Trocar: replay of {1}", {now.path.filename().string()});
     page_.begin = page_.time = now.first;
     page_.end = now.last;
     screen_->ShowMarks(now.marks);
     if (!recording.damage.empty())
-      Say("The file is damaged (" + recording.damage + "): what comes after " + FormatClock(now.last) +
-              " is missing.",
+      Say(core::TranslateWith("The file is damaged ({1}): what comes after {2} is missing.",
+                              {recording.damage, FormatClock(now.last)}),
           true);
   }
   Follow();
@@ -359,7 +363,7 @@ void ReplayPresenter::TakeBranch() {
     return;
   }
   is_branching_ = false;
-  if (!made->ok()) return Say(made->error().Text(), true);
+  if (!made->ok()) return Say(core::ShownText(made->error()), true);
   const record::Recording& recording = own.replay->GetRecording();
   const std::uint64_t tick = (*made)->GetSnapshot().tick;
   Branch branch{std::move(**made), record::DescribeBranch(recording, own.path, tick), {}, is_branch_experts_};
@@ -452,11 +456,11 @@ void ReplayPresenter::Say(const std::string& text, bool is_warning) {
 
 void ReplayPresenter::Refresh() {
   if (page_.failure) {
-    page_.state = "Stopped";
+    page_.state = core::Translate("Stopped");
     return screen_->Show(page_);
   }
   if (!sides_[kOwn]) {
-    page_.state = "Opening " + loading_path_.filename().string();
+    page_.state = core::TranslateWith("Opening {1}", {loading_path_.filename().string()});
     return screen_->Show(page_);
   }
   const session::ReplayStatus status = sides_[kOwn]->replay->Status();
@@ -465,25 +469,27 @@ void ReplayPresenter::Refresh() {
   page_.known_share = status.known_share;
   char speed[16];
   std::snprintf(speed, sizeof speed, "%g×", Speed());
-  page_.state = std::string(is_playing_ ? "Playing" : "Paused") + "  ·  " + speed;
-  if (is_playing_ && is_slow_) page_.state += "  ·  as fast as this computer can";
+  page_.state = (is_playing_ ? core::Translate("Playing") : core::Translate("Paused")) + "  ·  " +
+                core::LocalNumber(speed);
+  if (is_playing_ && is_slow_) page_.state += core::Translate("  ·  as fast as this computer can");
   if (!is_playing_ && !status.is_there) {
-    char share[32];
-    std::snprintf(share, sizeof share, "  ·  seeking, %.0f %%", 100 * status.progress);
-    page_.state += share;
+    page_.state +=
+        core::TranslateWith("  ·  seeking, {1} %", {std::to_string(std::lround(100 * status.progress))});
   }
-  if (loading_.IsRunning()) page_.state += "  ·  opening " + loading_path_.filename().string();
+  if (loading_.IsRunning())
+    page_.state += core::TranslateWith("  ·  opening {1}", {loading_path_.filename().string()});
   if (status.divergence && !has_diverged_) {
     has_diverged_ = true;
     page_.is_warning = true;
-    page_.message = "This replay is not the attempt from " +
-                    FormatClock(static_cast<double>(status.divergence->tick) *
-                                sides_[kOwn]->replay->GetRecording().description.tick_seconds) +
-                    " on: its state differs from what was recorded.";
+    page_.message = core::TranslateWith(
+        "This replay is not the attempt from {1} on: its state differs from what was recorded.",
+        {FormatClock(static_cast<double>(status.divergence->tick) *
+                     sides_[kOwn]->replay->GetRecording().description.tick_seconds)});
     core::Log(core::LogLevel::kWarning, page_.message);
   }
-  if (status.failure && page_.message != status.failure->Text()) {
-    page_.message = status.failure->Text();
+  if (const std::string failure = status.failure ? core::ShownText(*status.failure) : "";
+      page_.message != failure && status.failure) {
+    page_.message = failure;
     page_.is_warning = true;
   }
   if (status.is_there && !was_there_ && !is_playing_)

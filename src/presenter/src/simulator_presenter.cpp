@@ -8,6 +8,7 @@
 
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::presenter {
 namespace {
@@ -35,7 +36,8 @@ SimulatorPresenter::SimulatorPresenter(const Options& options, const core::Stopw
   if (!loaded.complaint) return;
   core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
   // shown with the first page: the screen is not ready yet
-  page_.event = "The window's settings are the usual ones: " + loaded.complaint->Text();
+  page_.event = core::TranslateWith("The window's settings are the usual ones: {1}",
+                                    {core::ShownText(*loaded.complaint)});
   page_.is_event_warning = true;
   page_.home.problem = loaded.complaint;
   options_.settings.clear();  // the file stays as it is, for whoever can mend it
@@ -149,8 +151,9 @@ std::span<const SimulatorPresenter::Handler> SimulatorPresenter::Handlers() noex
        [](Self& self) {
          self.settings_.has_depth_snap = !self.settings_.has_depth_snap;
          if (self.control_ != nullptr) self.control_->SetDepthSnap(self.settings_.has_depth_snap);
-         self.Announce(self.settings_.has_depth_snap ? "The wheel stops where the tip meets something."
-                                                     : "The wheel goes on where the tip meets something.");
+         self.Announce(self.settings_.has_depth_snap
+                           ? core::Translate("The wheel stops where the tip meets something.")
+                           : core::Translate("The wheel goes on where the tip meets something."));
          self.KeepSettings();
        },
        [](const Self& self) { return self.settings_.has_depth_snap; }},
@@ -232,7 +235,7 @@ void SimulatorPresenter::Reset() {
   if (start_ && !start_->state.empty()) return Open(centre::Start(*start_));
   is_attempt_over_ = false;
   control_->Reset();
-  Announce("Reset.");
+  Announce(core::Translate("Reset."));
 }
 
 // tasks
@@ -317,7 +320,7 @@ void SimulatorPresenter::EndOperation(const simulation::Snapshot& snapshot) {
   if (reason == OperationEnd::Reason::kNone) return;
   screen_->ReleasePointer();
   control_->SetPaused(true);
-  Announce(std::string(Describe(reason)), reason == OperationEnd::Reason::kTimeOver);
+  Announce(Describe(reason), reason == OperationEnd::Reason::kTimeOver);
   EndAttempt();
 }
 
@@ -331,7 +334,8 @@ void SimulatorPresenter::Finish() {
   if (is_attempt_over_) return;
   screen_->ReleasePointer();
   control_->SetPaused(true);
-  Announce(IsExam() ? "The exam is over." : "The attempt is over. Reset begins another.");
+  Announce(IsExam() ? core::Translate("The exam is over.")
+                    : core::Translate("The attempt is over. Reset begins another."));
   EndAttempt();
 }
 
@@ -362,9 +366,11 @@ void SimulatorPresenter::ShowRecording() {
   const bool has_stopped = recording && recording->failure;
   const bool is_low = recording && recording->is_space_low;
   if (has_stopped && !is_recording_stopped_)
-    Announce("This attempt is recorded no longer: " + recording->failure->Text(), true);
+    Announce(core::TranslateWith("This attempt is recorded no longer: {1}",
+                                 {core::ShownText(*recording->failure)}),
+             true);
   if (is_low && !is_space_low_ && !has_stopped)
-    Announce("The disk is nearly full; the recording of this attempt will end soon.", true);
+    Announce(core::Translate("The disk is nearly full; the recording of this attempt will end soon."), true);
   is_recording_stopped_ = has_stopped;
   is_space_low_ = is_low;
 }
@@ -373,7 +379,7 @@ void SimulatorPresenter::SaveResult(const std::filesystem::path& path) {
   const core::Status saved = core::WriteFile(
       path, path.extension() == ".json" ? FormatTaskResultJson(result_) : FormatTaskResultHtml(result_));
   if (!saved) core::Log(core::LogLevel::kError, saved.error().Text());
-  Announce(saved ? "Saved " + path.string() : saved.error().Text());
+  Announce(saved ? core::TranslateWith("Saved {1}", {path.string()}) : core::ShownText(saved.error()));
 }
 
 // frames
@@ -447,7 +453,7 @@ void SimulatorPresenter::Fail(const core::Error& error) {
   core::Log(core::LogLevel::kError, error.Text());
   if (control_ != nullptr) control_->SetPaused(true);
   page_.is_task_list_open = page_.is_result_open = false;
-  Announce(error.Text());
+  Announce(core::ShownText(error));
   // nobody is there to read the card
   if (unattended_.IsOn()) screen_->DoInWindow(Action::kQuit);
 }
@@ -485,12 +491,13 @@ void SimulatorPresenter::Refresh() {
   page_.hint = page_.failure ? "" : HintText(situation);
   page_.badge = page_.failure ? "" : BadgeText(situation);
   page_.mode = page_.failure ? "" : ModeText(situation);
-  page_.state = page_.failure ? "Stopped" : StateText(situation);
+  page_.state = page_.failure ? core::Translate("Stopped") : StateText(situation);
   page_.opening = preparing_ == nullptr      ? ""
-                  : preparing_->is_cancelled ? "Giving it up …"
+                  : preparing_->is_cancelled ? core::Translate("Giving it up …")
                                              : preparing_->progress.Get().what;
   if (control_ != nullptr)
-    page_.state += "   ·   " + std::to_string(static_cast<int>(PictureRate() + 0.5)) + " pictures/s";
+    page_.state +=
+        core::TranslateWith("   ·   {1} pictures/s", {std::to_string(static_cast<int>(PictureRate() + 0.5))});
   RefreshFirstMeeting();
   screen_->Show(page_);
 }

@@ -8,6 +8,7 @@
 
 #include "trocar/assessment/course.h"
 #include "trocar/core/json.h"
+#include "trocar/core/translate.h"
 #include "trocar/presenter/operation_part.h"
 #include "trocar/presenter/patient_list.h"
 #include "trocar/scene/scene.h"
@@ -56,10 +57,10 @@ core::Status AddBasicSkills(const fs::path& data, TaskPage& page) {
   for (const view::SeriesSitting& sitting : view::ListPictureSeries()) {
     if (!sitting.shots.empty()) pictures.emplace(sitting.task, sitting.shots.front().name);
   }
-  TaskPage::Group group{"Basic skills, the easiest first", {}};
+  TaskPage::Group group{core::Translate("Basic skills, the easiest first"), {}};
   for (const scene::TaskEntry& task : *tasks) {
     TaskPage::Row row;
-    row.name = task.name, row.about = task.about;
+    row.name = core::Translate(task.name), row.about = core::Translate(task.about);
     for (const std::string& level : task.levels) row.levels.push_back({level, "", ""});
     row.request.task = task.key;
     if (const auto picture = pictures.find(task.key); picture != pictures.end())
@@ -75,11 +76,13 @@ core::Status AddOperation(const fs::path& data, const fs::path& patient, TaskPag
   if (!levels.ok()) return levels.error();
   const auto parts = ListOperationParts();
   if (!parts.ok()) return parts.error();
-  TaskPage::Group group{"Laparoscopic cholecystectomy on " + ShortPatientName(patient), {}};
+  TaskPage::Group group{
+      core::TranslateWith("Laparoscopic cholecystectomy on {1}", {ShortPatientName(patient)}), {}};
   const auto add = [&](const std::string& part, const std::string& name, const std::string& about) {
     TaskPage::Row row;
     row.name = name, row.about = about;
-    for (const scene::OperationLevel& level : *levels) row.levels.push_back({level.key, level.about, ""});
+    for (const scene::OperationLevel& level : *levels)
+      row.levels.push_back({level.key, core::Translate(level.about), ""});
     row.request.task = kOperation;
     row.request.part = part;
     row.request.choice.patient_folder = patient;
@@ -90,8 +93,10 @@ core::Status AddOperation(const fs::path& data, const fs::path& patient, TaskPag
     if (row.picture.empty()) row.picture = FindPicture(data, kOperationPictures[0].second);
     group.rows.push_back(std::move(row));
   };
-  add("", "The whole operation", "From the first look to the gallbladder in its bag");
-  for (const OperationPart& part : *parts) add(part.key, part.name, part.goal);
+  add("", core::Translate("The whole operation"),
+      core::Translate("From the first look to the gallbladder in its bag"));
+  for (const OperationPart& part : *parts)
+    add(part.key, core::Translate(part.name), core::Translate(part.goal));
   page.groups.push_back(std::move(group));
   return {};
 }
@@ -101,10 +106,10 @@ core::Status AddDemonstration(const fs::path& data, TaskPage& page) {
   row.request.scene = data / "scenes" / kDemonstration;
   auto document = core::JsonDocument::Read(row.request.scene);
   if (!document.ok()) return document.error();
-  row.name = document->Root().Text("name");
-  row.about = document->Root().TextOr("about", "");
+  row.name = core::Translate(document->Root().Text("name"));
+  row.about = core::Translate(document->Root().TextOr("about", ""));
   if (const auto status = document->Check(); !status.ok()) return status;
-  page.groups.push_back({"To look at", {std::move(row)}});
+  page.groups.push_back({core::Translate("To look at"), {std::move(row)}});
   return {};
 }
 

@@ -2,11 +2,13 @@
 #include "trocar/presenter/task_result.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "trocar/core/assert.h"
 #include "trocar/core/markup.h"
+#include "trocar/core/translate.h"
 #include "trocar/core/version.h"
 #include "trocar/presenter/read_outs.h"
 
@@ -29,20 +31,20 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: 
 std::string VerdictOf(TaskPhase phase) {
   switch (phase) {
     case TaskPhase::kCompleted:
-      return "Completed";
+      return core::Translate("Completed");
     case TaskPhase::kTimeOver:
-      return "The time is over";
+      return core::Translate("The time is over");
     case TaskPhase::kEnded:
-      return "Ended by an error";
+      return core::Translate("Ended by an error");
     default:
-      return "Not finished";
+      return core::Translate("Not finished");
   }
 }
 
 std::string FormatPoints(double points) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", points);
-  return text;
+  return core::LocalNumber(text);
 }
 
 }  // namespace
@@ -91,9 +93,23 @@ TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& 
 std::string FormatScore(const TaskResult& result) {
   char text[32];
   if (result.is_score_percent) {
-    std::snprintf(text, sizeof text, "%.1f of %.0f", result.score, result.best_score);
-  } else {
-    std::snprintf(text, sizeof text, "%.1f points", result.score);
+    std::snprintf(text, sizeof text, "%.1f", result.score);
+    return core::TranslateWith("{1} of {2}",
+                               {core::LocalNumber(text), std::to_string(std::lround(result.best_score))});
+  }
+  std::snprintf(text, sizeof text, "%.1f", result.score);
+  return core::TranslateWith("{1} points", {core::LocalNumber(text)});
+}
+
+std::string DescribeDoer(const TaskResult::ErrorRow& error) {
+  // "ring_1, left hand", each in words
+  std::string text;
+  for (std::size_t at = 0; at < error.by.size();) {
+    const std::size_t end = std::min(error.by.find(", ", at), error.by.size());
+    std::string name = error.by.substr(at, end - at);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    text += (text.empty() ? "" : ", ") + core::TranslateComposed(name);
+    at = end + 2;
   }
   return text;
 }
@@ -129,32 +145,40 @@ std::string FormatTaskResultJson(const TaskResult& result) {
 }
 
 std::string FormatTaskResultHtml(const TaskResult& result) {
-  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
-                     EscapeMarkup(result.task) + " - Trocar</title>\n<style>" + kStyle +
-                     "</style>\n</head>\n<body>\n<h1>" + EscapeMarkup(result.task) + "</h1>\n<p>" +
-                     result.verdict + " after " + FormatTime(result.time) + " (min:s). Score " +
-                     FormatScore(result) + ". Level " + EscapeMarkup(result.level) + ", seed " +
-                     std::to_string(result.seed) + "." +
-                     (result.is_demonstration ? " A demonstration by the scripted expert." : "") +
-                     "</p>\n<h2>Goals</h2>\n<table>\n";
+  const auto say = [](const std::string& text) { return EscapeMarkup(text); };
+  const std::string task = say(core::Translate(result.task));
+  std::string html = "<!DOCTYPE html>\n<html lang=\"" + core::Translate("en") +
+                     "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + task + " - Trocar</title>\n<style>" +
+                     kStyle + "</style>\n</head>\n<body>\n<h1>" + task + "</h1>\n<p>" +
+                     say(core::TranslateWith("{1} after {2} (min:s). Score {3}. Level {4}, seed {5}.",
+                                             {result.verdict, FormatTime(result.time), FormatScore(result),
+                                              core::Translate(result.level), std::to_string(result.seed)}));
+  if (result.is_demonstration) html += " " + say(core::Translate("A demonstration by the scripted expert."));
+  html += "</p>\n<h2>" + say(core::Translate("Goals")) + "</h2>\n<table>\n";
   for (const TaskResult::GoalRow& goal : result.goals)
-    html += "<tr><td>" + EscapeMarkup(goal.name) + "</td><td class=\"" +
-            (goal.is_done ? "done\">done" : "open\">open") + "</td></tr>\n";
-  html += "</table>\n<h2>Errors</h2>\n";
+    html += "<tr><td>" + say(core::TranslateComposed(goal.name)) + "</td><td class=\"" +
+            (goal.is_done ? "done\">" + say(core::Translate("done"))
+                          : "open\">" + say(core::TranslateIn("goal", "open"))) +
+            "</td></tr>\n";
+  html += "</table>\n<h2>" + say(core::Translate("Errors")) + "</h2>\n";
   if (result.errors.empty()) {
-    html += "<p>None.</p>\n";
+    html += "<p>" + say(core::Translate("None.")) + "</p>\n";
   } else {
-    html += "<table>\n<tr><th>At</th><th>Error</th><th>Severity</th><th>By</th><th>Points</th></tr>\n";
+    html += "<table>\n<tr>";
+    for (const char* head : {core::Mark("At"), core::Mark("Error"), core::Mark("Severity"), core::Mark("By"),
+                             core::Mark("Points")})
+      html += "<th>" + say(core::Translate(head)) + "</th>";
+    html += "</tr>\n";
     for (const TaskResult::ErrorRow& error : result.errors) {
-      html += "<tr><td class=\"number\">" + FormatTime(error.time) + "</td><td>" + EscapeMarkup(error.about) +
-              "</td><td class=\"" + error.severity + "\">" + error.severity + "</td><td>" +
-              EscapeMarkup(error.by) + "</td><td class=\"number\">-" + FormatPoints(error.penalty) +
-              "</td></tr>\n";
+      html += "<tr><td class=\"number\">" + FormatTime(error.time) + "</td><td>" +
+              say(core::TranslateComposed(error.about)) + "</td><td class=\"" + error.severity + "\">" +
+              say(core::Translate(error.severity)) + "</td><td>" + say(DescribeDoer(error)) +
+              "</td><td class=\"number\">-" + FormatPoints(error.penalty) + "</td></tr>\n";
     }
     html += "</table>\n";
   }
-  return html + "<p>Training feedback, not certified assessment. Trocar " +
-         EscapeMarkup(std::string(core::VersionText())) + ".</p>\n</body>\n</html>\n";
+  return html + "<p>" + say(core::Translate("Training feedback, not certified assessment.")) + " Trocar " +
+         say(std::string(core::VersionText())) + ".</p>\n</body>\n</html>\n";
 }
 
 }  // namespace trocar::presenter

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::presenter {
 namespace {
 
@@ -39,6 +41,10 @@ bool IsAnyHeld(const simulation::Snapshot& snapshot) {
 }
 
 }  // namespace
+
+std::span<const std::string_view> TutorialTexts() noexcept {
+  return kTexts;
+}
 
 void Tutorial::Begin(int step) {
   is_on_ = true;
@@ -98,12 +104,14 @@ bool Tutorial::IsStepDone(const TutorialSight& sight) {
 
 std::string Tutorial::Text(const KeyBindings& bindings) const {
   if (!is_on_) return "";
-  const std::string leave = bindings.Fill("   ({tutorial} leaves the tutorial)");
+  const std::string leave = bindings.Fill(core::Translate("   ({tutorial} leaves the tutorial)"));
   if (IsDone())
-    return "Done: these are all the controls. Now try the task: the bright ring shows what comes next." +
-           leave;
-  return std::to_string(step_ + 1) + " of " + std::to_string(kTutorialSteps) + ":  " +
-         bindings.Fill(kTexts[step_]) + leave;
+    return core::TranslateWith(
+        "Done: these are all the controls. Now try the task: the bright ring shows what comes next.{1}",
+        {leave});
+  return core::TranslateWith("{1} of {2}:  {3}{4}",
+                             {std::to_string(step_ + 1), std::to_string(kTutorialSteps),
+                              bindings.Fill(core::Translate(kTexts[step_])), leave});
 }
 
 }  // namespace trocar::presenter

@@ -86,7 +86,7 @@ void WindowSound::Say(const std::string& text) {
   if (text == said_) return;
   said_ = text;
   if (text.empty() || !settings_.has_speech || settings_.is_muted || speaker_ == nullptr) return;
-  speaker_->Say(text, "en");  // the language of what the presenter says
+  speaker_->Say(text, core::Translate("en"));  // the catalogue's language
 }
 
 void WindowSound::Set(const sound::SoundSettings& settings) {

@@ -381,7 +381,7 @@ TEST_F(Presenter, APatientThatHasVanishedIsSaidAndLeadsOn) {
   settings.patient = (folder.Path() / "seed-7").string();
   ASSERT_TRUE(SaveWindowSettings(options.settings, settings).ok());
   Begin(options);
-  EXPECT_EQ(screen_.page.home.patient, "seed 7");
+  EXPECT_EQ(screen_.page.home.patient, "generated patient 7");
   presenter_->Choose(HomeChoice::kOperation);
   presenter_->Open(screen_.tasks.groups.at(0).rows.at(0).request);
   Load();
@@ -406,7 +406,7 @@ TEST_F(Presenter, AnOperationIsOnThePatientWhoWasChosenAtTheLevel) {
   presenter_->ChoosePatient(seven);
   presenter_->ClosePatientList();
   EXPECT_TRUE(screen_.page.is_home_open);
-  EXPECT_EQ(screen_.page.home.patient, "seed 7");
+  EXPECT_EQ(screen_.page.home.patient, "generated patient 7");
   presenter_->Choose(HomeChoice::kOperation);
   TaskRequest part = screen_.tasks.groups.at(0).rows.at(1).request;
   part.choice.level = "hard";

@@ -8,6 +8,7 @@
 
 #include "disclaimer.h"
 #include "trocar/core/text_table.h"
+#include "trocar/core/translate.h"
 #include "trocar/report/attempt_report.h"
 #include "trocar/report/charts.h"
 #include "trocar/training/metric_definition.h"
@@ -49,7 +50,9 @@ std::string ValueText(const MetricRow* row) {
 }
 
 std::string BetterText(BetterWhen better) {
-  return better == BetterWhen::kHigher ? "more" : better == BetterWhen::kLower ? "less" : "";
+  return better == BetterWhen::kHigher  ? core::Translate("more")
+         : better == BetterWhen::kLower ? core::Translate("less")
+                                        : "";
 }
 
 std::string ExpertText(const MetricRow& row) {
@@ -60,7 +63,7 @@ std::string ExpertText(const MetricRow& row) {
 }
 
 std::string NameText(const MetricRow& row) {
-  return row.separates == false ? row.name + " †" : row.name;
+  return core::Translate(row.name) + (row.separates == false ? " †" : "");
 }
 
 /// Better or worse than most experts: two standard deviations.
@@ -74,11 +77,13 @@ Tone CompareWithExperts(const MetricRow* row) {
 // --- summary
 
 Tiles::Tile ScoreTile(const AttemptReport& report) {
-  if (!report.is_completed) return {"Score", "No score", "the task was not completed", Tone::kCaution};
-  return {"Score", core::FormatNumber(*report.score, 3) + (report.facts.best_score ? " %" : ""),
-          report.facts.best_score
-              ? "an able surgeon gets " + core::FormatNumber(*report.facts.best_score, 3) + " % at this level"
-              : "points of the task",
+  if (!report.is_completed)
+    return {core::Translate("Score"), core::Translate("No score"),
+            core::Translate("the task was not completed"), Tone::kCaution};
+  return {core::Translate("Score"), FormatDigits(*report.score, 3) + (report.facts.best_score ? " %" : ""),
+          report.facts.best_score ? core::TranslateWith("an able surgeon gets {1} % at this level",
+                                                        {FormatDigits(*report.facts.best_score, 3)})
+                                  : core::Translate("points of the task"),
           Tone::kPlain};
 }
 
@@ -86,44 +91,52 @@ Tiles::Tile ErrorTile(const AttemptReport& report) {
   std::array<std::size_t, 3> counts{};
   for (const ErrorRow& error : report.errors) ++counts[static_cast<std::size_t>(error.severity)];
   const auto [minor, major, critical] = counts;
-  std::string note = std::to_string(critical) + " critical, " + std::to_string(major) + " major, " +
-                     std::to_string(minor) + " minor";
+  std::string note =
+      core::TranslateWith("{1} critical, {2} major, {3} minor",
+                          {std::to_string(critical), std::to_string(major), std::to_string(minor)});
   const Tone tone = critical > 0                                   ? Tone::kBad
                     : major > 0                                    ? Tone::kCaution
                     : report.errors.empty() && report.is_completed ? Tone::kGood
                                                                    : Tone::kPlain;
-  if (report.errors.empty() && !report.is_completed) note = "in what was done";
-  if (report.errors.empty() && report.is_completed) note = "none was seen";
-  return {"Errors", std::to_string(report.errors.size()), note, tone};
+  if (report.errors.empty() && !report.is_completed) note = core::Translate("in what was done");
+  if (report.errors.empty() && report.is_completed) note = core::Translate("none was seen");
+  return {core::Translate("Errors"), std::to_string(report.errors.size()), note, tone};
 }
 
 Section MakeSummary(const AttemptReport& report) {
-  Section section{"Result", {}};
+  Section section{core::Translate("Result"), {}};
   section.blocks.emplace_back(Paragraph{report.outcome, report.is_completed ? Tone::kGood : Tone::kCaution});
   Tiles tiles;
-  tiles.tiles.push_back({"Time", FormatClock(std::round(report.task_seconds.value_or(report.seconds))),
-                         report.task_seconds ? "from the first movement" : "minutes and seconds",
+  tiles.tiles.push_back({core::Translate("Time"),
+                         FormatClock(std::round(report.task_seconds.value_or(report.seconds))),
+                         report.task_seconds ? core::Translate("from the first movement")
+                                             : core::Translate("minutes and seconds"),
                          Tone::kPlain});
   if (report.score) tiles.tiles.push_back(ScoreTile(report));
   tiles.tiles.push_back(ErrorTile(report));
   if (report.is_operation) {
-    tiles.tiles.push_back(report.critical_view_time
-                              ? Tiles::Tile{"Critical view of safety", "achieved",
-                                            "after " + FormatClock(std::round(*report.critical_view_time)),
-                                            Tone::kGood}
-                              : Tiles::Tile{"Critical view of safety", "not achieved", "", Tone::kBad});
+    tiles.tiles.push_back(
+        report.critical_view_time
+            ? Tiles::Tile{core::Translate("Critical view of safety"), core::Translate("achieved"),
+                          core::TranslateWith("after {1}",
+                                              {FormatClock(std::round(*report.critical_view_time))}),
+                          Tone::kGood}
+            : Tiles::Tile{core::Translate("Critical view of safety"), core::Translate("not achieved"), "",
+                          Tone::kBad});
   }
   if (report.blood_ml) {
-    tiles.tiles.push_back({"Blood lost", FormatShown(*report.blood_ml) + " mL",
-                           "bile " + FormatShown(report.bile_ml.value_or(0)) + " mL",
+    tiles.tiles.push_back({core::Translate("Blood lost"), FormatShown(*report.blood_ml) + " mL",
+                           core::TranslateWith("bile {1} mL", {FormatShown(report.bile_ml.value_or(0))}),
                            *report.blood_ml > 50 ? Tone::kCaution : Tone::kPlain});
   }
   if (!report.goals.empty()) {
     const auto done = std::count_if(report.goals.begin(), report.goals.end(),
                                     [](const GoalRow& goal) { return goal.time.has_value(); });
     const bool is_all = static_cast<std::size_t>(done) == report.goals.size();
-    tiles.tiles.push_back({"Goals", std::to_string(done) + " of " + std::to_string(report.goals.size()), "",
-                           is_all ? Tone::kGood : Tone::kCaution});
+    tiles.tiles.push_back(
+        {core::Translate("Goals"),
+         core::TranslateWith("{1} of {2}", {std::to_string(done), std::to_string(report.goals.size())}), "",
+         is_all ? Tone::kGood : Tone::kCaution});
   }
   section.blocks.emplace_back(std::move(tiles));
   section.blocks.emplace_back(Paragraph{DisclaimerSentence(), Tone::kMuted});
@@ -131,12 +144,14 @@ Section MakeSummary(const AttemptReport& report) {
 }
 
 Section MakeAdvice(const AttemptReport& report) {
-  Section section{"What to work on", {}};
+  Section section{core::Translate("What to work on"), {}};
   Advices advices;
   for (const Advice& advice : report.advice) {
-    advices.items.push_back({advice.sentence,
-                             advice.time ? "Look at " + FormatClock(std::round(*advice.time)) : "",
-                             advice.why, advice.practise.empty() ? advice.exercise : advice.practise});
+    advices.items.push_back(
+        {core::TranslateComposed(advice.sentence),
+         advice.time ? core::TranslateWith("Look at {1}", {FormatClock(std::round(*advice.time))}) : "",
+         core::Translate(advice.why),
+         core::Translate(advice.practise.empty() ? advice.exercise : advice.practise)});
   }
   section.blocks.emplace_back(std::move(advices));
   return section;
@@ -145,32 +160,35 @@ Section MakeAdvice(const AttemptReport& report) {
 // --- what happened
 
 Section MakeCourse(const AttemptReport& report) {
-  Section section{"What happened when", {}};
+  Section section{core::Translate("What happened when"), {}};
   section.blocks.emplace_back(Figures{{DrawTimeline(report)}});
   if (!report.errors.empty()) {
-    Table table{"Errors in the order in which they happened",
-                {{"Time", true, 0.5},
-                 {"Severity", false, 0.7},
-                 {"What happened", false, 3.4},
-                 {"By", false, 0.8},
-                 {"Where", false, 1.1}},
+    Table table{core::Translate("Errors in the order in which they happened"),
+                {{core::Translate("Time"), true, 0.5},
+                 {core::Translate("Severity"), false, 0.7},
+                 {core::Translate("What happened"), false, 3.4},
+                 {core::Translate("By"), false, 0.8},
+                 {core::Translate("Where"), false, 1.1}},
                 {}};
     for (const ErrorRow& error : report.errors) {
-      table.rows.push_back(
-          {{FormatClock(std::round(error.time))},
-           {std::string(training::NameOf(error.severity)), ToneOf(error.severity)},
-           {error.what},
-           {error.hand == 0 || error.hand == 1 ? std::string(kHands[error.hand]) + " hand" : kDash},
-           {error.where.empty() ? kDash : error.where}});
+      table.rows.push_back({{FormatClock(std::round(error.time))},
+                            {core::Translate(training::NameOf(error.severity)), ToneOf(error.severity)},
+                            {core::TranslateComposed(error.what)},
+                            {error.hand == 0 || error.hand == 1 ? HandName(kHands[error.hand]) : kDash},
+                            {error.where.empty() ? kDash : core::TranslateComposed(error.where)}});
     }
     section.blocks.emplace_back(std::move(table));
   }
   if (!report.goals.empty()) {
-    Table table{"Goals of the task", {{"Goal", false, 4}, {"Reached", true, 1}}, {}};
+    Table table{core::Translate("Goals of the task"),
+                {{core::Translate("Goal"), false, 4}, {core::Translate("Reached"), true, 1}},
+                {}};
     for (const GoalRow& goal : report.goals) {
-      table.rows.push_back({{goal.name},
-                            {goal.time ? "after " + FormatClock(std::round(*goal.time)) : "not reached",
-                             goal.time ? Tone::kPlain : Tone::kCaution}});
+      table.rows.push_back(
+          {{core::TranslateComposed(goal.name)},
+           {goal.time ? core::TranslateWith("after {1}", {FormatClock(std::round(*goal.time))})
+                      : core::Translate("not reached"),
+            goal.time ? Tone::kPlain : Tone::kCaution}});
     }
     section.blocks.emplace_back(std::move(table));
   }
@@ -179,14 +197,14 @@ Section MakeCourse(const AttemptReport& report) {
 
 /// A phase may come again: its stretches are added up.
 Table MakePhaseTable(const AttemptReport& report) {
-  Table table{"Each phase",
-              {{"Phase", false, 3.2},
-               {"Time", true, 0.8},
-               {"Share", true, 0.8},
-               {"Errors", true, 0.8},
-               {"Path left", true, 1},
-               {"Path right", true, 1},
-               {"Greatest force", true, 1.2}},
+  Table table{core::Translate("Each phase"),
+              {{core::Translate("Phase"), false, 3.2},
+               {core::Translate("Time"), true, 0.8},
+               {core::Translate("Share"), true, 0.8},
+               {core::Translate("Errors"), true, 0.8},
+               {core::Translate("Path left"), true, 1},
+               {core::Translate("Path right"), true, 1},
+               {core::Translate("Greatest force"), true, 1.2}},
               {}};
   std::vector<std::string> names;
   std::map<std::string, double> seconds;
@@ -213,7 +231,7 @@ Table MakePhaseTable(const AttemptReport& report) {
     table.rows.push_back(
         {{PhaseName(name)},
          {FormatClock(std::round(seconds[name]))},
-         {core::FormatNumber(std::round(100 * seconds[name] / std::max(report.seconds, 1e-9)), 3) + " %"},
+         {FormatDigits(std::round(100 * seconds[name] / std::max(report.seconds, 1e-9)), 3) + " %"},
          {std::to_string(errors), errors > 0 ? Tone::kCaution : Tone::kPlain},
          {path(left)},
          {path(right)},
@@ -225,14 +243,14 @@ Table MakePhaseTable(const AttemptReport& report) {
 // --- numbers
 
 Table MakeHandTable(const AttemptReport& report) {
-  Table table{"Each hand",
-              {{"Measure", false, 2.6},
-               {"Left", true, 0.9},
-               {"Right", true, 0.9},
-               {"Unit", false, 0.7},
-               {"Better", false, 0.7},
-               {"Experts, left", true, 1.2},
-               {"Experts, right", true, 1.2}},
+  Table table{core::Translate("Each hand"),
+              {{core::Translate("Measure"), false, 2.6},
+               {core::Translate("Left"), true, 0.9},
+               {core::Translate("Right"), true, 0.9},
+               {core::Translate("Unit"), false, 0.7},
+               {core::Translate("Better"), false, 0.7},
+               {core::Translate("Experts, left"), true, 1.2},
+               {core::Translate("Experts, right"), true, 1.2}},
               {}};
   bool has_experts = false;
   for (const std::string_view id : kMainOfHands) {
@@ -259,12 +277,12 @@ Table MakeHandTable(const AttemptReport& report) {
 }
 
 Table MakeAttemptTable(const AttemptReport& report) {
-  Table table{"The whole attempt",
-              {{"Measure", false, 2.6},
-               {"Value", true, 0.9},
-               {"Unit", false, 0.7},
-               {"Better", false, 0.7},
-               {"Experts", true, 1.2}},
+  Table table{core::Translate("The whole attempt"),
+              {{core::Translate("Measure"), false, 2.6},
+               {core::Translate("Value"), true, 0.9},
+               {core::Translate("Unit"), false, 0.7},
+               {core::Translate("Better"), false, 0.7},
+               {core::Translate("Experts"), true, 1.2}},
               {}};
   bool has_experts = false;
   for (const std::string_view id : kMainOfAttempt) {
@@ -285,16 +303,19 @@ Table MakeAttemptTable(const AttemptReport& report) {
 }
 
 std::string DescribeGroup(const GroupFacts& group, bool has_radar) {
-  const std::string name = "Group \"" + group.name + "\"";
-  if (!group.why_not.empty()) return name + " is left out: " + group.why_not + ".";
+  const std::string name = core::TranslateWith("Group \"{1}\"", {group.name});
+  if (!group.why_not.empty())
+    return core::TranslateWith("{1} is left out: {2}.", {name, core::TranslateComposed(group.why_not)});
   if (!has_radar)
-    return name + " is left out: there is no expert set of this task, by whose spread it is drawn.";
-  return name + ": " + std::to_string(group.people) +
-         " people who have completed this task at this level, each by the latest attempt.";
+    return core::TranslateWith(
+        "{1} is left out: there is no expert set of this task, by whose spread it is drawn.", {name});
+  return core::TranslateWith(
+      "{1}: {2} people who have completed this task at this level, each by the latest attempt.",
+      {name, std::to_string(group.people)});
 }
 
 Section MakeHands(const AttemptReport& report) {
-  Section section{"How the hands worked", {}};
+  Section section{core::Translate("How the hands worked"), {}};
   Figures figures{{DrawPaths(report, PathView::kFromFront), DrawPaths(report, PathView::kFromHead)}};
   auto radar = DrawRadar(report);
   const bool has_radar = radar.has_value();
@@ -308,21 +329,22 @@ Section MakeHands(const AttemptReport& report) {
                                     [](const MetricRow& row) { return row.separates == false; });
   if (has_mark)
     section.blocks.emplace_back(Paragraph{
-        "† This measure does not tell novices from experts in our validation study.", Tone::kMuted});
+        core::Translate("† This measure does not tell novices from experts in our validation study."),
+        Tone::kMuted});
   return section;
 }
 
 /// Everything, with what it is.
 Section MakeAllMeasures(const AttemptReport& report) {
-  Section section{"All measures", {}};
-  Table table{"Of the whole attempt; a dash where a measure has no meaning here",
-              {{"Measure", false, 1.9},
-               {"Left", true, 0.75},
-               {"Right", true, 0.75},
-               {"Laparoscope", true, 1.05},
-               {"Whole", true, 0.75},
-               {"Unit", false, 0.65},
-               {"What it is", false, 3.6}},
+  Section section{core::Translate("All measures"), {}};
+  Table table{core::Translate("Of the whole attempt; a dash where a measure has no meaning here"),
+              {{core::Translate("Measure"), false, 1.9},
+               {core::Translate("Left"), true, 0.75},
+               {core::Translate("Right"), true, 0.75},
+               {core::Translate("Laparoscope"), true, 1.05},
+               {core::Translate("Whole"), true, 0.75},
+               {core::Translate("Unit"), false, 0.65},
+               {core::Translate("What it is"), false, 3.6}},
               {}};
   for (const training::MetricDefinition& definition : training::MetricDefinitions()) {
     const std::array<const MetricRow*, 4> cells = {
@@ -337,7 +359,7 @@ Section MakeAllMeasures(const AttemptReport& report) {
                           {ValueText(cells[2])},
                           {ValueText(cells[3])},
                           {(*any)->unit},
-                          {(*any)->about, Tone::kMuted}});
+                          {core::Translate((*any)->about), Tone::kMuted}});
   }
   section.blocks.emplace_back(std::move(table));
   return section;
@@ -345,17 +367,17 @@ Section MakeAllMeasures(const AttemptReport& report) {
 
 Section MakeOrigin(const AttemptReport& report) {
   const AttemptFacts& facts = report.facts;
-  Section section{"Where this comes from", {}};
+  Section section{core::Translate("Where this comes from"), {}};
   Facts rows;
-  const auto add = [&](const char* name, const std::string& value) {
+  const auto add = [&](const std::string& name, const std::string& value) {
     if (!value.empty()) rows.rows.emplace_back(name, value);
   };
-  add("Key of the task", facts.task_key);
-  add("Seed", std::to_string(facts.seed));
-  add("Played by", facts.player);
-  add("Recording", facts.recording);
-  add("Program", facts.program.empty() ? "" : "Trocar " + facts.program);
-  for (const auto& [name, value] : report.origin) add(name.c_str(), value);
+  add(core::Translate("Key of the task"), facts.task_key);
+  add(core::Translate("Seed"), std::to_string(facts.seed));
+  add(core::Translate("Played by"), core::TranslateComposed(facts.player));
+  add(core::Translate("Recording"), facts.recording);
+  add(core::Translate("Program"), facts.program.empty() ? "" : "Trocar " + facts.program);
+  for (const auto& [name, value] : report.origin) add(core::Translate(name), value);
   section.blocks.emplace_back(std::move(rows));
   return section;
 }
@@ -365,32 +387,35 @@ Section MakeOrigin(const AttemptReport& report) {
 Document MakeDocument(const AttemptReport& report) {
   const AttemptFacts& facts = report.facts;
   Document document;
-  document.title = facts.task.empty() ? "Attempt" : facts.task;
-  document.subtitle = report.is_operation ? "Report of an operation" : "Report of an attempt";
+  document.title = facts.task.empty() ? core::Translate("Attempt") : core::Translate(facts.task);
+  document.subtitle = report.is_operation ? core::Translate("Report of an operation")
+                                          : core::Translate("Report of an attempt");
   document.date = facts.started;
-  const auto head = [&](const char* name, const std::string& value) {
+  const auto head = [&](const std::string& name, const std::string& value) {
     if (!value.empty()) document.head.emplace_back(name, value);
   };
-  head("Trainee", facts.person);
-  head("Date", FormatDate(facts.started));
-  head("Level", facts.level);
-  head("Patient", facts.patient);
+  head(core::Translate("Trainee"), facts.person);
+  head(core::Translate("Date"), FormatDate(facts.started));
+  head(core::Translate("Level"), core::Translate(facts.level));
+  head(core::Translate("Patient"), facts.patient);
   document.sections.push_back(MakeSummary(report));
   if (!report.advice.empty()) document.sections.push_back(MakeAdvice(report));
   document.sections.push_back(MakeCourse(report));
   if (!report.phases.empty())
-    document.sections.push_back({"Phases of the operation", {MakePhaseTable(report)}});
+    document.sections.push_back({core::Translate("Phases of the operation"), {MakePhaseTable(report)}});
   if (report.doublet) {
     document.sections.push_back(
-        {"Critical view of safety",
-         {Paragraph{report.doublet->verdict, Tone::kPlain},
+        {core::Translate("Critical view of safety"),
+         {Paragraph{core::TranslateComposed(report.doublet->verdict), Tone::kPlain},
           Pictures{{{report.doublet->front_png,
-                     "From the front, at " + FormatClock(std::round(report.doublet->front_time))},
+                     core::TranslateWith("From the front, at {1}",
+                                         {FormatClock(std::round(report.doublet->front_time))})},
                     {report.doublet->back_png,
-                     "From behind, at " + FormatClock(std::round(report.doublet->back_time))}}}}});
+                     core::TranslateWith("From behind, at {1}",
+                                         {FormatClock(std::round(report.doublet->back_time))})}}}}});
   }
   if (!report.pictures.empty() || !report.film.empty()) {
-    Section seen{"What was seen", {}};
+    Section seen{core::Translate("What was seen"), {}};
     if (!report.film.empty()) seen.blocks.emplace_back(Film{report.film});
     if (!report.pictures.empty()) seen.blocks.emplace_back(Pictures{report.pictures});
     document.sections.push_back(std::move(seen));

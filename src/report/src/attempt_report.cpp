@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/core/translate.h"
 #include "trocar/record/recording.h"
 #include "trocar/report/axis.h"
 
@@ -22,7 +23,8 @@ std::string CountGoals(const AttemptTrace& trace) {
   if (trace.goals.empty()) return "";
   const auto done = std::count_if(trace.goals.begin(), trace.goals.end(),
                                   [](const training::GoalRecord& goal) { return goal.time.has_value(); });
-  return ", with " + std::to_string(done) + " of " + std::to_string(trace.goals.size()) + " goals reached";
+  return core::TranslateWith(", with {1} of {2} goals reached",
+                             {std::to_string(done), std::to_string(trace.goals.size())});
 }
 
 std::string DescribeOutcome(const AttemptTrace& trace) {
@@ -30,17 +32,23 @@ std::string DescribeOutcome(const AttemptTrace& trace) {
   const double task_time = trace.outcome.task_time > 0 ? trace.outcome.task_time : trace.Seconds();
   if (trace.is_operation) {
     return trace.outcome.is_completed
-               ? "The operation was completed in " + FormatDuration(trace.Seconds()) + "."
-               : "The operation was not completed: it ended after " + FormatDuration(trace.Seconds()) + ".";
+               ? core::TranslateWith("The operation was completed in {1}.", {FormatDuration(trace.Seconds())})
+               : core::TranslateWith("The operation was not completed: it ended after {1}.",
+                                     {FormatDuration(trace.Seconds())});
   }
-  if (trace.outcome.is_completed) return "The task was completed in " + FormatDuration(task_time) + ".";
+  if (trace.outcome.is_completed)
+    return core::TranslateWith("The task was completed in {1}.", {FormatDuration(task_time)});
   if (phase == "time_over")
-    return "The time ran out after " + FormatDuration(task_time) + CountGoals(trace) + ".";
+    return core::TranslateWith("The time ran out after {1}{2}.",
+                               {FormatDuration(task_time), CountGoals(trace)});
   if (phase == "ended")
-    return "An error ended the task after " + FormatDuration(task_time) + CountGoals(trace) + ".";
-  if (phase.empty()) return "A scene without a task was played for " + FormatDuration(trace.Seconds()) + ".";
-  return "The task was not finished: it was left after " + FormatDuration(trace.Seconds()) +
-         CountGoals(trace) + ".";
+    return core::TranslateWith("An error ended the task after {1}{2}.",
+                               {FormatDuration(task_time), CountGoals(trace)});
+  if (phase.empty())
+    return core::TranslateWith("A scene without a task was played for {1}.",
+                               {FormatDuration(trace.Seconds())});
+  return core::TranslateWith("The task was not finished: it was left after {1}{2}.",
+                             {FormatDuration(trace.Seconds()), CountGoals(trace)});
 }
 
 const MetricReference* FindReference(std::span<const MetricReference> references,

@@ -8,6 +8,7 @@
 
 #include "plot_frame.h"
 #include "trocar/core/text_table.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::report {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kWorst = -4, kBest = 2;
 constexpr double kLeastDeviation = 0.05;
 constexpr Vec2 kRadarCentre = {232, 192};
 constexpr double kRadarRadius = 112, kRadarText = 120;  // [px]
-constexpr const char* kHands[] = {"left hand", "right hand"};
+constexpr const char* kHands[] = {core::Mark("left hand"), core::Mark("right hand")};
 constexpr Ink kHandInks[] = {Ink::kLeft, Ink::kRight};
 
 /// How far from the experts, better positive [standard deviations].
@@ -71,7 +72,7 @@ struct RadarShape {
 
 /// "left hand: 3829 mm"
 std::string ValueText(const MetricRow& row) {
-  return (row.hand.empty() ? "" : row.hand + ": ") + FormatShown(row.value) +
+  return (row.hand.empty() ? "" : core::Translate(row.hand) + ": ") + FormatShown(row.value) +
          (row.unit.empty() ? "" : " " + row.unit);
 }
 
@@ -92,7 +93,7 @@ void AddAxisName(Drawing& drawing, const RadarShape& radar, std::size_t axis, co
   drawing.shapes.emplace_back(Line{{radar.centre, end}, Ink::kGrid, 1});
   const double side = name.x - radar.centre.x;
   const Anchor anchor = std::fabs(side) < 8 ? Anchor::kMiddle : side > 0 ? Anchor::kStart : Anchor::kEnd;
-  std::vector<std::string> lines = PartName(row.name);
+  std::vector<std::string> lines = PartName(core::Translate(row.name));
   lines.push_back(ValueText(row));
   // above the rim, below it, or about its height
   constexpr double kLine = 13;
@@ -115,7 +116,7 @@ void AddDeviations(Drawing& drawing, const std::vector<const MetricRow*>& axes) 
   frame.x.Add(kWorst), frame.x.Add(kBest);
   frame.y.Add(0), frame.y.Add(static_cast<double>(axes.size()));
   frame.AddGround(drawing);
-  frame.AddXAxis(drawing, 6, "SD from the experts' mean; right is better");
+  frame.AddXAxis(drawing, 6, core::Translate("SD from the experts' mean; right is better"));
   drawing.shapes.emplace_back(
       Line{{frame.Map({0, frame.y.low}), frame.Map({0, frame.y.high})}, Ink::kExpert, 1.6, Dash::kDashed});
   for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -127,14 +128,15 @@ void AddDeviations(Drawing& drawing, const std::vector<const MetricRow*>& axes) 
       const Vec2 from = frame.Map({low, y + 0.18}), to = frame.Map({high, y - 0.18});
       drawing.shapes.emplace_back(
           Area{MakeRectangle(from.x, from.y, std::max(to.x - from.x, 1.0), to.y - from.y), Ink::kGroup, 0.35,
-               "Middle half of the group"});
+               core::Translate("Middle half of the group")});
       const double median = frame.Map({at(0.5), y}).x;
       drawing.shapes.emplace_back(Line{{{median, from.y}, {median, to.y}}, Ink::kGroup, 2});
     }
     const Vec2 here = frame.Map({CalcDeviation(row, row.value), y});
     drawing.shapes.emplace_back(
-        Mark{here, MarkKind::kDot, Ink::kThis, 4.5, row.name + ", " + ValueText(row)});
-    const std::string name = row.name + (row.hand.empty() ? "" : ", " + row.hand);
+        Mark{here, MarkKind::kDot, Ink::kThis, 4.5, core::Translate(row.name) + ", " + ValueText(row)});
+    const std::string name =
+        core::Translate(row.name) + (row.hand.empty() ? "" : ", " + core::Translate(row.hand));
     drawing.shapes.emplace_back(
         Label{{frame.left - 8, here.y + 4}, CutToWidth(name, 11, 200), Ink::kText, Anchor::kEnd, 11});
   }
@@ -161,7 +163,7 @@ void AddGroup(Drawing& drawing, const RadarShape& radar, const std::vector<const
   band.push_back(outer.front());
   band.push_back(inner.front());
   band.insert(band.end(), inner.rbegin(), inner.rend());
-  drawing.shapes.emplace_back(Area{band, Ink::kGroup, 0.3, "Middle half of the group"});
+  drawing.shapes.emplace_back(Area{band, Ink::kGroup, 0.3, core::Translate("Middle half of the group")});
   median.push_back(median.front());
   drawing.shapes.emplace_back(Line{median, Ink::kGroup, 1.6});
 }
@@ -171,9 +173,13 @@ void AddGroup(Drawing& drawing, const RadarShape& radar, const std::vector<const
 Drawing DrawPaths(const AttemptReport& report, PathView view) {
   const bool is_front = view == PathView::kFromFront;
   Drawing drawing;
-  drawing.title = is_front ? "Path of the tips, seen from the front" : "Path of the tips, seen from the head";
-  drawing.description = std::string("The way of both instrument tips in millimetres, ") +
-                        (is_front ? "across and along the body." : "across the body and from back to front.");
+  drawing.title = is_front ? core::Translate("Path of the tips, seen from the front")
+                           : core::Translate("Path of the tips, seen from the head");
+  drawing.description =
+      is_front
+          ? core::Translate("The way of both instrument tips in millimetres, across and along the body.")
+          : core::Translate(
+                "The way of both instrument tips in millimetres, across the body and from back to front.");
   drawing.width = kWidth;
   drawing.height = 392;
   PlotFrame frame;
@@ -188,19 +194,23 @@ Drawing DrawPaths(const AttemptReport& report, PathView view) {
   frame.y.Settle(0.04);
   frame.MakeEqual();
   frame.AddGround(drawing);
-  frame.AddXAxis(drawing, 6, "towards the patient's left [mm]");
-  frame.AddYAxis(drawing, 6, is_front ? "towards the head [mm]" : "towards the front [mm]");
+  frame.AddXAxis(drawing, 6, core::Translate("towards the patient's left [mm]"));
+  frame.AddYAxis(
+      drawing, 6,
+      is_front ? core::Translate("towards the head [mm]") : core::Translate("towards the front [mm]"));
   for (std::size_t h = 0; h < report.hands.size(); ++h) {
     const auto points = frame.Map(is_front ? report.hands[h].from_front : report.hands[h].from_head);
     if (points.empty()) continue;
     drawing.shapes.emplace_back(Line{points, kHandInks[h], 0.9});
-    drawing.shapes.emplace_back(
-        Mark{points.front(), MarkKind::kDot, kHandInks[h], 4.5, std::string("Start of the ") + kHands[h]});
-    drawing.shapes.emplace_back(
-        Mark{points.back(), MarkKind::kSquare, kHandInks[h], 4.5, std::string("End of the ") + kHands[h]});
+    drawing.shapes.emplace_back(Mark{points.front(), MarkKind::kDot, kHandInks[h], 4.5,
+                                     core::TranslateWith("Start of the {1}", {core::Translate(kHands[h])})});
+    drawing.shapes.emplace_back(Mark{points.back(), MarkKind::kSquare, kHandInks[h], 4.5,
+                                     core::TranslateWith("End of the {1}", {core::Translate(kHands[h])})});
   }
-  AddLegend(drawing, frame.left, 16, {{"left hand", Ink::kLeft}, {"right hand", Ink::kRight}});
-  drawing.shapes.emplace_back(Label{{frame.Right(), 16}, "● start   ■ end", Ink::kMuted, Anchor::kEnd, 10.5});
+  AddLegend(drawing, frame.left, 16,
+            {{core::Translate("left hand"), Ink::kLeft}, {core::Translate("right hand"), Ink::kRight}});
+  drawing.shapes.emplace_back(
+      Label{{frame.Right(), 16}, core::Translate("● start   ■ end"), Ink::kMuted, Anchor::kEnd, 10.5});
   return drawing;
 }
 
@@ -208,7 +218,7 @@ std::optional<Drawing> DrawRadar(const AttemptReport& report) {
   const std::vector<const MetricRow*> axes = ChooseAxes(report);
   if (axes.size() < kFewestAxes) return std::nullopt;
   Drawing drawing;
-  drawing.title = "Compared with the expert set";
+  drawing.title = core::Translate("Compared with the expert set");
   drawing.width = kWideWidth;
   drawing.height = 392;
   const RadarShape radar{kRadarCentre, kRadarRadius, axes.size()};
@@ -223,8 +233,9 @@ std::optional<Drawing> DrawRadar(const AttemptReport& report) {
     AddAxisName(drawing, radar, i, *axes[i]);
     const double deviation = CalcDeviation(*axes[i], axes[i]->value);
     outline.push_back(radar.At(i, deviation));
-    values += (i == 0 ? "" : "; ") + axes[i]->name + (axes[i]->hand.empty() ? "" : ", " + axes[i]->hand) +
-              ": " + core::FormatNumber(deviation, 2);
+    values += (i == 0 ? "" : "; ") + core::Translate(axes[i]->name) +
+              (axes[i]->hand.empty() ? "" : ", " + core::Translate(axes[i]->hand)) + ": " +
+              FormatDigits(deviation, 2);
   }
   outline.push_back(outline.front());
   drawing.shapes.emplace_back(Area{outline, Ink::kThis, 0.16, ""});
@@ -232,15 +243,16 @@ std::optional<Drawing> DrawRadar(const AttemptReport& report) {
   for (std::size_t i = 0; i < axes.size(); ++i)
     drawing.shapes.emplace_back(
         Mark{outline[i], MarkKind::kDot, Ink::kThis, 3.5,
-             axes[i]->name + ": " + FormatShown(axes[i]->value) + " " + axes[i]->unit});
-  std::vector<LegendEntry> legend = {{"this attempt", Ink::kThis},
-                                     {"experts' mean", Ink::kExpert, Dash::kDashed}};
-  if (has_group) legend.push_back({"group: middle half, median", Ink::kGroup, Dash::kSolid, true});
+             core::Translate(axes[i]->name) + ": " + FormatShown(axes[i]->value) + " " + axes[i]->unit});
+  std::vector<LegendEntry> legend = {{core::Translate("this attempt"), Ink::kThis},
+                                     {core::Translate("experts' mean"), Ink::kExpert, Dash::kDashed}};
+  if (has_group)
+    legend.push_back({core::Translate("group: middle half, median"), Ink::kGroup, Dash::kSolid, true});
   AddDeviations(drawing, axes);
   AddLegend(drawing, 60, 384, legend);
-  drawing.description =
-      "Standard deviations from the expert set's mean, better is further out; rings at -2, 0 and +2. " +
-      values + ".";
+  drawing.description = core::TranslateWith(
+      "Standard deviations from the expert set's mean, better is further out; rings at -2, 0 and +2. {1}.",
+      {values});
   return drawing;
 }
 
@@ -268,32 +280,35 @@ Drawing DrawLearningCurve(const LearningCurve& curve) {
   frame.x.Add(0.5);
   frame.x.Add(std::max(attempts, 1.0) + 0.5);
   frame.AddGround(drawing);
-  frame.AddXAxis(drawing, static_cast<int>(std::clamp(attempts, 2.0, 10.0)), "attempt");
+  frame.AddXAxis(drawing, static_cast<int>(std::clamp(attempts, 2.0, 10.0)), core::Translate("attempt"));
   frame.AddYAxis(drawing, 5, curve.measure + (curve.unit.empty() ? "" : " [" + curve.unit + "]"));
-  std::vector<LegendEntry> legend = {{"attempts", Ink::kThis}};
+  std::vector<LegendEntry> legend = {{core::Translate("attempts"), Ink::kThis}};
   if (curve.expert_mean) {
     const auto& mean = *curve.expert_mean;
     drawing.shapes.emplace_back(Line{frame.Map(std::vector<Vec2>{{frame.x.low, mean}, {frame.x.high, mean}}),
                                      Ink::kExpert, 1.6, Dash::kDashed});
-    legend.push_back({"experts' mean", Ink::kExpert, Dash::kDashed});
+    legend.push_back({core::Translate("experts' mean"), Ink::kExpert, Dash::kDashed});
   }
   if (curve.fit) {
     drawing.shapes.emplace_back(Line{frame.Map(fitted), Ink::kGood, 2});
-    legend.push_back({"fitted curve", Ink::kGood});
+    legend.push_back({core::Translate("fitted curve"), Ink::kGood});
   }
   drawing.shapes.emplace_back(Line{frame.Map(points), Ink::kThis, 1, Dash::kDotted});
   for (const Vec2& point : points)
     drawing.shapes.emplace_back(
         Mark{frame.Map(point), MarkKind::kDot, Ink::kThis, 3.6,
-             "Attempt " + core::FormatNumber(point.x) + ": " + FormatShown(point.y) + " " + curve.unit});
+             core::TranslateWith("Attempt {1}: {2} {3}",
+                                 {FormatDigits(point.x), FormatShown(point.y), curve.unit})});
   AddLegend(drawing, frame.left, 16, legend);
-  drawing.description = curve.measure + " of " + std::to_string(curve.values.size()) + " attempts";
+  drawing.description =
+      core::TranslateWith("{1} of {2} attempts", {curve.measure, std::to_string(curve.values.size())});
   if (!curve.values.empty())
-    drawing.description += ", from " + FormatShown(curve.values.front()) + " to " +
-                           FormatShown(curve.values.back()) + " " + curve.unit;
+    drawing.description += core::TranslateWith(
+        ", from {1} to {2} {3}",
+        {FormatShown(curve.values.front()), FormatShown(curve.values.back()), curve.unit});
   if (curve.fit) {
-    drawing.description +=
-        ". The fitted curve leads to " + FormatShown(curve.fit->plateau) + " " + curve.unit;
+    drawing.description += core::TranslateWith(". The fitted curve leads to {1} {2}",
+                                               {FormatShown(curve.fit->plateau), curve.unit});
   }
   drawing.description += ".";
   return drawing;
@@ -302,9 +317,9 @@ Drawing DrawLearningCurve(const LearningCurve& curve) {
 Drawing DrawCusum(const CusumChart& chart) {
   Drawing drawing;
   drawing.title = chart.task + ": CUSUM";
-  drawing.description = "Cumulative sum of failures: up with a failure, down with a success; limits at " +
-                        core::FormatNumber(chart.lower, 3) + " and " + core::FormatNumber(chart.upper, 3) +
-                        ". " + chart.verdict;
+  drawing.description = core::TranslateWith(
+      "Cumulative sum of failures: up with a failure, down with a success; limits at {1} and {2}. {3}",
+      {FormatDigits(chart.lower, 3), FormatDigits(chart.upper, 3), chart.verdict});
   drawing.width = kWidth;
   drawing.height = 272;
   PlotFrame frame;
@@ -319,8 +334,9 @@ Drawing DrawCusum(const CusumChart& chart) {
   frame.x.Add(0);
   frame.x.Add(std::max(1.0, static_cast<double>(chart.values.size())));
   frame.AddGround(drawing);
-  frame.AddXAxis(drawing, static_cast<int>(std::clamp<std::size_t>(chart.values.size(), 2, 10)), "attempt");
-  frame.AddYAxis(drawing, 5, "cumulative sum");
+  frame.AddXAxis(drawing, static_cast<int>(std::clamp<std::size_t>(chart.values.size(), 2, 10)),
+                 core::Translate("attempt"));
+  frame.AddYAxis(drawing, 5, core::Translate("cumulative sum"));
   for (const auto& [limit, ink] :
        {std::pair{chart.lower, Ink::kGood}, std::pair{chart.upper, Ink::kCritical}}) {
     drawing.shapes.emplace_back(Line{
@@ -328,13 +344,13 @@ Drawing DrawCusum(const CusumChart& chart) {
   }
   drawing.shapes.emplace_back(Line{frame.Map(points), Ink::kThis, 2});
   for (std::size_t i = 1; i < points.size(); ++i)
-    drawing.shapes.emplace_back(
-        Mark{frame.Map(points[i]), MarkKind::kDot, Ink::kThis, 3.2,
-             "After attempt " + std::to_string(i) + ": " + core::FormatNumber(points[i].y, 3)});
+    drawing.shapes.emplace_back(Mark{
+        frame.Map(points[i]), MarkKind::kDot, Ink::kThis, 3.2,
+        core::TranslateWith("After attempt {1}: {2}", {std::to_string(i), FormatDigits(points[i].y, 3)})});
   AddLegend(drawing, frame.left, 16,
-            {{"sum", Ink::kThis},
-             {"acceptable below", Ink::kGood, Dash::kDashed},
-             {"not above", Ink::kCritical, Dash::kDashed}});
+            {{core::Translate("sum"), Ink::kThis},
+             {core::Translate("acceptable below"), Ink::kGood, Dash::kDashed},
+             {core::Translate("not above"), Ink::kCritical, Dash::kDashed}});
   return drawing;
 }
 

@@ -4,19 +4,20 @@
 
 #include <string>
 
+#include "trocar/core/translate.h"
 #include "trocar/training/metric_definition.h"
 
 namespace trocar::report {
 
 inline std::string DisclaimerSentence() {
-  return "This is " + std::string(training::MetricsDisclaimer()) + ".";
+  return core::Translate("This is training feedback, not certified assessment.");
 }
 
 /// For the foot of every page.
 inline std::string FooterText(const std::string& person, const std::string& program) {
   std::string text = "Trocar" + (program.empty() ? "" : " " + program);
   if (!person.empty()) text += " · " + person;
-  return text + " · " + std::string(training::MetricsDisclaimer());
+  return text + " · " + core::Translate(training::MetricsDisclaimer());
 }
 
 }  // namespace trocar::report

@@ -7,6 +7,7 @@
 #include "page_style.h"
 #include "shown_text.h"
 #include "trocar/core/assert.h"
+#include "trocar/core/translate.h"
 #include "trocar/report/document.h"
 
 namespace trocar::report {
@@ -124,7 +125,9 @@ class PageWriter {
       Raw("</p>\n");
       if (!item.why.empty()) Element("p", item.why);
       if (!item.practise.empty()) {
-        Raw("<p class=\"do\"><b>Practise:</b> ");
+        Raw("<p class=\"do\">");
+        Element("b", core::Translate("Practise:"));
+        Raw(" ");
         Text(item.practise);
         Raw("</p>");
       }
@@ -180,12 +183,12 @@ std::string EncodeBase64(std::string_view bytes) {
 std::string FormatHtml(const Document& document) {
   const std::string style = FormatPageStyle();
   PageWriter page;
-  page.Raw(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
-      FormatPolicy(style, HasFilm(document)) +
-      "\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"referrer\" content=\"no-referrer\">\n");
+  page.Raw("<!DOCTYPE html>\n<html lang=\"" + core::Translate("en") +
+           "\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
+           FormatPolicy(style, HasFilm(document)) +
+           "\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+           "<meta name=\"referrer\" content=\"no-referrer\">\n");
   page.Element("title", document.title + " – Trocar");
   page.Raw("\n<style>" + style + "</style>\n</head>\n<body>\n<header><div>");
   page.Element("p", document.subtitle);

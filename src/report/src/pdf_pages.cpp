@@ -6,6 +6,7 @@
 #include "palette.h"
 #include "pdf_canvas.h"
 #include "trocar/core/printable.h"
+#include "trocar/core/translate.h"
 #include "trocar/report/document.h"
 
 namespace trocar::report {
@@ -75,7 +76,8 @@ class PageFlow {
     TextStyle right = style;
     right.anchor = Anchor::kEnd;
     const std::string page =
-        "page " + std::to_string(page_) + (pages_ > 0 ? " of " + std::to_string(pages_) : "");
+        pages_ > 0 ? core::TranslateWith("page {1} of {2}", {std::to_string(page_), std::to_string(pages_)})
+                   : core::TranslateWith("page {1}", {std::to_string(page_)});
     canvas_.AddText(page, kMargin + kWidth - 70, y, 70, right);
   }
 
@@ -263,14 +265,17 @@ class PageFlow {
         const double left = kMargin + static_cast<double>(n - i) * (half + kColumnGap);
         const double drawn = canvas_.AddPicture(pictures.pictures[n].png, left, y_, half);
         const std::string& caption = pictures.pictures[n].caption;
-        canvas_.AddText(drawn > 0 ? caption : caption + " (the picture cannot be read)", left, y_ + drawn + 2,
-                        half, style);
+        canvas_.AddText(
+            drawn > 0 ? caption : core::TranslateWith("{1} (the picture cannot be read)", {caption}), left,
+            y_ + drawn + 2, half, style);
       }
       y_ += height + 14 + 6;
     }
   }
 
-  void Write(const Film& film) { Write(Paragraph{"Film: " + film.file, Tone::kMuted}); }
+  void Write(const Film& film) {
+    Write(Paragraph{core::TranslateWith("Film: {1}", {film.file}), Tone::kMuted});
+  }
 
   void Write(const Advices& advices) {
     const TextStyle what{9.4, ColoursOf(Ink::kText).light, true}, why{8.4, ColoursOf(Ink::kMuted).light},
@@ -280,7 +285,8 @@ class PageFlow {
     for (const Advices::Item& item : advices.items) {
       const std::string sentence =
           item.moment.empty() ? item.sentence : item.sentence + " " + item.moment + ".";
-      const std::string todo = item.practise.empty() ? "" : "Practise: " + item.practise;
+      const std::string todo =
+          item.practise.empty() ? "" : core::TranslateWith("Practise: {1}", {item.practise});
       double height = 14 + canvas_.MeasureText(sentence, width, what);
       if (!item.why.empty()) height += 2 + canvas_.MeasureText(item.why, width, why);
       if (!todo.empty()) height += 2 + canvas_.MeasureText(todo, width, practise);

@@ -52,7 +52,7 @@ void PlotFrame::AddXAxis(Drawing& drawing, int wanted, const std::string& label,
     if (at > Right() + 0.5) continue;
     drawing.shapes.emplace_back(Line{{{at, top}, {at, Bottom()}}, Ink::kGrid, 1});
     drawing.shapes.emplace_back(Label{{at, Bottom() + 15},
-                                      is_time ? FormatClock(mark) : core::FormatNumber(mark),
+                                      is_time ? FormatClock(mark) : FormatDigits(mark),
                                       Ink::kMuted,
                                       Anchor::kMiddle,
                                       kMarkSize});
@@ -68,7 +68,7 @@ void PlotFrame::AddYAxis(Drawing& drawing, int wanted, const std::string& label)
     const double at = Map({x.low, mark}).y;
     drawing.shapes.emplace_back(Line{{{left, at}, {Right(), at}}, Ink::kGrid, 1});
     drawing.shapes.emplace_back(
-        Label{{left - 6, at + 3.5}, core::FormatNumber(mark), Ink::kMuted, Anchor::kEnd, kMarkSize});
+        Label{{left - 6, at + 3.5}, FormatDigits(mark), Ink::kMuted, Anchor::kEnd, kMarkSize});
   }
   if (!label.empty()) {
     drawing.shapes.emplace_back(

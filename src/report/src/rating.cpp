@@ -9,6 +9,7 @@
 #include <set>
 
 #include "trocar/core/json.h"
+#include "trocar/core/translate.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::report {
@@ -160,13 +161,16 @@ std::string FormatRating(const Rating& rating) {
 Document MakeRatingSheet(const RatingForm& form) {
   const std::string line = "______________________";
   Document document;
-  document.title = form.name;
-  document.subtitle = "Rating of an attempt";
-  document.head = {{"Trainee", line}, {"Attempt", line}, {"Rater", line}, {"Date", line}};
-  Section section{"Mark one box for each item", {}};
-  section.blocks.emplace_back(Paragraph{form.about, Tone::kPlain});
-  Table table{"From 1 (least) to 5 (most)",
-              {{"Item", false, 1.5},
+  document.title = core::Translate(form.name);
+  document.subtitle = core::Translate("Rating of an attempt");
+  document.head = {{core::Translate("Trainee"), line},
+                   {core::Translate("Attempt"), line},
+                   {core::Translate("Rater"), line},
+                   {core::Translate("Date"), line}};
+  Section section{core::Translate("Mark one box for each item"), {}};
+  section.blocks.emplace_back(Paragraph{core::Translate(form.about), Tone::kPlain});
+  Table table{core::Translate("From 1 (least) to 5 (most)"),
+              {{core::Translate("Item"), false, 1.5},
                {"1", false, 2},
                {"2", false, 0.5},
                {"3", false, 2},
@@ -174,16 +178,23 @@ Document MakeRatingSheet(const RatingForm& form) {
                {"5", false, 2}},
               {}};
   for (const RatingItem& item : form.items)
-    table.rows.push_back(
-        {{item.name}, {"☐ " + item.lowest}, {"☐"}, {"☐ " + item.middle}, {"☐"}, {"☐ " + item.highest}});
+    table.rows.push_back({{core::Translate(item.name)},
+                          {"☐ " + core::Translate(item.lowest)},
+                          {"☐"},
+                          {"☐ " + core::Translate(item.middle)},
+                          {"☐"},
+                          {"☐ " + core::Translate(item.highest)}});
   section.blocks.emplace_back(std::move(table));
   const auto items = static_cast<int>(form.items.size());
-  section.blocks.emplace_back(Facts{{{"Sum", "______ of " + std::to_string(items * kMostPoints) +
-                                                 " (at least " + std::to_string(items * kLeastPoints) + ")"},
-                                     {"Remarks", line + line + line}}});
+  section.blocks.emplace_back(
+      Facts{{{core::Translate("Sum"),
+              core::TranslateWith("______ of {1} (at least {2})", {std::to_string(items * kMostPoints),
+                                                                   std::to_string(items * kLeastPoints)})},
+             {core::Translate("Remarks"), line + line + line}}});
   document.sections.push_back(std::move(section));
-  document.sections.push_back({"Source", {Paragraph{form.source, Tone::kMuted}}});
-  document.footer = "Trocar · " + form.name + " · a rating by a person, beside the measures of the simulator";
+  document.sections.push_back({core::Translate("Source"), {Paragraph{form.source, Tone::kMuted}}});
+  document.footer = core::TranslateWith(
+      "Trocar · {1} · a rating by a person, beside the measures of the simulator", {form.name});
   return document;
 }
 

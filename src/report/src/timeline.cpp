@@ -5,6 +5,7 @@
 
 #include "plot_frame.h"
 #include "trocar/core/text_table.h"
+#include "trocar/core/translate.h"
 #include "trocar/report/charts.h"
 #include "trocar/training/metric_settings.h"
 
@@ -22,24 +23,24 @@ struct Lane {
   MarkKind kind;
 };
 constexpr std::array<Lane, 3> kLanes = {
-    {{training::Severity::kCritical, "Critical errors", Ink::kCritical, MarkKind::kDiamond},
-     {training::Severity::kMajor, "Major errors", Ink::kMajor, MarkKind::kTriangle},
-     {training::Severity::kMinor, "Minor errors", Ink::kMinor, MarkKind::kDot}}};
+    {{training::Severity::kCritical, core::Mark("Critical errors"), Ink::kCritical, MarkKind::kDiamond},
+     {training::Severity::kMajor, core::Mark("Major errors"), Ink::kMajor, MarkKind::kTriangle},
+     {training::Severity::kMinor, core::Mark("Minor errors"), Ink::kMinor, MarkKind::kDot}}};
 
 void AddRowName(Drawing& drawing, double middle, const std::string& name) {
   drawing.shapes.emplace_back(Label{{kLabelRoom - 34, middle + 4}, name, Ink::kMuted, Anchor::kEnd, 11});
 }
 
 void AddPhases(Drawing& drawing, const AttemptReport& report, const PlotFrame& frame) {
-  AddRowName(drawing, frame.top + frame.height / 2, "Phases");
+  AddRowName(drawing, frame.top + frame.height / 2, core::Translate("Phases"));
   bool is_odd = false;
   for (const training::PhaseSpan& phase : report.phases) {
     const double from = frame.Map({phase.start, 0}).x, to = frame.Map({phase.end, 0}).x;
     const std::string name = PhaseName(phase.name);
-    drawing.shapes.emplace_back(
-        Area{MakeRectangle(from, frame.top, std::max(to - from - 1, 0.5), frame.height),
-             is_odd ? Ink::kPhaseOdd : Ink::kPhaseEven, 1,
-             name + ", " + FormatClock(phase.start) + " to " + FormatClock(phase.end)});
+    drawing.shapes.emplace_back(Area{
+        MakeRectangle(from, frame.top, std::max(to - from - 1, 0.5), frame.height),
+        is_odd ? Ink::kPhaseOdd : Ink::kPhaseEven, 1,
+        core::TranslateWith("{1}, {2} to {3}", {name, FormatClock(phase.start), FormatClock(phase.end)})});
     if (const std::string shown = CutToWidth(name, 10.5, to - from - 10); !shown.empty()) {
       drawing.shapes.emplace_back(
           Label{{from + 5, frame.top + frame.height / 2 + 4}, shown, Ink::kText, Anchor::kStart, 10.5});
@@ -51,7 +52,7 @@ void AddPhases(Drawing& drawing, const AttemptReport& report, const PlotFrame& f
 double AddErrors(Drawing& drawing, const AttemptReport& report, PlotFrame lane) {
   for (const Lane& kind : kLanes) {
     lane.AddGround(drawing);
-    AddRowName(drawing, lane.top + lane.height / 2, kind.name);
+    AddRowName(drawing, lane.top + lane.height / 2, core::Translate(kind.name));
     for (const ErrorRow& error : report.errors) {
       if (error.severity != kind.severity) continue;
       const double at = lane.Map({error.time, 0}).x;
@@ -59,7 +60,7 @@ double AddErrors(Drawing& drawing, const AttemptReport& report, PlotFrame lane) 
                                        kind.kind,
                                        kind.ink,
                                        4.6,
-                                       FormatClock(error.time) + " " + error.what});
+                                       FormatClock(error.time) + " " + core::TranslateComposed(error.what)});
     }
     lane.top += kLaneHeight + 2;
   }
@@ -69,8 +70,9 @@ double AddErrors(Drawing& drawing, const AttemptReport& report, PlotFrame lane) 
 void AddForce(Drawing& drawing, const AttemptReport& report, std::size_t hand, const PlotFrame& frame) {
   frame.AddGround(drawing);
   frame.AddYAxis(drawing, 3, "");
-  AddRowName(drawing, frame.top + frame.height / 2 - 7, hand == 0 ? "Left hand" : "Right hand");
-  AddRowName(drawing, frame.top + frame.height / 2 + 7, "force [N]");
+  AddRowName(drawing, frame.top + frame.height / 2 - 7,
+             hand == 0 ? core::Translate("Left hand") : core::Translate("Right hand"));
+  AddRowName(drawing, frame.top + frame.height / 2 + 7, core::Translate("force [N]"));
   const double threshold = training::MetricSettings().force_threshold;
   if (threshold < frame.y.high) {
     drawing.shapes.emplace_back(
@@ -88,18 +90,21 @@ void AddForce(Drawing& drawing, const AttemptReport& report, std::size_t hand, c
 }
 
 std::string DescribeTimeline(const AttemptReport& report, double peak) {
-  std::string text = "Over " + FormatDuration(report.seconds) + ": ";
-  if (!report.phases.empty()) text += std::to_string(report.phases.size()) + " stretches of phases, ";
-  text += std::to_string(report.errors.size()) + (report.errors.size() == 1 ? " error" : " errors");
-  return text + ", and the force of the tissue on each instrument, at most " + core::FormatNumber(peak, 3) +
-         " newtons. The tables say the same in words.";
+  std::string text = core::TranslateWith("Over {1}: ", {FormatDuration(report.seconds)});
+  if (!report.phases.empty())
+    text += core::TranslateWith("{1} stretches of phases, ", {std::to_string(report.phases.size())});
+  text += core::TranslateCount("{1} error", "{1} errors", report.errors.size());
+  return core::TranslateWith(
+      "{1}, and the force of the tissue on each instrument, at most {2} newtons. The tables say the same in "
+      "words.",
+      {text, FormatDigits(peak, 3)});
 }
 
 }  // namespace
 
 Drawing DrawTimeline(const AttemptReport& report) {
   Drawing drawing;
-  drawing.title = "Time line";
+  drawing.title = core::Translate("Time line");
   drawing.width = kWidth;
   double peak = 0;
   for (const HandSeries& hand : report.hands) {
@@ -131,13 +136,13 @@ Drawing DrawTimeline(const AttemptReport& report) {
     top += kForceHeight + kGap;
   }
   // marks below the last panel, and the moment of the critical view through all
-  frame.AddXAxis(drawing, 10, "time [min:s]", true);
+  frame.AddXAxis(drawing, 10, core::Translate("time [min:s]"), true);
   if (report.critical_view_time) {
     const double at = frame.Map({*report.critical_view_time, 0}).x;
     drawing.shapes.emplace_back(
         Line{{{at, kViewLabel}, {at, frame.Bottom()}}, Ink::kGood, 1.6, Dash::kDashed});
     drawing.shapes.emplace_back(Label{{std::clamp(at, kLabelRoom + 60, kWidth - 80), kViewLabel - 3},
-                                      "critical view of safety",
+                                      core::Translate("critical view of safety"),
                                       Ink::kGood,
                                       Anchor::kMiddle,
                                       10.5,

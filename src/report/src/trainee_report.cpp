@@ -8,6 +8,7 @@
 
 #include "disclaimer.h"
 #include "trocar/core/text_table.h"
+#include "trocar/core/translate.h"
 #include "trocar/report/charts.h"
 
 namespace trocar::report {
@@ -19,11 +20,11 @@ constexpr const char* kDash = "–";
 
 /// "Object transport, hard"
 std::string TaskText(const std::string& task, const std::string& level) {
-  return level.empty() ? task : task + ", " + level;
+  return level.empty() ? core::Translate(task) : core::Translate(task) + ", " + core::Translate(level);
 }
 
 std::string ShortOutcome(const AttemptReport& report) {
-  return report.is_completed ? "completed" : "not completed";
+  return report.is_completed ? core::Translate("completed") : core::Translate("not completed");
 }
 
 /// Fewer critical errors first, then the better score or the shorter time.
@@ -47,8 +48,13 @@ void AddCurves(const std::vector<AttemptReport>& reports, TraineeReport& trainee
   for (const std::string& task : tasks) {
     const auto& attempts = of_task[task];
     if (attempts.size() < kFewestOfACurve) continue;
-    LearningCurve time{task, "Time", "s", {}, {}, {}},
-        score{task, "Score", attempts[0]->facts.best_score ? "%" : "points", {}, {}, {}};
+    LearningCurve time{task, core::Translate("Time"), "s", {}, {}, {}},
+        score{task,
+              core::Translate("Score"),
+              attempts[0]->facts.best_score ? "%" : core::Translate("points"),
+              {},
+              {},
+              {}};
     for (const AttemptReport* attempt : attempts) {
       time.values.push_back(attempt->seconds);
       if (attempt->score) score.values.push_back(*attempt->score);
@@ -79,20 +85,21 @@ void AddPractise(const std::vector<AttemptReport>& reports, TraineeReport& train
 
 Cell PassCell(const AttemptRow& row) {
   if (!row.is_passed) return {kDash, Tone::kMuted};
-  return *row.is_passed ? Cell{"passed", Tone::kGood} : Cell{"not passed", Tone::kCaution};
+  return *row.is_passed ? Cell{core::Translate("passed"), Tone::kGood}
+                        : Cell{core::Translate("not passed"), Tone::kCaution};
 }
 
 Table MakeAttemptTable(const TraineeReport& report) {
-  Table table{"In order of time",
-              {{"Date", false, 1.7},
-               {"Task", false, 2},
-               {"Patient", false, 1},
-               {"Time", true, 0.7},
-               {"Score", true, 0.7},
-               {"Critical errors", true, 0.9},
-               {"All errors", true, 0.8},
-               {"Outcome", false, 1.1},
-               {"Thresholds", false, 1}},
+  Table table{core::Translate("In order of time"),
+              {{core::Translate("Date"), false, 1.7},
+               {core::Translate("Task"), false, 2},
+               {core::Translate("Patient"), false, 1},
+               {core::Translate("Time"), true, 0.7},
+               {core::Translate("Score"), true, 0.7},
+               {core::Translate("Critical errors"), true, 0.9},
+               {core::Translate("All errors"), true, 0.8},
+               {core::Translate("Outcome"), false, 1.1},
+               {core::Translate("Thresholds"), false, 1}},
               {}};
   for (const AttemptRow& row : report.attempts) {
     table.rows.push_back(
@@ -100,7 +107,7 @@ Table MakeAttemptTable(const TraineeReport& report) {
          {TaskText(row.task, row.level)},
          {row.patient.empty() ? kDash : row.patient},
          {FormatClock(std::round(row.seconds))},
-         {row.score && row.is_completed ? core::FormatNumber(*row.score, 3) : kDash},
+         {row.score && row.is_completed ? FormatDigits(*row.score, 3) : kDash},
          {std::to_string(row.critical_errors), row.critical_errors > 0 ? Tone::kBad : Tone::kPlain},
          {std::to_string(row.errors)},
          {row.outcome, row.is_completed ? Tone::kPlain : Tone::kCaution},
@@ -110,13 +117,14 @@ Table MakeAttemptTable(const TraineeReport& report) {
 }
 
 Table MakeBestTable(const TraineeReport& report) {
-  Table table{"The best attempt of each task: completed, fewest critical errors, then score and time",
-              {{"Task", false, 2.4},
-               {"Attempts", true, 0.9},
-               {"Completed", true, 0.9},
-               {"Best time", true, 0.9},
-               {"Best score", true, 0.9},
-               {"When", false, 1.8}},
+  Table table{core::Translate(
+                  "The best attempt of each task: completed, fewest critical errors, then score and time"),
+              {{core::Translate("Task"), false, 2.4},
+               {core::Translate("Attempts"), true, 0.9},
+               {core::Translate("Completed"), true, 0.9},
+               {core::Translate("Best time"), true, 0.9},
+               {core::Translate("Best score"), true, 0.9},
+               {core::Translate("When"), false, 1.8}},
               {}};
   std::vector<std::string> tasks;
   std::map<std::string, std::vector<const AttemptRow*>> of_task;
@@ -136,25 +144,26 @@ Table MakeBestTable(const TraineeReport& report) {
                           {std::to_string(rows.size())},
                           {std::to_string(completed)},
                           {is_any ? FormatClock(std::round(best->seconds)) : kDash},
-                          {is_any && best->score ? core::FormatNumber(*best->score, 3) : kDash},
+                          {is_any && best->score ? FormatDigits(*best->score, 3) : kDash},
                           {is_any ? FormatDate(best->started) : kDash}});
   }
   return table;
 }
 
 Section MakeSummary(const TraineeReport& report) {
-  Section section{"Summary", {}};
+  Section section{core::Translate("Summary"), {}};
   Tiles tiles;
   const auto completed = std::count_if(report.attempts.begin(), report.attempts.end(),
                                        [](const AttemptRow& row) { return row.is_completed; });
   double seconds = 0;
   std::size_t critical = 0;
   for (const AttemptRow& row : report.attempts) seconds += row.seconds, critical += row.critical_errors;
-  tiles.tiles.push_back({"Attempts", std::to_string(report.attempts.size()),
-                         std::to_string(completed) + " completed", Tone::kPlain});
-  tiles.tiles.push_back({"Time at the simulator", FormatDuration(seconds), "", Tone::kPlain});
-  tiles.tiles.push_back({"Critical errors", std::to_string(critical), "in all attempts",
-                         critical > 0 ? Tone::kBad : Tone::kPlain});
+  tiles.tiles.push_back({core::Translate("Attempts"), std::to_string(report.attempts.size()),
+                         core::TranslateWith("{1} completed", {std::to_string(completed)}), Tone::kPlain});
+  tiles.tiles.push_back(
+      {core::Translate("Time at the simulator"), FormatDuration(seconds), "", Tone::kPlain});
+  tiles.tiles.push_back({core::Translate("Critical errors"), std::to_string(critical),
+                         core::Translate("in all attempts"), critical > 0 ? Tone::kBad : Tone::kPlain});
   section.blocks.emplace_back(std::move(tiles));
   section.blocks.emplace_back(Paragraph{DisclaimerSentence(), Tone::kMuted});
   return section;
@@ -194,29 +203,32 @@ TraineeReport MakeTraineeReport(const std::vector<AttemptReport>& reports) {
 
 Document MakeDocument(const TraineeReport& report) {
   Document document;
-  document.title = report.person.empty() ? "Trainee" : "Trainee " + report.person;
-  document.subtitle = "Report of a trainee";
+  document.title = report.person.empty() ? core::Translate("Trainee")
+                                         : core::TranslateWith("Trainee {1}", {report.person});
+  document.subtitle = core::Translate("Report of a trainee");
   document.date = report.until;
-  document.head = {{"From", FormatDate(report.from)}, {"Until", FormatDate(report.until)}};
+  document.head = {{core::Translate("From"), FormatDate(report.from)},
+                   {core::Translate("Until"), FormatDate(report.until)}};
   document.sections.push_back(MakeSummary(report));
   if (!report.practise.empty()) {
     Advices advices;
     for (const PractisePoint& point : report.practise) {
-      advices.items.push_back(
-          {point.sentence,
-           "in " + std::to_string(point.attempts) + (point.attempts == 1 ? " attempt" : " attempts"), "",
-           point.practise});
+      advices.items.push_back({core::TranslateComposed(point.sentence),
+                               core::TranslateCount("in {1} attempt", "in {1} attempts",
+                                                    static_cast<std::size_t>(point.attempts)),
+                               "", core::Translate(point.practise)});
     }
-    document.sections.push_back({"What to practise", {std::move(advices)}});
+    document.sections.push_back({core::Translate("What to practise"), {std::move(advices)}});
   }
   if (!report.curves.empty()) {
     Figures figures;
     for (const LearningCurve& curve : report.curves) figures.drawings.push_back(DrawLearningCurve(curve));
     document.sections.push_back(
-        {"Learning curves", {std::move(figures), Paragraph{"Completed attempts only.", Tone::kMuted}}});
+        {core::Translate("Learning curves"),
+         {std::move(figures), Paragraph{core::Translate("Completed attempts only."), Tone::kMuted}}});
   }
   if (!report.cusums.empty()) {
-    Section section{"Failures over time (CUSUM)", {}};
+    Section section{core::Translate("Failures over time (CUSUM)"), {}};
     Figures figures;
     for (const CusumChart& chart : report.cusums) figures.drawings.push_back(DrawCusum(chart));
     section.blocks.emplace_back(std::move(figures));
@@ -224,8 +236,8 @@ Document MakeDocument(const TraineeReport& report) {
       section.blocks.emplace_back(Paragraph{chart.task + ": " + chart.verdict, Tone::kPlain});
     document.sections.push_back(std::move(section));
   }
-  document.sections.push_back({"Best attempts", {MakeBestTable(report)}});
-  document.sections.push_back({"All attempts", {MakeAttemptTable(report)}});
+  document.sections.push_back({core::Translate("Best attempts"), {MakeBestTable(report)}});
+  document.sections.push_back({core::Translate("All attempts"), {MakeAttemptTable(report)}});
   document.footer = FooterText(report.person, report.program);
   return document;
 }

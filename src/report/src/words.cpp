@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "trocar/core/text_table.h"
+#include "trocar/core/translate.h"
 #include "trocar/report/attempt_report.h"
 
 namespace trocar::report {
@@ -14,16 +15,18 @@ namespace {
 
 // the phases of Cholec80 (Twinanda et al. 2017) in words
 constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kPhases = {{
-    {"Preparation", "Preparation"},
-    {"CalotTriangleDissection", "Dissection of the hepatocystic triangle"},
-    {"ClippingCutting", "Clipping and cutting"},
-    {"GallbladderDissection", "Dissection of the gallbladder from its bed"},
-    {"GallbladderPackaging", "Packing the gallbladder"},
-    {"CleaningCoagulation", "Cleaning and coagulation"},
-    {"GallbladderRetraction", "Taking the gallbladder out"},
+    {"Preparation", core::Mark("Preparation")},
+    {"CalotTriangleDissection", core::Mark("Dissection of the hepatocystic triangle")},
+    {"ClippingCutting", core::Mark("Clipping and cutting")},
+    {"GallbladderDissection", core::Mark("Dissection of the gallbladder from its bed")},
+    {"GallbladderPackaging", core::Mark("Packing the gallbladder")},
+    {"CleaningCoagulation", core::Mark("Cleaning and coagulation")},
+    {"GallbladderRetraction", core::Mark("Taking the gallbladder out")},
 }};
-constexpr const char* kMonths[] = {"January", "February", "March",     "April",   "May",      "June",
-                                   "July",    "August",   "September", "October", "November", "December"};
+constexpr const char* kMonths[] = {core::Mark("January"), core::Mark("February"), core::Mark("March"),
+                                   core::Mark("April"),   core::Mark("May"),      core::Mark("June"),
+                                   core::Mark("July"),    core::Mark("August"),   core::Mark("September"),
+                                   core::Mark("October"), core::Mark("November"), core::Mark("December")};
 
 }  // namespace
 
@@ -40,11 +43,15 @@ std::string FormatClock(double seconds) {
   } else {
     std::snprintf(text, sizeof text, "%lld:%02lld", whole / 60, whole % 60);
   }
-  return text;
+  return core::LocalNumber(text);
+}
+
+std::string FormatDigits(double value, int digits) {
+  return core::LocalNumber(core::FormatNumber(value, digits));
 }
 
 std::string FormatDuration(double seconds) {
-  if (seconds < 100) return core::FormatNumber(seconds, seconds < 10 ? 2 : 3) + " s";
+  if (seconds < 100) return FormatDigits(seconds, seconds < 10 ? 2 : 3) + " s";
   const auto whole = static_cast<long long>(std::llround(seconds));
   std::string text = std::to_string(whole / 60) + " min";
   if (whole % 60 != 0) text += " " + std::to_string(whole % 60) + " s";
@@ -54,10 +61,10 @@ std::string FormatDuration(double seconds) {
 std::string FormatShown(double value) {
   const double size = std::fabs(value);
   char text[64];
-  if (size >= 1e6 || (size > 0 && size < 1e-3)) return core::FormatNumber(value, 3);
+  if (size >= 1e6 || (size > 0 && size < 1e-3)) return FormatDigits(value, 3);
   const int decimals = value == std::round(value) ? 0 : size >= 100 ? 0 : size >= 10 ? 1 : 2;
   std::snprintf(text, sizeof text, "%.*f", size < 0.1 && size > 0 ? 3 : decimals, value);
-  return text;
+  return core::LocalNumber(text);
 }
 
 std::string FormatDate(const std::string& date) {
@@ -65,21 +72,23 @@ std::string FormatDate(const std::string& date) {
   if (std::sscanf(date.c_str(), "%4d-%2d-%2dT%2d:%2d", &year, &month, &day, &hour, &minute) != 5 ||
       month < 1 || month > 12)
     return date;
-  char text[64];
-  std::snprintf(text, sizeof text, "%d %s %d, %02d:%02d", day, kMonths[month - 1], year, hour, minute);
-  return text;
+  char clock[16];
+  std::snprintf(clock, sizeof clock, "%02d:%02d", hour, minute);
+  return core::TranslateWith("{1} {2} {3}, {4}", {std::to_string(day), core::Translate(kMonths[month - 1]),
+                                                  std::to_string(year), clock});
 }
 
 std::string PhaseName(const std::string& phase) {
   for (const auto& [key, name] : kPhases) {
-    if (phase == key) return std::string(name);
+    if (phase == key) return core::Translate(name);
   }
   return phase;
 }
 
 std::string HandName(const std::string& hand) {
-  if (hand == "left" || hand == "right") return hand + " hand";
-  return hand;
+  if (hand == "left") return core::Translate("left hand");
+  if (hand == "right") return core::Translate("right hand");
+  return hand == "camera" ? core::Translate("camera") : hand;
 }
 
 }  // namespace trocar::report

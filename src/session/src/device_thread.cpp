@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "trocar/core/newest_slot.h"
+#include "trocar/core/translate.h"
 #include "trocar/device/hand_rig.h"
 #include "trocar/device/pose_driver.h"
 #include "trocar/session/hand_joints.h"
@@ -90,10 +91,11 @@ bool DeviceThread::Content::Connect() {
   const bool was_lost = report.losses > 0;
   if (done) {
     Say(DeviceReport::Phase::kRunning,
-        driver->GetName() + (was_lost ? " is connected again" : " is connected"));
+        core::TranslateWith(was_lost ? core::Mark("{1} is connected again") : core::Mark("{1} is connected"),
+                            {driver->GetName()}));
   } else {
     Say(was_lost ? DeviceReport::Phase::kLost : DeviceReport::Phase::kConnecting,
-        done.error().Text() + "; trying again");
+        core::ShownText(done.error()) + core::Translate("; trying again"));
   }
   return done.ok();
 }
@@ -126,8 +128,8 @@ void DeviceThread::Content::Run() {
         report.sensors = {};
         report.raw_jaws = {};
         Say(DeviceReport::Phase::kLost,
-            core::Error{core::ErrorCode::kDeviceLost, driver->GetName() + " was lost; check plug and power"}
-                .Text());
+            core::ShownText(core::Error{core::ErrorCode::kDeviceLost,
+                                        driver->GetName() + " was lost; check plug and power"}));
         Nap(kRetryPeriod);
         break;
     }
@@ -141,7 +143,7 @@ DeviceThread::DeviceThread(std::unique_ptr<device::Driver> driver, const device:
   content_->buttons = device::HandButtons(buttons);
   content_->driver = std::move(driver);
   content_->FindParts(*content_->driver);
-  content_->report.message = content_->driver->GetName() + " is being connected";
+  content_->report.message = core::TranslateWith("{1} is being connected", {content_->driver->GetName()});
   content_->Publish();
   content_->slot.Update();
   content_->thread = std::thread([content = content_.get()] { content->Run(); });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 
+#include "trocar/core/translate.h"
 #include "trocar/session/haptic_loop.h"
 
 namespace trocar::session {
@@ -10,42 +12,44 @@ namespace {
 
 std::string DescribeHand(const HapticHandStatus& hand, const char* name) {
   char text[64];
-  std::string line = name;
+  std::string line = core::Translate(name);
   if (hand.state == haptics::ArmState::kUnarmed) {
     const haptics::FaultEntry& fault = haptics::FindFault(hand.reason);
-    line += " off";
-    if (!fault.what.empty()) line += ": " + std::string(fault.what) + " (" + std::string(fault.remedy) + ")";
+    line += core::Translate(" off");
+    if (!fault.what.empty())
+      line += ": " + core::Translate(fault.what) + " (" + core::Translate(fault.remedy) + ")";
   } else {
-    std::snprintf(text, sizeof text, " %s %.2f N", std::string(haptics::ArmStateName(hand.state)).c_str(),
-                  hand.force);
-    line += text;
+    std::snprintf(text, sizeof text, " %.2f N", hand.force);
+    line += " " + core::Translate(haptics::ArmStateName(hand.state)) + core::LocalNumber(text);
   }
-  if (hand.is_warm) line += ", motors warm";
+  if (hand.is_warm) line += core::Translate(", motors warm");
   return line;
 }
 
 }  // namespace
 
 std::string DescribeHaptics(const HapticStatus& status) {
-  char text[96];
-  std::snprintf(text, sizeof text, "Force %.0f Hz%s:", status.rate,
-                status.is_real_time ? "" : " (not real-time)");
-  std::string line = text;
+  const std::string rate = std::to_string(std::lround(status.rate));
+  std::string line = core::TranslateWith(
+      status.is_real_time ? core::Mark("Force {1} Hz:") : core::Mark("Force {1} Hz (not real-time):"),
+      {rate});
   if (status.check_pose == haptics::CheckPoseState::kAsking) {
-    line += std::string(" check pose: bring the ") + (status.asked == kLeft ? "left" : "right") +
-            " device to its place and hold its button.";
+    line += status.asked == kLeft
+                ? core::Translate(" check pose: bring the left device to its place and hold its button.")
+                : core::Translate(" check pose: bring the right device to its place and hold its button.");
   }
   if (status.check_pose == haptics::CheckPoseState::kWrongDevice)
-    line += " check pose: another device answered, are they swapped?";
+    line += core::Translate(" check pose: another device answered, are they swapped?");
   const HapticHandStatus &left = status.hands[kLeft], &right = status.hands[kRight];
   const bool are_alike = left.is_present && right.is_present && left.state == haptics::ArmState::kUnarmed &&
                          right.state == left.state && right.reason == left.reason &&
                          right.is_warm == left.is_warm;
-  if (are_alike) return line + " " + DescribeHand(left, "both");
+  if (are_alike) return line + " " + DescribeHand(left, core::Mark("both"));
   const char* separator = " ";
   for (const Hand hand : {kLeft, kRight}) {
     if (!status.hands[hand].is_present) continue;
-    line += separator + DescribeHand(status.hands[hand], hand == kLeft ? "left" : "right");
+    line += separator +
+            DescribeHand(status.hands[hand], hand == kLeft ? core::Mark("left") : core::Mark("right"));
     separator = "; ";
   }
   return line;

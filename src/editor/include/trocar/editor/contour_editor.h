@@ -83,7 +83,7 @@ class ContourEditor {
  private:
   void EmitError(const core::Status& status);
   void EmitEvent(const std::string& text);
-  void GoTo(const std::optional<contours::EditPlace>& place, const char* verb);
+  void GoTo(const std::optional<contours::EditPlace>& place, const std::string& verb);
   void GoTo(const std::optional<int>& slice);
   void GoToContoured(bool is_last);
   void CloseContour();

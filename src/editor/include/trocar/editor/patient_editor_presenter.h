@@ -140,6 +140,6 @@ class PatientEditorPresenter {
 };
 
 /// What the pointer does with a tool.
-const char* HintText(EditorTool tool) noexcept;
+std::string HintText(EditorTool tool);
 
 }  // namespace trocar::editor

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/core/translate.h"
 #include "trocar/editor/contour_panel_presenter.h"
 #include "trocar/editor/mesh_view.h"
 #include "trocar/gui/card.h"
@@ -33,7 +34,8 @@ class OrganCard : public gui::Card {
   Gtk::Popover name_popover_;
   Gtk::Entry name_entry_;
   bool is_naming_new_ = false;
-  Gtk::Button add_{"Add"}, rename_{"Rename"}, delete_{"Delete"};
+  Gtk::Button add_{core::Translate("Add")}, rename_{core::Translate("Rename")},
+      delete_{core::Translate("Delete")};
 };
 
 /// The slice that is shown: what is in it, and commands for all of it.
@@ -80,7 +82,7 @@ class SurfaceCard : public gui::Card {
   MeshView view_;
   Gtk::Label text_;
   Gtk::ProgressBar progress_;
-  Gtk::Button cancel_{"Cancel"};
+  Gtk::Button cancel_{core::Translate("Cancel")};
   sigc::signal<void()> signal_cancel_;
 };
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "trocar/core/clock.h"
+#include "trocar/core/translate.h"
 #include "trocar/editor/contour_canvas.h"
 #include "trocar/editor/contour_panel.h"
 #include "trocar/editor/contour_presenter.h"
@@ -69,7 +70,7 @@ class ContourWindow : public Gtk::ApplicationWindow, private ContourScreen {
   gui::HelpCard help_card_{ContourHelp()};
   Gtk::Label hint_, place_, series_text_, state_;
   Gtk::ProgressBar busy_;
-  Gtk::Button stop_build_{"Stop"};
+  Gtk::Button stop_build_{core::Translate("Stop")};
   gui::FileDialog file_dialog_;
   std::array<sigc::connection, static_cast<std::size_t>(ContourTimer::kCount)> timers_;
   Glib::Dispatcher loaded_, built_, progressed_, surfaces_changed_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/core/translate.h"
 #include "trocar/editor/patient_panel_presenter.h"
 #include "trocar/gui/card.h"
 
@@ -55,7 +56,7 @@ class PaintCard : public gui::Card {
 
  private:
   ChoiceBox regions_;
-  Gtk::ToggleButton paint_{"Paint"}, erase_{"Erase"};
+  Gtk::ToggleButton paint_{core::Translate("Paint")}, erase_{core::Translate("Erase")};
   ValueSlider brush_;
   bool is_showing_ = false;
 };
@@ -76,7 +77,8 @@ class TubeCard : public gui::Card {
   Gtk::Label facts_;
   ChoiceBox from_, to_, missing_;
   ValueSlider reach_;
-  Gtk::Button insert_{"Insert point"}, delete_{"Delete point"}, remove_{"Remove"}, add_{"Add"};
+  Gtk::Button insert_{core::Translate("Insert point")}, delete_{core::Translate("Delete point")},
+      remove_{core::Translate("Remove")}, add_{core::Translate("Add")};
   bool is_showing_ = false;
 };
 
@@ -98,7 +100,8 @@ class LookCard : public gui::Card {
   void Show(const PatientPanelPage& page);
 
  private:
-  Gtk::CheckButton colours_{"Regions"}, edges_{"Triangles"}, strands_{"Bed strands"};
+  Gtk::CheckButton colours_{core::Translate("Regions")}, edges_{core::Translate("Triangles")},
+      strands_{core::Translate("Bed strands")};
   Gtk::Scale opacity_{Gtk::Orientation::HORIZONTAL};
   view::PatientFigureOptions look_;
   bool is_showing_ = false;

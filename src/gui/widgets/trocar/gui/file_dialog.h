@@ -14,7 +14,7 @@ namespace trocar::gui {
 struct FileRequest {
   /// Of files: "Recordings", "*.trocar".
   struct Kind {
-    const char *name, *pattern;
+    std::string name, pattern;
   };
   std::string title;
   std::string accept;       ///< on the button; empty: "Save" or "Open"

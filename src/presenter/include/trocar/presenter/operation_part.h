@@ -59,6 +59,6 @@ class OperationEnd {
   double begin_ = 0, last_ = 0, time_limit_ = 0;  // [s]
 };
 /// For a person: "The part is done.", "The time is over."
-std::string_view Describe(OperationEnd::Reason reason) noexcept;
+std::string Describe(OperationEnd::Reason reason);
 
 }  // namespace trocar::presenter

@@ -46,6 +46,8 @@ std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ);
 /// "left grasper"; "left hand" where it has several tools
 std::string HandLabel(const scene::Scene& scene, std::int32_t hand);
 
+/// "clip applier"
+std::string ToolName(const instrument::Tool& tool);
 /// Name of the tool that a hand has in use, with spaces: "clip applier, 12 clips", "hook".
 std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand);
 /// "4.2 mL"

@@ -56,6 +56,9 @@ TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& 
 /// "74.3 of 85", "87.4 points"
 std::string FormatScore(const TaskResult& result);
 /// Everything, as an object with "format": "trocar-task-result".
+/// What did it, in words of the chosen language: "ring 1, left hand".
+std::string DescribeDoer(const TaskResult::ErrorRow& error);
+
 std::string FormatTaskResultJson(const TaskResult& result);
 /// A page of its own.
 std::string FormatTaskResultHtml(const TaskResult& result);

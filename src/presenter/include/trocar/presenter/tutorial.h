@@ -2,7 +2,9 @@
 /// \file tutorial.h  Teaches each control by having it done, and notices that it was done.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "trocar/device/mouse_keyboard.h"
 #include "trocar/presenter/key_bindings.h"
@@ -14,6 +16,9 @@ namespace trocar::presenter {
 inline constexpr int kTutorialSteps = 10;
 /// Task in which it is held: the first that has rings.
 inline constexpr const char* kTutorialTask = "peg_transfer";
+
+/// What each step says, with places for keys and buttons; translated where it is shown.
+std::span<const std::string_view> TutorialTexts() noexcept;
 
 /// What is seen of the person in a frame.
 struct TutorialSight {

@@ -141,6 +141,8 @@ Document MakeDocument(const AttemptReport& report);
 
 /// "1:07", "2:03:09"
 std::string FormatClock(double seconds);
+/// So many significant digits, with the decimal mark of the chosen language.
+std::string FormatDigits(double value, int digits = 4);
 /// "67 s", "12 min 7 s"
 std::string FormatDuration(double seconds);
 /// Number with as many digits as a reader needs.
