@@ -83,7 +83,7 @@ def write_curve(path, title, x_label, x, curves):
         lines.append(f'<line x1="{left}" y1="{y}" x2="{left + across}" y2="{y}" stroke="#ddd"/>')
         lines.append(f'<text x="{left - 8}" y="{y + 4}" text-anchor="end">{100 * share:.0f} %</text>')
     for share in (0, 0.25, 0.5, 0.75, 1):
-        lines.append(f'<text x="{left + share * across}" y="{top + up + 18}" text-anchor="middle">{share * last:g}</text>')
+        lines.append(f'<text x="{left + share * across}" y="{top + up + 18}" text-anchor="middle">{share * last:.5g}</text>')
     colours = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd")
     for number, (name, values) in enumerate(curves.items()):
         points = " ".join(f"{left + across * a / last:.1f},{top + up * (1 - b):.1f}" for a, b in zip(x, values))

@@ -138,7 +138,7 @@ def main():
         show=lambda steps, success: print(f"\r{steps:8} actions, {100 * success:3.0f} % of the last 100 episodes", end="", flush=True))
     print(f"\ntrained for {seconds:.0f} s")
     learning.write_curve(arguments.curve, "Reach, learnt from nothing", "actions", curve[0],
-                         {"success while learning": curve[1]})
+                         {"success": curve[1]})
     judge = lambda make_policy: learning.judge(TASK, UNSEEN, make_policy, **SETTINGS)
     learning.print_results({"learnt": judge(lambda environment, seed: policy.act), "random": judge(learning.random_policy),
                             "expert": learning.judge_expert(TASK, UNSEEN)}, UNSEEN)
