@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "binding.h"
+#include "camera.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/environment/pool.h"
 
@@ -85,79 +86,136 @@ py::dict DescribeFeatures(const environment::Features& features) {
   return out;
 }
 
+/// A pool with what is drawn of it.
+struct DrawnPool {
+  std::shared_ptr<PoolPictures> pictures;  // also of the pool's observer; empty where states are enough
+  std::unique_ptr<Pool> pool;
+};
+
+environment::Autoreset FindAutoreset(const std::string& name) {
+  if (name == "NextStep") return environment::Autoreset::kNextStep;
+  if (name == "SameStep") return environment::Autoreset::kSameStep;
+  if (name == "Disabled") return environment::Autoreset::kDisabled;
+  throw Failure({core::ErrorCode::kUnknownName,
+                 "there is no autoreset mode \"" + name + "\"; choose NextStep, SameStep or Disabled"});
+}
+
+PoolPictures::Parts FindParts(const std::vector<std::string>& names) {
+  PoolPictures::Parts parts;
+  for (const std::string& name : names) {
+    if (name == "picture") {
+      parts.has_picture = true;
+    } else if (name == "depth") {
+      parts.has_depth = true;
+    } else if (name == "masks") {
+      parts.has_masks = true;
+    } else if (name == "normals") {
+      parts.has_normals = true;
+    } else {
+      throw Failure({core::ErrorCode::kUnknownName,
+                     "a pool draws no \"" + name + "\"; choose picture, depth, masks or normals"});
+    }
+  }
+  return parts;
+}
+
+std::unique_ptr<DrawnPool> MakePool(std::shared_ptr<EnvironmentModel> model, int count, int threads,
+                                    const std::string& autoreset, std::uint64_t seed,
+                                    const std::vector<std::string>& drawn, int width, int height) {
+  const environment::Autoreset mode = FindAutoreset(autoreset);
+  const PoolPictures::Parts parts = FindParts(drawn);
+  const py::gil_scoped_release release;
+  auto made = std::make_unique<DrawnPool>();
+  environment::PoolSettings settings{count, threads, mode, seed, {}};
+  if (!drawn.empty()) {
+    // before all memory is taken: the size may be wrong, and there may be no graphics
+    (void)Take(Camera::Make(width, height));
+    if (count < 1 || count > environment::kMostEnvironments)
+      throw Failure({core::ErrorCode::kUsage, "a pool has 1 to 4096 environments"});
+    made->pictures = std::make_shared<PoolPictures>(count, width, height, parts);
+    settings.observe = [pictures = made->pictures](std::int32_t id, const Environment& environment,
+                                                   bool is_final) {
+      return pictures->Observe(id, environment, is_final);
+    };
+  }
+  made->pool = Take(Pool::Make(std::move(model), settings));
+  return made;
+}
+
 /// A read-only view of memory that `owner` keeps alive.
 template <typename T>
-py::array ViewRows(const std::vector<T>& all, py::ssize_t rows, py::ssize_t columns,
+py::array ViewRows(const std::vector<T>& all, const std::vector<py::ssize_t>& shape,
                    const py::object& owner) {
-  std::vector<py::ssize_t> shape = {rows};
-  if (columns > 0) shape.push_back(columns);
   py::array_t<T> view(shape, all.data(), owner);
   view.attr("setflags")(py::arg("write") = false);
   return view;
 }
 
+void ViewPictures(const PoolPictures& pictures, py::ssize_t count, const py::object& owner, py::dict& out) {
+  const py::ssize_t h = pictures.Height(), w = pictures.Width();
+  const auto view = [&](const std::string& prefix, const PoolPictures::Rows& rows) {
+    const auto key = [&](const char* name) { return py::str(prefix + name); };
+    const PoolPictures::Parts& parts = pictures.GetParts();
+    if (parts.has_picture) out[key("picture")] = ViewRows(rows.picture, {count, h, w, 3}, owner);
+    if (parts.has_depth) out[key("depth")] = ViewRows(rows.depth, {count, h, w}, owner);
+    if (parts.has_masks) out[key("masks")] = ViewRows(rows.masks, {count, h, w}, owner);
+    if (parts.has_normals) out[key("normals")] = ViewRows(rows.normals, {count, h, w, 3}, owner);
+  };
+  view("", pictures.Now());
+  view("final_", pictures.Final());
+}
+
+py::dict ViewPool(const py::object& self) {
+  const auto& drawn = self.cast<const DrawnPool&>();
+  const auto& rows = drawn.pool->Rows();
+  const auto count = static_cast<py::ssize_t>(drawn.pool->Count());
+  const auto size = static_cast<py::ssize_t>(drawn.pool->Model().StateSize());
+  py::dict out;
+  out["state"] = ViewRows(rows.state, {count, size}, self);
+  out["final_state"] = ViewRows(rows.final_state, {count, size}, self);
+  out["reward"] = ViewRows(rows.reward, {count}, self);
+  out["features"] = ViewRows(rows.features, {count, static_cast<py::ssize_t>(kFeatureCount)}, self);
+  out["terminated"] = ViewRows(rows.terminated, {count}, self);
+  out["truncated"] = ViewRows(rows.truncated, {count}, self);
+  out["success"] = ViewRows(rows.success, {count}, self);
+  out["was_reset"] = ViewRows(rows.was_reset, {count}, self);
+  if (drawn.pictures) ViewPictures(*drawn.pictures, count, self, out);
+  return out;
+}
+
 void BindPool(py::module_& module) {
-  py::class_<Pool>(module, "Pool", "Environments of one model that threads of the pool's own step.")
-      .def(
-          py::init([](std::shared_ptr<EnvironmentModel> model, int count, int threads,
-                      const std::string& autoreset, std::uint64_t seed) {
-            environment::Autoreset mode = environment::Autoreset::kNextStep;
-            if (autoreset == "SameStep") {
-              mode = environment::Autoreset::kSameStep;
-            } else if (autoreset == "Disabled") {
-              mode = environment::Autoreset::kDisabled;
-            } else if (autoreset != "NextStep") {
-              throw Failure({core::ErrorCode::kUnknownName, "there is no autoreset mode \"" + autoreset +
-                                                                "\"; choose NextStep, SameStep or Disabled"});
-            }
-            const py::gil_scoped_release release;
-            return Take(Pool::Make(std::move(model), {count, threads, mode, seed}));
-          }),
-          py::arg("model"), py::kw_only(), py::arg("count"), py::arg("threads") = 0,
-          py::arg("autoreset") = "NextStep", py::arg("seed") = 1)
-      .def_property_readonly("count", &Pool::Count)
-      .def_property_readonly("threads", &Pool::ThreadCount)
-      .def_property_readonly("at_work", &Pool::AtWork)
+  py::class_<DrawnPool>(module, "Pool", "Environments of one model that threads of the pool's own step.")
+      .def(py::init(&MakePool), py::arg("model"), py::kw_only(), py::arg("count"), py::arg("threads") = 0,
+           py::arg("autoreset") = "NextStep", py::arg("seed") = 1,
+           py::arg("drawn") = std::vector<std::string>(), py::arg("width") = 84, py::arg("height") = 84)
+      .def_property_readonly("count", [](const DrawnPool& p) { return p.pool->Count(); })
+      .def_property_readonly("threads", [](const DrawnPool& p) { return p.pool->ThreadCount(); })
+      .def_property_readonly("at_work", [](const DrawnPool& p) { return p.pool->AtWork(); })
       .def(
           "reset",
-          [](Pool& pool, const Ids& ids, std::optional<std::uint64_t> seed) {
-            Check(pool.Reset(View(ids), seed));
+          [](DrawnPool& p, const Ids& ids, std::optional<std::uint64_t> seed) {
+            Check(p.pool->Reset(View(ids), seed));
           },
           py::arg("ids"), py::arg("seed"))
       .def(
           "send",
-          [](Pool& pool, const Row& actions, const Ids& ids) { Check(pool.Send(View(actions), View(ids))); },
+          [](DrawnPool& p, const Row& actions, const Ids& ids) {
+            Check(p.pool->Send(View(actions), View(ids)));
+          },
           py::arg("actions"), py::arg("ids"))
       .def(
           "receive",
-          [](Pool& pool, std::size_t count) {
+          [](DrawnPool& p, std::size_t count) {
             std::vector<std::int32_t> ids;
             {
               py::gil_scoped_release release;
-              Check(pool.Receive(count, ids));
+              Check(p.pool->Receive(count, ids));
             }
             return py::array_t<std::int32_t>(static_cast<py::ssize_t>(ids.size()), ids.data());
           },
           py::arg("count"))
-      .def(
-          "rows",
-          [](const py::object& self) {
-            const Pool& pool = self.cast<const Pool&>();
-            const auto& rows = pool.Rows();
-            const auto count = static_cast<py::ssize_t>(pool.Count());
-            const auto size = static_cast<py::ssize_t>(pool.Model().StateSize());
-            py::dict out;
-            out["state"] = ViewRows(rows.state, count, size, self);
-            out["final_state"] = ViewRows(rows.final_state, count, size, self);
-            out["reward"] = ViewRows(rows.reward, count, 0, self);
-            out["features"] = ViewRows(rows.features, count, static_cast<py::ssize_t>(kFeatureCount), self);
-            out["terminated"] = ViewRows(rows.terminated, count, 0, self);
-            out["truncated"] = ViewRows(rows.truncated, count, 0, self);
-            out["success"] = ViewRows(rows.success, count, 0, self);
-            out["was_reset"] = ViewRows(rows.was_reset, count, 0, self);
-            return out;
-          },
-          "Views of the pool's own rows; row i is written while environment i is at work.");
+      .def("rows", &ViewPool,
+           "Views of the pool's own rows; row i is written while environment i is at work.");
 }
 
 }  // namespace

@@ -338,6 +338,20 @@ py::list DescribeSurfaces(const Running& running) {
   return out;
 }
 
+/// So many ticks without the GIL; Ctrl-C ends them between two.
+/// \param step  false ends them, too \return how many there were
+template <typename Step>
+int RunTicks(int ticks, const Step& step) {
+  constexpr int kTicksBetweenLooks = 60;
+  for (int done = 0; done < ticks; ++done) {
+    if (!step()) return done;
+    if (done % kTicksBetweenLooks != kTicksBetweenLooks - 1) continue;
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  return std::max(ticks, 0);
+}
+
 void BindRunning(py::module_& module) {
   py::class_<Running>(module, "Simulation", "One running surgery. Not for two threads at a time.")
       .def(py::init(&MakeRunning), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
@@ -370,15 +384,20 @@ void BindRunning(py::module_& module) {
           "step",
           [](Running& r, const Input& input, int ticks) {
             if (ticks < 0) throw Failure({core::ErrorCode::kUsage, "a number of ticks is not negative"});
-            for (int tick = 0; tick < ticks; ++tick) r.simulation.Step(input);
+            RunTicks(ticks, [&] {
+              r.simulation.Step(input);
+              return true;
+            });
           },
           py::arg("input"), py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
           "Goes on by `ticks` ticks with the same input.")
       .def(
           "step_script",
           [](Running& r, int ticks) {
-            for (int tick = 0; tick < ticks; ++tick)
+            RunTicks(ticks, [&] {
               r.simulation.Step(scene::CalcScriptInput(*r.scene, r.simulation.GetSnapshot().time));
+              return true;
+            });
           },
           py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
           "Goes on as the scene's own script says.")
@@ -432,10 +451,11 @@ void BindRunning(py::module_& module) {
       .def(
           "play",
           [](Running& r, agent::Surgeon& surgeon, int ticks) {
-            int done = 0;
-            for (; done < ticks && !surgeon.HasFinished(); ++done)
+            return RunTicks(ticks, [&] {
+              if (surgeon.HasFinished()) return false;
               r.simulation.Step(surgeon.Act(r.simulation.GetSnapshot()));
-            return done;
+              return true;
+            });
           },
           py::arg("surgeon"), py::arg("ticks"), py::call_guard<py::gil_scoped_release>(),
           "Lets a scripted surgeon go on for at most `ticks` ticks; returns how many it took.");

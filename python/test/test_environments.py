@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Environments against the published interface, and against bad input."""
 import multiprocessing
+import signal
+import subprocess
+import sys
+import time
 import unittest
 
 import numpy as np
@@ -43,6 +47,12 @@ class Interface(unittest.TestCase):
         for mode in ("NextStep", "SameStep"):
             with self.subTest(mode=mode):
                 trocar.check_vector_env(trocar.make_vec("peg_transfer", 3, autoreset_mode=mode, most_seconds=0.5), steps=8)
+
+    def test_pool_with_pictures_holds_the_interface(self):
+        for observation in ("masks", ("state", "picture", "depth")):
+            with self.subTest(observation=observation):
+                pool = trocar.make_vec("lift_and_grasp", 2, observation=observation, picture_size=(24, 16), most_seconds=0.3)
+                trocar.check_vector_env(pool, steps=5)
 
     def test_checker_finds_what_is_wrong(self):
         class Random(trocar.Environment):
@@ -97,6 +107,34 @@ class Meaning(unittest.TestCase):
             state, reward, *_ = env.step(actions[2])
             np.testing.assert_array_equal(states[2], state)
             self.assertEqual(rewards[2], reward)
+
+    def test_pool_draws_what_an_environment_draws(self):
+        settings = {"observation": ("state", "picture", "depth", "masks", "normals"), "picture_size": (40, 32)}
+        pool, env = trocar.make_vec("peg_transfer", 3, threads=2, **settings), trocar.make("peg_transfer", **settings)
+        seen, _ = pool.reset(seed=7)
+        alone, _ = env.reset(seed=8)
+        pool.action_space.seed(1)
+        for _ in range(3):
+            for part in settings["observation"]:
+                np.testing.assert_array_equal(seen[part][1], alone[part], part)
+            actions = pool.action_space.sample()
+            seen, *_ = pool.step(actions)
+            alone, *_ = env.step(actions[1])
+        self.assertEqual(seen["picture"].shape, (3, 32, 40, 3))
+        self.assertEqual(code_of(lambda: trocar.make_vec("peg_transfer", 2, observation="smell")), "E-SCN-003")
+        self.assertEqual(code_of(lambda: trocar.make_vec("peg_transfer", 2, observation="depth", picture_size=(4, 4))), "E-CLI-001")
+
+    def test_the_last_picture_of_an_episode_is_kept(self):
+        pool = trocar.make_vec("camera_navigation_0", 2, observation=("state", "picture"), picture_size=(32, 24),
+                               autoreset_mode="SameStep", most_seconds=0.2)
+        first, _ = pool.reset(seed=1)
+        actions = np.ones((2, pool.model.action_size))
+        before, *_ = pool.step(actions)
+        seen, _, _, truncated, infos = pool.step(actions)
+        self.assertTrue(truncated.all())
+        np.testing.assert_array_equal(seen["picture"], first["picture"])
+        last = infos["final_obs"][1]["picture"]
+        self.assertTrue((last != first["picture"][1]).any() and (last != before["picture"][1]).any())
 
     def test_send_and_recv_serve_some(self):
         pool = trocar.make_vec("peg_transfer", 4, threads=2)
@@ -154,6 +192,31 @@ class Geometry(unittest.TestCase):
         self.assertIn(trocar.CLASSES["object"], seen["masks"])
         np.testing.assert_array_equal(seen["depth"] > 0, seen["masks"] > 0)
         trocar.check_env(trocar.make("peg_transfer", observation=("masks", "depth"), picture_size=(32, 32)), steps=2)
+
+    def test_flow_follows_a_tip(self):
+        simulation = trocar.Simulation("peg_transfer")
+        camera = trocar.Camera(160, 120)
+        first = camera.geometry(simulation, flow=True)
+        self.assertTrue(np.isnan(first["flow"]).all())
+
+        def pixel():
+            now = simulation.snapshot()
+            tip = np.linalg.inv(now["camera"]) @ now["instruments"]["right"]["pose"][:, 3]
+            return first["focal_length"] * np.array([tip[0], -tip[1]]) / -tip[2]
+
+        before, inputs = pixel(), simulation.home()
+        joints = inputs.hands
+        joints[1, 0] += 0.05
+        inputs.hands = joints
+        simulation.step(inputs, ticks=1)
+        seen = camera.geometry(simulation, flow=True)
+        way = pixel() - before
+        self.assertGreater(np.linalg.norm(way), 3)
+        row, column = np.nonzero((seen["classes"] == trocar.CLASSES["dissector"]) & (seen["instances"] == 1))
+        near = np.argsort(np.hypot(column + 0.5 - 80 - pixel()[0], row + 0.5 - 60 - pixel()[1]))[:5]
+        flow = seen["flow"][row[near], column[near]]
+        np.testing.assert_allclose(flow, np.broadcast_to(way, flow.shape), atol=0.15 * np.linalg.norm(way))
+        self.assertNotIn("flow", camera.geometry(simulation))
 
     def test_a_pixel_of_the_gallbladder_leads_back_to_it(self):
         simulation = trocar.Simulation("cholecystectomy", seed=1)
@@ -222,6 +285,37 @@ class Processes(unittest.TestCase):
         for method in ("fork", "spawn"):
             with self.subTest(method=method), multiprocessing.get_context(method).Pool(1) as workers:
                 self.assertEqual(workers.apply(first_reward, ("peg_transfer",)), expected)
+
+
+    def test_ctrl_c_ends_what_a_pool_does(self):
+        program = ("import numpy, trocar\n"
+                   "pool = trocar.make_vec('lift_and_grasp', 4, threads=2)\n"
+                   "pool.reset(seed=1)\n"
+                   "print('runs', flush=True)\n"
+                   "try:\n"
+                   "    while True:\n"
+                   "        pool.step(numpy.zeros((4, 10)))\n"
+                   "except KeyboardInterrupt:\n"
+                   "    pool.close()\n"
+                   "    print('ended', flush=True)\n")
+        with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True) as child:
+            self.assertEqual(child.stdout.readline(), "runs\n")
+            time.sleep(0.3)
+            child.send_signal(signal.SIGINT)
+            output, _ = child.communicate(timeout=30)
+        self.assertEqual((output, child.returncode), ("ended\n", 0))
+
+    def test_ctrl_c_ends_a_long_step(self):
+        program = ("import trocar\n"
+                   "simulation = trocar.Simulation('peg_transfer')\n"
+                   "print('runs', flush=True)\n"
+                   "simulation.step(simulation.home(), ticks=2_000_000_000)\n")
+        with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+            self.assertEqual(child.stdout.readline(), "runs\n")
+            time.sleep(0.3)
+            child.send_signal(signal.SIGINT)
+            _, errors = child.communicate(timeout=30)
+        self.assertIn("KeyboardInterrupt", errors)
 
 
 if __name__ == "__main__":

@@ -75,8 +75,10 @@ def check_vector_env(env: Any, steps: int = 10) -> None:
     count = env.num_envs
     _check("autoreset_mode" in env.metadata, "metadata does not declare autoreset_mode")
     _check(env.action_space.shape[0] == count, "action_space is not one of all environments")
-    _check(env.observation_space.shape == (count, *env.single_observation_space.shape),
-           "observation_space is not single_observation_space of all environments")
+    whole, single = env.observation_space, env.single_observation_space
+    parts = [(whole, single)] if single.shape is not None else [(whole[name], single[name]) for name in single.keys()]
+    for one, part in parts:
+        _check(one.shape == (count, *part.shape), "observation_space is not single_observation_space of all environments")
 
     def play(seed):
         observation, info = env.reset(seed=seed)

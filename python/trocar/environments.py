@@ -40,8 +40,27 @@ def _as_action(action: Any) -> np.ndarray:
         raise Error("E-ENV-001", f"an action is an array of numbers; this is none: {wrong}") from wrong
 
 
-def _state_space(model: _trocar.EnvironmentModel) -> Box:
-    return Box(-np.inf, np.inf, (model.state_size,), np.float32)
+class _Observation:
+    """What is observed: its parts, whether they come as one array or a dict, and their spaces."""
+
+    def __init__(self, wanted: Union[str, Sequence[str]], model: _trocar.EnvironmentModel, size: tuple[int, int]) -> None:
+        self.is_one = isinstance(wanted, str) and wanted != "mixture"
+        self.parts = MIXTURE if wanted == "mixture" else (wanted,) if self.is_one else tuple(wanted)
+        for part in self.parts or ("",):
+            if part not in OBSERVATIONS:
+                raise Error("E-SCN-003", f'there is no observation "{part}"; choose {", ".join(OBSERVATIONS)} or mixture')
+        width, height = size
+        spaces = {"state": Box(-np.inf, np.inf, (model.state_size,), np.float32),
+                  "picture": Box(0, 255, (height, width, 3), np.uint8),
+                  "depth": Box(0, FARTHEST, (height, width), np.float32),
+                  "masks": Box(0, max(_trocar.CLASSES.values()), (height, width), np.uint8),
+                  "normals": Box(-1, 1, (height, width, 3), np.float32)}
+        self.space = spaces[self.parts[0]] if self.is_one else Dict({part: spaces[part] for part in self.parts})
+        self.drawn = [part for part in self.parts if part != "state"]
+
+    def pack(self, seen: Any) -> Any:
+        """``seen(part)`` gives a part."""
+        return seen(self.parts[0]) if self.is_one else {part: seen(part) for part in self.parts}
 
 
 class Environment(_Env):
@@ -60,11 +79,6 @@ class Environment(_Env):
                  actions: str = "joints", observation: Union[str, Sequence[str]] = "state", picture_size: tuple[int, int] = (84, 84),
                  actions_per_second: float = 10.0, most_seconds: float = 0.0, moves_camera: bool = False,
                  weights: Optional[dict[str, float]] = None, render_mode: Optional[str] = None) -> None:
-        is_one = isinstance(observation, str) and observation != "mixture"
-        parts = MIXTURE if observation == "mixture" else (observation,) if is_one else tuple(observation)
-        for part in parts or ("",):
-            if part not in OBSERVATIONS:
-                raise Error("E-SCN-003", f'there is no observation "{part}"; choose {", ".join(OBSERVATIONS)} or mixture')
         if render_mode not in (None, "rgb_array"):
             raise Error("E-SCN-003", f'there is no render_mode "{render_mode}"; choose rgb_array or None')
         self.model = _trocar.EnvironmentModel(
@@ -75,14 +89,9 @@ class Environment(_Env):
         self.task, self.render_mode, self.observation = task, render_mode, observation
         self.action_fields, self.state_fields = self.model.action_fields, self.model.state_fields
         self.action_space = action_space(self.action_fields)
-        width, height = picture_size
-        spaces = {"state": _state_space(self.model), "picture": Box(0, 255, (height, width, 3), np.uint8),
-                  "depth": Box(0, FARTHEST, (height, width), np.float32),
-                  "masks": Box(0, max(_trocar.CLASSES.values()), (height, width), np.uint8),
-                  "normals": Box(-1, 1, (height, width, 3), np.float32)}
-        self._parts, self._is_one = parts, is_one
-        self.observation_space = spaces[parts[0]] if is_one else Dict({part: spaces[part] for part in parts})
-        self._size, self._camera = (width, height), None
+        self._seen = _Observation(observation, self.model, picture_size)
+        self.observation_space = self._seen.space
+        self._size, self._camera = tuple(picture_size), None
         self._environment: Optional[_trocar.Environment] = _trocar.Environment(self.model)
         self._np_random = None
 
@@ -113,17 +122,14 @@ class Environment(_Env):
         # single precision rounds the unit vectors' components beyond 1 at times
         return {"depth": seen["depth"], "masks": seen["classes"], "normals": np.clip(seen["normals"], -1, 1)}
 
+    def _state(self) -> np.ndarray:
+        state = np.empty(self.model.state_size, np.float32)
+        self._open().observe(state)
+        return state
+
     def _observe(self):
-        seen: dict[str, np.ndarray] = {}
-        if "state" in self._parts:
-            seen["state"] = np.empty(self.model.state_size, np.float32)
-            self._open().observe(seen["state"])
-        if "picture" in self._parts:
-            seen["picture"] = self._draw()
-        if {"depth", "masks", "normals"} & set(self._parts):
-            geometry = self._geometry()
-            seen.update({part: geometry[part] for part in self._parts if part in geometry})
-        return seen[self._parts[0]] if self._is_one else seen
+        geometry = self._geometry() if {"depth", "masks", "normals"} & set(self._seen.parts) else {}
+        return self._seen.pack(lambda part: self._state() if part == "state" else self._draw() if part == "picture" else geometry[part])
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict] = None):
         """Begins an episode. ``seed`` chooses among the layouts; without one the row of episodes goes on."""
@@ -168,6 +174,7 @@ class VectorEnvironment(_VectorEnv):
 
     ``reset`` and ``step`` follow Gymnasium's ``VectorEnv``. ``send`` and ``recv`` do the same in two parts, for all
     environments or some. With ``copy=False`` the arrays are views of the pool's own memory, which the next call writes.
+    ``observation`` is as of :class:`Environment`, each array with a first axis more; the pool's threads draw.
     """
 
     metadata: dict = {"render_modes": [], "autoreset_mode": "NextStep"}
@@ -175,7 +182,8 @@ class VectorEnvironment(_VectorEnv):
     spec = None
 
     def __init__(self, task: str, num_envs: int, *, level: str = "normal", patient: str = "", seed: int = 1,
-                 layouts: int = 1, actions: str = "joints", actions_per_second: float = 10.0, most_seconds: float = 0.0,
+                 layouts: int = 1, actions: str = "joints", observation: Union[str, Sequence[str]] = "state",
+                 picture_size: tuple[int, int] = (84, 84), actions_per_second: float = 10.0, most_seconds: float = 0.0,
                  moves_camera: bool = False, weights: Optional[dict[str, float]] = None, threads: int = 0,
                  autoreset_mode: Any = "NextStep", copy: bool = True) -> None:
         mode = getattr(autoreset_mode, "value", autoreset_mode)
@@ -183,14 +191,16 @@ class VectorEnvironment(_VectorEnv):
             task, level=level, patient=patient, seed=seed, layouts=layouts, actions=actions,
             actions_per_second=actions_per_second, most_seconds=most_seconds, moves_camera=moves_camera,
             weights=weights or {})
-        self._pool: Optional[_trocar.Pool] = _trocar.Pool(self.model, count=num_envs, threads=threads, autoreset=mode,
-                                                          seed=seed)
+        self._seen = _Observation(observation, self.model, picture_size)
+        self._pool: Optional[_trocar.Pool] = _trocar.Pool(
+            self.model, count=num_envs, threads=threads, autoreset=mode, seed=seed, drawn=self._seen.drawn,
+            width=picture_size[0], height=picture_size[1])
         self.metadata = {**self.metadata, "autoreset_mode": _AutoresetMode(mode)}
         self.task, self.num_envs, self.copy, self.threads = task, num_envs, copy, self._pool.threads
         self.closed = False
         self.action_fields, self.state_fields = self.model.action_fields, self.model.state_fields
         self.single_action_space = action_space(self.action_fields)
-        self.single_observation_space = _state_space(self.model)
+        self.single_observation_space = self._seen.space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._rows = self._pool.rows()
@@ -207,6 +217,9 @@ class VectorEnvironment(_VectorEnv):
             return rows[ids]
         return rows.copy() if self.copy else rows
 
+    def _observe(self, ids: Optional[np.ndarray], prefix: str = ""):
+        return self._seen.pack(lambda part: self._take(prefix + part, ids))
+
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict] = None):
         """Environment i gets ``seed`` + i. ``options={"reset_mask": mask}`` resets only those of the mask."""
         mask = (options or {}).get("reset_mask")
@@ -217,7 +230,7 @@ class VectorEnvironment(_VectorEnv):
         if count:
             self._open().reset(ids, seed)
             self._open().receive(count)
-        return self._take("state", None), {}
+        return self._observe(None), {}
 
     def send(self, actions: Any, env_ids: Optional[Sequence[int]] = None) -> None:
         """Hands actions (len(env_ids), action_size) to the threads and returns; all environments without ``env_ids``."""
@@ -250,11 +263,10 @@ class VectorEnvironment(_VectorEnv):
             ended = terminated | truncated
             if ended.any():
                 final = np.full(len(ids), None, dtype=object)
-                states = self._take("final_state", rows)
                 for i in np.flatnonzero(ended):
-                    final[i] = states[i].copy()
+                    final[i] = self._seen.pack(lambda part: self._rows["final_" + part][ids[i]].copy())
                 infos["final_obs"], infos["_final_obs"] = final, ended
-        return self._take("state", rows), self._take("reward", rows), terminated, truncated, infos
+        return self._observe(rows), self._take("reward", rows), terminated, truncated, infos
 
     def step(self, actions: Any):
         self.send(actions)

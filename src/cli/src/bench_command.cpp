@@ -101,6 +101,9 @@ void AddBenchCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(100, 100'000'000))
       ->type_name("N")
       ->capture_default_str();
+  command->add_option("--seed", arguments->options.seed, "Of the soak's actions")
+      ->type_name("N")
+      ->capture_default_str();
   command
       ->add_option("--url", arguments->options.url,
                    "An empty PostgreSQL database for the store (postgresql://...)")

@@ -27,8 +27,8 @@ constexpr int kCannotRun = 127;  // of a child whose program does not start, as 
 struct DatasetArguments {
   dataset::Plan plan;
   std::string layout, seeds = "1:1", size = "854x480", output;
-  std::vector<std::string> patients;
-  bool has_no_variation = false;
+  std::vector<std::string> patients, recordings;
+  bool has_no_variation = false, has_no_pictures = false;
 };
 
 core::Status ReadSeeds(const std::string& text, dataset::Plan& plan) {
@@ -62,7 +62,9 @@ core::Status Make(const DatasetArguments& arguments) {
   if (!size) return size.error();
   plan.width = (*size)[0], plan.height = (*size)[1];
   plan.patients.assign(arguments.patients.begin(), arguments.patients.end());
+  plan.recordings.assign(arguments.recordings.begin(), arguments.recordings.end());
   plan.has_variation = !arguments.has_no_variation;
+  plan.has_pictures = !arguments.has_no_pictures;
   ProgressBar progress("videos", 1.0);
   const auto made = dataset::WriteDataset(plan, arguments.output, [&](double share, std::string_view doing) {
     progress.SetLabel(doing);
@@ -105,7 +107,8 @@ core::Status Verify(const std::string& folder) {
 
 void AddDatasetCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* command = app.add_subcommand(
-      "dataset", "Make a labelled data set from scripted attempts, in a layout that loaders read");
+      "dataset",
+      "Make a labelled data set from scripted or recorded attempts, in a layout that loaders read");
   auto a = std::make_shared<DatasetArguments>();
   command
       ->add_option("--layout", a->layout,
@@ -113,24 +116,33 @@ void AddDatasetCommand(CLI::App& app, Outcome& outcome) {
                    "endoscapes (COCO, "
                    "critical view), trocar (everything, HDF5)")
       ->type_name("LAYOUT");
-  command->add_option("--task", a->plan.task, "A training task or an operation (trocar play --list)")
-      ->type_name("TASK")
-      ->capture_default_str();
-  command->add_option("--level", a->plan.level, "Difficulty of a training task")
-      ->type_name("LEVEL")
-      ->capture_default_str();
-  command->add_option("--surgeon", a->plan.surgeon, "A scripted one (trocar play --list)")
-      ->type_name("SURGEON")
-      ->capture_default_str();
-  command->add_option("--seeds", a->seeds, "A video for each, both included")
-      ->type_name("A:B")
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--patient", a->patients,
-          "Folder of a patient in place of the scene's (trocar anatomy generate); several take turns")
-      ->allow_extra_args(false)
-      ->type_name("DIR");
+  std::vector<CLI::Option*> scripted;
+  scripted.push_back(
+      command->add_option("--task", a->plan.task, "A training task or an operation (trocar play --list)")
+          ->type_name("TASK")
+          ->capture_default_str());
+  scripted.push_back(command->add_option("--level", a->plan.level, "Difficulty of a training task")
+                         ->type_name("LEVEL")
+                         ->capture_default_str());
+  scripted.push_back(command->add_option("--surgeon", a->plan.surgeon, "A scripted one (trocar play --list)")
+                         ->type_name("SURGEON")
+                         ->capture_default_str());
+  scripted.push_back(command->add_option("--seeds", a->seeds, "A video for each, both included")
+                         ->type_name("A:B")
+                         ->capture_default_str());
+  scripted.push_back(
+      command
+          ->add_option(
+              "--patient", a->patients,
+              "Folder of a patient in place of the scene's (trocar anatomy generate); several take turns")
+          ->allow_extra_args(false)
+          ->type_name("DIR"));
+  CLI::Option* recording =
+      command
+          ->add_option("--recording", a->recordings,
+                       "A video of each recorded attempt in place of scripted ones; they are numbered from 1")
+          ->type_name("FILE");
+  for (CLI::Option* option : scripted) recording->excludes(option);
   command->add_option("--size", a->size, "Of each picture [pixels]")->type_name("WxH")->capture_default_str();
   command->add_option("--every", a->plan.every, "Between two frames [s]")
       ->check(CLI::Range(0.04, 60.0))
@@ -142,6 +154,8 @@ void AddDatasetCommand(CLI::App& app, Outcome& outcome) {
       ->capture_default_str();
   command->add_flag("--no-variation", a->has_no_variation,
                     "The same light, lens, colours and haze in every video");
+  command->add_flag("--no-pictures", a->has_no_pictures,
+                    "States, actions, forces and positions alone, many times as fast; of the layout trocar");
   command->add_option("--jobs", a->plan.jobs, "Videos at a time; the set is the same for any number")
       ->check(CLI::Range(1, 256))
       ->type_name("J")
@@ -154,6 +168,9 @@ void AddDatasetCommand(CLI::App& app, Outcome& outcome) {
       "Examples:\n"
       "  trocar dataset --layout cholecseg8k --seeds 1:4 --most-seconds 120 -o sets/seg\n"
       "  trocar dataset --layout trocar --task peg_transfer --seeds 1:20 --every 0.1 -o sets/pegs\n"
+      "  trocar dataset --layout trocar --task lift_and_grasp --seeds 1:200 --every 0.1 --no-pictures -o "
+      "sets/lift\n"
+      "  trocar dataset --layout endoscapes --recording attempt.trocar -o sets/mine\n"
       "  trocar dataset verify sets/seg");
   auto folder = std::make_shared<std::string>();
   CLI::App* verify = command->add_subcommand(

@@ -16,16 +16,16 @@ constexpr std::array<const char*, static_cast<std::size_t>(InstrumentKind::kCoun
 
 class Cholec80Writer : public VideoWriter {
  public:
-  explicit Cholec80Writer(const VideoTask& task)
-      : name_(NameVideo("video", task.plan->first_seed + task.index)), folder_(task.folder) {
+  Cholec80Writer(const VideoTask& task, double begin)
+      : name_(NameVideo("video", task.plan->first_seed + task.index)), folder_(task.folder), begin_(begin) {
     tools_ = "Frame";
     for (const char* tool : kCholec80Tools) tools_ += std::string("\t") + tool;
     tools_ += "\n";
   }
 
-  void Look(const simulation::Simulation& simulation) override {
+  void Look(const simulation::Simulation& simulation, const scene::Input& /*input*/) override {
     const simulation::Snapshot& now = simulation.GetSnapshot();
-    for (; static_cast<double>(frames_) <= kFramesPerSecond * now.time + 1e-6; ++frames_)
+    for (; static_cast<double>(frames_) <= kFramesPerSecond * (now.time - begin_) + 1e-6; ++frames_)
       phases_ += std::to_string(frames_) + "\t" + std::string(training::NameOf(now.operation.phase)) + "\n";
   }
 
@@ -54,6 +54,7 @@ class Cholec80Writer : public VideoWriter {
  private:
   std::string name_;
   std::filesystem::path folder_;
+  double begin_;  // of the video [s]
   std::string phases_ = "Frame\tPhase\n", tools_;
   std::uint64_t frames_ = 0;
 };
@@ -61,8 +62,8 @@ class Cholec80Writer : public VideoWriter {
 class Cholec80Set : public LayoutSet {
  public:
   std::unique_ptr<VideoWriter> MakeWriter(const VideoTask& task,
-                                          const simulation::Simulation& /*simulation*/) override {
-    return std::make_unique<Cholec80Writer>(task);
+                                          const simulation::Simulation& simulation) override {
+    return std::make_unique<Cholec80Writer>(task, simulation.GetSnapshot().time);
   }
   nlohmann::ordered_json Classes() const override {
     nlohmann::ordered_json classes = {{"phases", nlohmann::ordered_json::array()}, {"tools", kCholec80Tools}};

@@ -18,14 +18,39 @@ using nlohmann::ordered_json;
 constexpr int kCardVersion = 1;
 constexpr const char* kLicence = "Apache-2.0";
 /// Of every layout.
-constexpr std::array<const char*, 4> kCommonGaps = {
+constexpr std::array<const char*, 3> kCommonGaps = {
     "Everything is simulated: what was learnt here has to be shown on real pictures before it means anything "
     "there.",
     "Tools do not wear, and lenses do not fog or get dirty.",
-    "Colon, stomach, duodenum, omentum and abdominal wall are decoration: they do not deform.",
-    "The surgeon is a program; people move otherwise."};
+    "Colon, stomach, duodenum, omentum and abdominal wall are decoration: they do not deform."};
+constexpr const char* kScriptedGap = "The surgeon is a program; people move otherwise.";
+
+/// Options of the command that are not of every plan.
+std::string FormatSource(const Plan& plan) {
+  if (!plan.recordings.empty()) {
+    std::string text;
+    for (std::size_t i = 1; i <= plan.recordings.size(); ++i)
+      text += " --recording " + std::to_string(i) + ".trocar";
+    return text;
+  }
+  std::string text = " --task " + plan.task + " --surgeon " + plan.surgeon + " --seeds " +
+                     std::to_string(plan.first_seed) + ":" + std::to_string(plan.last_seed);
+  if (plan.level != Plan{}.level) text += " --level " + plan.level;
+  for (const auto& patient : plan.patients) text += " --patient " + patient.filename().string();
+  return text;
+}
 
 ordered_json DescribePlan(const Plan& plan) {
+  if (!plan.recordings.empty()) {
+    return {{"layout", NameOf(plan.layout)},
+            {"recordings", plan.recordings.size()},
+            {"width", plan.width},
+            {"height", plan.height},
+            {"every_seconds", plan.every},
+            {"most_seconds", plan.most_seconds},
+            {"has_variation", plan.has_variation},
+            {"has_pictures", plan.has_pictures}};
+  }
   auto patients = ordered_json::array();
   for (const auto& patient : plan.patients) patients.push_back(patient.filename().string());
   return {{"layout", NameOf(plan.layout)},
@@ -38,17 +63,26 @@ ordered_json DescribePlan(const Plan& plan) {
           {"height", plan.height},
           {"every_seconds", plan.every},
           {"most_seconds", plan.most_seconds},
-          {"has_variation", plan.has_variation}};
+          {"has_variation", plan.has_variation},
+          {"has_pictures", plan.has_pictures}};
+}
+
+std::string DescribeSource(const Plan& plan) {
+  if (!plan.recordings.empty())
+    return "Simulated: " + std::to_string(plan.recordings.size()) +
+           " recordings, computed again; their SHA-256 stand in card.json";
+  return "Simulated, not recorded: scripted surgeon \"" + plan.surgeon + "\" in \"" + plan.task +
+         "\", seeds " + std::to_string(plan.first_seed) + " to " + std::to_string(plan.last_seed);
 }
 
 std::string FormatReadme(const Plan& plan, const ordered_json& card) {
   std::string text =
       "# A data set made by Trocar\n\nLayout: " + std::string(NameOf(plan.layout)) +
-      ". Licence: " + kLicence + ". Program: trocar " + std::string(core::VersionText()) +
-      ".\n\nSimulated, not recorded: scripted surgeon \"" + plan.surgeon + "\" in \"" + plan.task +
-      "\", seeds " + std::to_string(plan.first_seed) + " to " + std::to_string(plan.last_seed) + ", " +
-      std::to_string(plan.width) + " x " + std::to_string(plan.height) +
-      " pixels. The same plan gives the same bytes, with the same program and graphics driver:\n\n    " +
+      ". Licence: " + kLicence + ". Program: trocar " + std::string(core::VersionText()) + ".\n\n" +
+      DescribeSource(plan) + ", " +
+      (plan.has_pictures ? std::to_string(plan.width) + " x " + std::to_string(plan.height) + " pixels"
+                         : std::string("without pictures")) +
+      ". The same plan gives the same bytes, with the same program and graphics driver:\n\n    " +
       card["command"].get<std::string>() +
       "\n\nCheck it: trocar dataset verify DIR, or sha256sum -c SHA256SUMS.\n\n"
       "| seed | patient | frames | seconds | came to | state |\n|---|---|---|---|---|---|\n";
@@ -65,15 +99,13 @@ std::string FormatReadme(const Plan& plan, const ordered_json& card) {
 
 std::string FormatCommand(const Plan& plan) {
   ordered_json number = plan.every;
-  std::string text = "trocar dataset --layout " + std::string(NameOf(plan.layout)) + " --task " + plan.task +
-                     " --surgeon " + plan.surgeon + " --seeds " + std::to_string(plan.first_seed) + ":" +
-                     std::to_string(plan.last_seed) + " --size " + std::to_string(plan.width) + "x" +
-                     std::to_string(plan.height) + " --every " + number.dump() + " --most-seconds ";
+  std::string text = "trocar dataset --layout " + std::string(NameOf(plan.layout)) + FormatSource(plan) +
+                     " --size " + std::to_string(plan.width) + "x" + std::to_string(plan.height) +
+                     " --every " + number.dump() + " --most-seconds ";
   number = plan.most_seconds;
   text += number.dump();
-  if (plan.level != Plan{}.level) text += " --level " + plan.level;
-  for (const auto& patient : plan.patients) text += " --patient " + patient.filename().string();
   if (!plan.has_variation) text += " --no-variation";
+  if (!plan.has_pictures) text += " --no-pictures";
   return text + " -o DIR";
 }
 
@@ -106,16 +138,20 @@ core::Result<CardSummary> WriteCard(const std::filesystem::path& folder, const P
                        {"known_gaps", ordered_json::array()},
                        {"files", names.size()},
                        {"sha256sums", *hash}};
-  for (const VideoResult& video : videos)
-    card["videos"].push_back({{"seed", video.seed},
-                              {"patient", video.patient},
-                              {"frames", video.frames},
-                              {"seconds", video.seconds},
-                              {"outcome", video.outcome},
-                              {"state_hash", core::HashText(video.hash)},
-                              {"variation", ToJson(video.variation)}});
+  for (const VideoResult& video : videos) {
+    ordered_json entry = {{"seed", video.seed},
+                          {"patient", video.patient},
+                          {"frames", video.frames},
+                          {"seconds", video.seconds},
+                          {"outcome", video.outcome},
+                          {"state_hash", core::HashText(video.hash)},
+                          {"variation", ToJson(video.variation)}};
+    if (!video.recording.empty()) entry["recording_sha256"] = video.recording;
+    card["videos"].push_back(std::move(entry));
+  }
   for (const std::string& gap : layout.Gaps()) card["known_gaps"].push_back(gap);
   for (const char* gap : kCommonGaps) card["known_gaps"].push_back(gap);
+  if (plan.recordings.empty()) card["known_gaps"].push_back(kScriptedGap);
   if (auto s = core::WriteFile(folder / "README.md", FormatReadme(plan, card)); !s) return s.error();
   if (auto s = core::WriteFile(folder / "card.json", card.dump(2) + "\n"); !s) return s.error();
   return CardSummary{*hash, names.size()};

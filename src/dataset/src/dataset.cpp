@@ -42,6 +42,9 @@ core::Status CheckPlan(const Plan& plan) {
     return refuse("a picture must have 16 to 4096 pixels a side");
   if (!(plan.every >= 0.04 && plan.every <= 60)) return refuse("frames are 0.04 to 60 s apart");
   if (!(plan.most_seconds > 0)) return refuse("a video lasts longer than 0 s");
+  if (!plan.has_pictures && plan.layout != Layout::kTrocar)
+    return refuse(
+        "only the layout trocar holds something besides pictures: --no-pictures needs --layout trocar");
   const bool has_seconds = plan.layout == Layout::kCholec80 || plan.layout == Layout::kCholecT50;
   if (has_seconds && plan.every != 1.0)
     return refuse("cholec80 and cholect50 have one frame a second: --every 1");
@@ -87,7 +90,7 @@ class Factory {
       ++done_;
       if (on_progress_)
         on_progress_(static_cast<double>(done_) / static_cast<double>(videos_.size()),
-                     "seed " + std::to_string(videos_[i].seed));
+                     (plan_.recordings.empty() ? "seed " : "recording ") + std::to_string(videos_[i].seed));
     }
   }
 
@@ -128,9 +131,11 @@ std::string NameVideo(const char* prefix, std::uint64_t seed, int digits) {
 }
 
 core::Result<Summary> WriteDataset(
-    const Plan& plan, const std::filesystem::path& output,
+    const Plan& wanted, const std::filesystem::path& output,
     const std::function<void(double share, std::string_view doing)>& on_progress) {
   namespace fs = std::filesystem;
+  Plan plan = wanted;
+  if (!plan.recordings.empty()) plan.first_seed = 1, plan.last_seed = plan.recordings.size();
   if (const auto status = CheckPlan(plan); !status) return status.error();
   std::error_code failure;
   if (fs::exists(output, failure) && !fs::is_empty(output, failure))

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "hdf5_file.h"
 #include "layout_set.h"
+#include "trocar/environment/demonstration.h"
 #include "trocar/roles/roles.h"
 #include "trocar/view/labels.h"
 
@@ -45,30 +49,83 @@ ordered_json DescribeAnatomy(const simulation::Simulation& simulation) {
   return {{"surfaces", surfaces}};
 }
 
+constexpr std::array<std::pair<const char*, environment::ActionKind>, 2> kActions = {
+    {{"action_joints", environment::ActionKind::kJoints}, {"action_tip", environment::ActionKind::kTip}}};
+constexpr double kShortest = 1e-3;  // between two inputs [s]
+
+ordered_json DescribeFields(std::span<const environment::Field> fields) {
+  auto out = ordered_json::array();
+  for (const environment::Field& field : fields)
+    out.push_back(
+        {{"name", field.name}, {"first", field.first}, {"count", field.count}, {"unit", field.unit}});
+  return out;
+}
+
+/// What the numbers of states and actions are.
+ordered_json DescribeFields(const environment::Demonstration& demonstration) {
+  ordered_json out = {{"state", DescribeFields(demonstration.StateFields())}};
+  for (const auto& [name, kind] : kActions) out[name] = DescribeFields(demonstration.ActionFields(kind));
+  return out;
+}
+
 class TrocarWriter : public VideoWriter {
  public:
   TrocarWriter(const VideoTask& task, const simulation::Simulation& simulation)
       : path_(task.folder / (NameVideo("video_", task.plan->first_seed + task.index, 5) + ".h5")),
-        anatomy_(DescribeAnatomy(simulation).dump()) {}
+        has_pictures_(task.plan->has_pictures),
+        anatomy_(DescribeAnatomy(simulation).dump()),
+        demonstration_(simulation),
+        fields_(DescribeFields(demonstration_).dump()) {}
+
+  void Look(const simulation::Simulation& simulation, const scene::Input& input) override {
+    now_ = {input, simulation.GetSnapshot().time};
+  }
 
   core::Status Add(const Frame& frame, const simulation::Simulation& simulation) override {
     if (!file_) {
       auto made = Hdf5File::Make(path_);
       if (!made) return made.error();
       file_.emplace(std::move(*made));
-      if (auto s = file_->SetNumber("focal_length", frame.focal_length); !s) return s;
+      if (has_pictures_) {
+        if (auto s = file_->SetNumber("focal_length", frame.focal_length); !s) return s;
+      }
       if (auto s = file_->SetText("anatomy", anatomy_); !s) return s;
+      if (auto s = file_->SetText("fields", fields_); !s) return s;
+    } else {
+      AddActions();
     }
-    if (auto s = AddPictures(frame); !s) return s;
+    at_frame_ = now_;
+    if (has_pictures_) {
+      if (auto s = AddPictures(frame); !s) return s;
+    }
+    std::vector<float> state(demonstration_.StateSize());
+    demonstration_.Observe(simulation, state);
+    Put("state", {state.size()}, state);
     return AddState(simulation.GetSnapshot());
   }
 
-  core::Status Finish() override { return file_ ? file_->Close() : core::Status{}; }
+  core::Status Finish() override {
+    if (!file_) return {};
+    AddActions();
+    if (!status_.ok()) return status_;
+    return file_->Close();
+  }
 
  private:
   template <typename T>
   void Put(const char* name, const std::vector<std::size_t>& shape, const std::vector<T>& row) {
     if (status_.ok()) status_ = file_->Append<T>(name, shape, row);
+  }
+
+  /// What was done from the last frame to now.
+  void AddActions() {
+    for (const auto& [name, kind] : kActions) {
+      std::vector<double> action(demonstration_.ActionSize(kind));
+      // the last frame may be that of the last tick: then nothing was done after it
+      const double seconds = std::max(now_.time - at_frame_.time, kShortest);
+      demonstration_.FindAction(kind, at_frame_.input, now_.input, seconds, action);
+      Put(name, {action.size()}, std::vector<float>(action.begin(), action.end()));
+    }
   }
 
   core::Status AddPictures(const Frame& frame) {
@@ -87,6 +144,7 @@ class TrocarWriter : public VideoWriter {
     Put("normals", {h, w, 3}, normals);
     Put("classes", {h, w}, classes);
     Put("instances", {h, w}, instances);
+    Put("flow", {h, w, 2}, frame.geometry.flow);
     return status_;
   }
 
@@ -121,8 +179,18 @@ class TrocarWriter : public VideoWriter {
     return status_;
   }
 
+  /// What the simulation was given last, and when.
+  struct Given {
+    scene::Input input;
+    double time = 0;  // [s]
+  };
+
   std::filesystem::path path_;
+  bool has_pictures_;
   std::string anatomy_;
+  environment::Demonstration demonstration_;
+  std::string fields_;
+  Given now_, at_frame_;
   std::optional<Hdf5File> file_;
   core::Status status_;
 };
@@ -140,9 +208,12 @@ class TrocarSet : public LayoutSet {
     return classes;
   }
   std::vector<std::string> Gaps() const override {
-    return {"Normals are rounded to 1/127.",
-            "There is no optical flow: positions and poses of successive frames give it.",
-            "Films of blood, bile and burns are colours of an organ and have no mask."};
+    return {
+        "Normals are rounded to 1/127.",
+        "Actions are those of an environment, whose hands move at most 0.12 m/s: faster ones are cut to "
+        "that.",
+        "Flow is since the frame before, and NaN of fibres, drops and pools, and where nothing was before.",
+        "Films of blood, bile and burns are colours of an organ and have no mask."};
   }
 };
 

@@ -5,35 +5,20 @@
 #include <cmath>
 #include <utility>
 
-#include "trocar/agent/surgeon.h"
+#include "player.h"
+#include "trocar/core/sha256.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
-#include "trocar/scene/task.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::dataset {
 namespace {
 
-constexpr double kWidestView = 2.4;  // rad
-
-core::Result<scene::Scene> FindScene(const Plan& plan, std::uint64_t seed,
-                                     const std::filesystem::path& patient) {
-  auto operation = scene::FindOperation(plan.task, patient, seed);
-  if (!operation) return operation.error();
-  if (*operation) return std::move(**operation);
-  const auto path = scene::FindTask(plan.task);
-  if (!path) return path.error();
-  scene::TaskChoice choice;
-  choice.level = plan.level;
-  choice.seed = seed;
-  choice.patient_folder = patient;
-  return scene::ReadTask(*path, choice);
-}
-
-std::string NameOutcome(const simulation::Snapshot& last, bool has_finished) {
+std::string NameOutcome(const Plan& plan, const simulation::Snapshot& last, bool has_finished) {
   if (last.operation.is_completed || last.task.phase == scene::TaskPhase::kCompleted) return "completed";
   if (last.task.phase == scene::TaskPhase::kTimeOver) return "time over";
   if (last.task.phase == scene::TaskPhase::kEnded) return "ended by an error";
+  if (!plan.recordings.empty() && has_finished) return "end of the recording";
   return has_finished ? "given up" : "cut off";
 }
 
@@ -56,7 +41,8 @@ class Camera {
     if (!view) return view.error();
     // the camera finds its exposure by the frames before: they are the same whenever the video is made again
     view->SetOptions({.has_force_arrows = false, .light_power = variation.light_power});
-    return Camera(std::move(*context), std::move(*target), std::move(*view), variation);
+    return Camera(std::move(*context), std::move(*target), std::move(*view), variation,
+                  plan.layout == Layout::kTrocar);
   }
 
   core::Status Take(const simulation::Snapshot& now, Frame& frame) {
@@ -72,25 +58,46 @@ class Camera {
     target_.Read(frame.colour);
     colours_.Apply(frame.colour);
     frame.focal_length = view_.FocalLength(target_.Height());
-    return view_.DrawGeometry(target_.Width(), target_.Height(), frame.geometry);
+    return has_flow_ ? view_.DrawGeometryAndFlow(target_.Width(), target_.Height(), frame.geometry)
+                     : view_.DrawGeometry(target_.Width(), target_.Height(), frame.geometry);
   }
 
  private:
   Camera(render::OffscreenContext context, render::OffscreenTarget target, view::LaparoscopeView view,
-         const Variation& variation)
+         const Variation& variation, bool has_flow)
       : context_(std::move(context)),
         target_(std::move(target)),
         view_(std::move(view)),
         colours_(variation),
-        smoke_(variation.smoke) {}
+        smoke_(variation.smoke),
+        has_flow_(has_flow) {}
 
   render::OffscreenContext context_;
   render::OffscreenTarget target_;
   view::LaparoscopeView view_;
   ColourTable colours_;
   double smoke_;
+  bool has_flow_;
   simulation::Snapshot hazy_;
 };
+
+/// Who acts in a video; the result gets patient, lens and recording.
+core::Result<std::unique_ptr<Player>> OpenPlayer(const VideoTask& task, VideoResult& result) {
+  const Plan& plan = *task.plan;
+  if (plan.recordings.empty()) {
+    std::filesystem::path patient;
+    if (!plan.patients.empty()) patient = plan.patients[task.index % plan.patients.size()];
+    result.patient = patient.filename().string();
+    return MakeSurgeonPlayer(plan, result.seed, patient, result.variation.field_of_view_scale);
+  }
+  const std::filesystem::path& file = plan.recordings[task.index];
+  const auto sum = core::CalcSha256OfFile(file);
+  if (!sum) return sum.error();
+  result.recording = *sum;
+  // the lens is part of the scene that was recorded
+  result.variation.field_of_view_scale = 1;
+  return MakeRecordingPlayer(file);
+}
 
 }  // namespace
 
@@ -101,51 +108,46 @@ core::Result<VideoResult> MakeVideo(
   const Plan& plan = *task.plan;
   VideoResult result;
   result.seed = plan.first_seed + task.index;
-  std::filesystem::path patient;
-  if (!plan.patients.empty()) {
-    patient = plan.patients[task.index % plan.patients.size()];
-    result.patient = patient.filename().string();
+  if (plan.has_variation && plan.has_pictures) result.variation = DrawVariation(result.seed);
+  auto player = OpenPlayer(task, result);
+  if (!player) return player.error();
+  const simulation::Simulation& simulation = (*player)->GetSimulation();
+  std::optional<Camera> camera;
+  if (plan.has_pictures) {
+    auto made = Camera::Make(plan, simulation, result.variation);
+    if (!made) return made.error();
+    camera.emplace(std::move(*made));
   }
-  if (plan.has_variation) result.variation = DrawVariation(result.seed);
-  auto read = FindScene(plan, result.seed, patient);
-  if (!read) return read.error();
-  read->laparoscope.field_of_view =
-      std::min(kWidestView, read->laparoscope.field_of_view * result.variation.field_of_view_scale);
-  const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
-  if (!simulation) return simulation.error();
-  auto surgeon = agent::MakeSurgeon(plan.surgeon, scene, result.seed);
-  if (!surgeon) return surgeon.error();
-  auto camera = Camera::Make(plan, *simulation, result.variation);
-  if (!camera) return camera.error();
 
-  const auto writer = make_writer(*simulation);
-  ActWatch watch(*scene, simulation->Surfaces());
+  const auto writer = make_writer(simulation);
+  ActWatch watch(simulation.GetScene(), simulation.Surfaces());
   Frame frame;
-  const simulation::Snapshot& now = simulation->GetSnapshot();
-  scene::Input input;
+  const simulation::Snapshot& now = simulation.GetSnapshot();
+  const double begin = now.time, half_tick = 0.5 * simulation.GetScene().tick_seconds;
   for (;;) {
-    watch.Look(now, input);
-    writer->Look(*simulation);
-    if (now.time + 0.5 * scene->tick_seconds >= static_cast<double>(frame.index) * plan.every) {
-      if (auto taken = camera->Take(now, frame); !taken) return taken.error();
-      frame.number = static_cast<std::uint64_t>(std::llround(kFramesPerSecond * now.time));
+    watch.Look(now, (*player)->LastInput());
+    writer->Look(simulation, (*player)->LastInput());
+    if (now.time - begin + half_tick >= static_cast<double>(frame.index) * plan.every) {
+      frame.number = static_cast<std::uint64_t>(std::llround(kFramesPerSecond * (now.time - begin)));
       frame.acts = watch.Acts();
-      std::erase_if(frame.acts, [&](const Act& act) { return !IsVisible(frame.geometry, act); });
-      if (auto added = writer->Add(frame, *simulation); !added) return added.error();
+      if (camera) {
+        if (auto taken = camera->Take(now, frame); !taken) return taken.error();
+        std::erase_if(frame.acts, [&](const Act& act) { return !IsVisible(frame.geometry, act); });
+      }
+      if (auto added = writer->Add(frame, simulation); !added) return added.error();
       ++frame.index;
     }
-    if ((*surgeon)->HasFinished() || now.time >= plan.most_seconds ||
+    if ((*player)->HasFinished() || now.time - begin >= plan.most_seconds ||
         now.task.phase == scene::TaskPhase::kTimeOver || now.task.phase == scene::TaskPhase::kEnded)
       break;
-    input = (*surgeon)->Act(now);
-    simulation->Step(input);
+    (*player)->Step();
   }
+  if (auto whole = (*player)->Finish(); !whole) return whole.error();
   if (auto finished = writer->Finish(); !finished) return finished.error();
   result.frames = frame.index;
-  result.seconds = now.time;
-  result.hash = simulation->Hash();
-  result.outcome = NameOutcome(now, (*surgeon)->HasFinished());
+  result.seconds = now.time - begin;
+  result.hash = simulation.Hash();
+  result.outcome = NameOutcome(plan, now, (*player)->HasFinished());
   return result;
 }
 

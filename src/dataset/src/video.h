@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file video.h  One attempt of a scripted surgeon as a row of labelled frames.
+/// \file video.h  One attempt of a scripted surgeon, or a recorded one, as a row of labelled frames.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,7 @@ inline constexpr double kFramesPerSecond = 25;
 struct Frame {
   std::size_t index = 0;     ///< in the video, from 0
   std::uint64_t number = 0;  ///< at 25 frames a second
-  render::Image colour;
+  render::Image colour;      ///< this and geometry are empty where the plan has no pictures
   render::GeometryPicture geometry;
   double focal_length = 0;  ///< [pixels]
   std::vector<Act> acts;    ///< of tools that are in the picture
@@ -37,13 +37,15 @@ class VideoWriter {
   /// \return the error of a file
   virtual core::Status Add(const Frame& frame, const simulation::Simulation& simulation) = 0;
   /// Each tick of the simulation, before the frame that it may be.
-  virtual void Look(const simulation::Simulation& /*simulation*/) {}
+  /// \param input  what that tick was given
+  virtual void Look(const simulation::Simulation& /*simulation*/, const scene::Input& /*input*/) {}
   virtual core::Status Finish() = 0;
 };
 
 struct VideoResult {
-  std::uint64_t seed = 0;
-  std::string patient;  ///< folder's name, or empty for the scene's own
+  std::uint64_t seed = 0;  ///< of recordings the number, from 1
+  std::string patient;     ///< folder's name, or empty for the scene's own
+  std::string recording;   ///< SHA-256 of its file, or empty
   Variation variation;
   std::size_t frames = 0;
   double seconds = 0;      ///< of simulated time

@@ -9,7 +9,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "trocar/agent/surgeon.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/record/recorder.h"
+#include "trocar/scene/task.h"
 
 namespace trocar::dataset {
 namespace {
@@ -27,6 +30,34 @@ std::string Read(const fs::path& path) {
 int Verify(const fs::path& folder) {
   const std::string command = std::string("python3 ") + TROCAR_VERIFY_DATASET + " " + folder.string();
   return std::system(command.c_str());
+}
+
+/// The first seconds of the expert's attempt at seed 1.
+void RecordExpert(const fs::path& file, double seconds) {
+  fs::create_directories(file.parent_path());
+  const auto path = scene::FindTask("lift_and_grasp");
+  ASSERT_TRUE(path.ok());
+  auto read = scene::ReadTask(*path, {.seed = 1});
+  ASSERT_TRUE(read.ok());
+  const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
+  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto surgeon = agent::MakeSurgeon("expert", scene, 1);
+  ASSERT_TRUE(simulation.ok() && surgeon.ok());
+  record::Description description;
+  description.kind = record::Description::Kind::kTask;
+  description.name = "lift_and_grasp";
+  description.level = "normal";
+  description.seed = 1;
+  record::RecorderSettings settings;
+  settings.waits = true;
+  auto recorder = record::Recorder::Start(file, description, *simulation, settings);
+  ASSERT_TRUE(recorder.ok()) << recorder.error().Text();
+  while (simulation->GetSnapshot().time < seconds) {
+    const scene::Input input = (*surgeon)->Act(simulation->GetSnapshot());
+    simulation->Step(input);
+    (*recorder)->Add(input, *simulation);
+  }
+  ASSERT_TRUE((*recorder)->Finish(*simulation).ok());
 }
 
 class DatasetTest : public testing::TestWithParam<Layout> {
@@ -62,6 +93,54 @@ TEST_P(DatasetTest, IsReadByAnotherProgramAndIsTheSameAgain) {
   for (const char* file : {"SHA256SUMS", "card.json", "README.md"})
     EXPECT_EQ(Read(folder_ / "a" / file), Read(folder_ / "b" / file)) << file;
 }
+
+class DatasetOfDemonstrationsTest : public DatasetTest {};
+
+TEST_P(DatasetOfDemonstrationsTest, HoldsStatesAndActionsWithoutPictures) {
+  Plan plan = SmallPlan();
+  plan.task = "lift_and_grasp";
+  plan.every = 0.1;
+  plan.has_pictures = false;
+  const auto made = WriteDataset(plan, folder_ / "a", nullptr);
+  ASSERT_TRUE(made.ok()) << made.error().Text();
+  EXPECT_EQ(made->frames, 42U) << "0 to 2 s, twice";
+  EXPECT_EQ(Verify(folder_ / "a"), 0);
+}
+
+// what was played and recorded gives the frames that the surgeon's own video has
+TEST_P(DatasetOfDemonstrationsTest, IsTheSameFromARecording) {
+  Plan plan = SmallPlan();
+  plan.task = "lift_and_grasp";
+  plan.every = 0.5;
+  plan.last_seed = 1;
+  plan.has_variation = false;
+  ASSERT_TRUE(WriteDataset(plan, folder_ / "played", nullptr).ok());
+
+  const fs::path file = folder_ / "attempt.trocar";
+  RecordExpert(file, 2.0);
+  Plan recorded = plan;
+  recorded.recordings = {file};
+  const auto made = WriteDataset(recorded, folder_ / "recorded", nullptr);
+  ASSERT_TRUE(made.ok()) << made.error().Text();
+  EXPECT_EQ(Verify(folder_ / "recorded"), 0);
+  EXPECT_EQ(Read(folder_ / "recorded" / "video_00001.h5"), Read(folder_ / "played" / "video_00001.h5"));
+}
+
+TEST_P(DatasetOfDemonstrationsTest, RefusesARecordingThatIsCut) {
+  const fs::path file = folder_ / "attempt.trocar";
+  RecordExpert(file, 1.0);
+  const std::string bytes = Read(file);
+  std::ofstream(file, std::ios::binary) << bytes.substr(0, bytes.size() - 40);
+  Plan plan = SmallPlan();
+  plan.recordings = {file};
+  const auto made = WriteDataset(plan, folder_ / "a", nullptr);
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, core::ErrorCode::kRecordingInvalid) << made.error().Text();
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, DatasetOfDemonstrationsTest, testing::Values(Layout::kTrocar),
+                         [](const auto& layout) { return std::string(NameOf(layout.param)); });
 
 INSTANTIATE_TEST_SUITE_P(Layouts, DatasetTest, testing::ValuesIn(kLayouts),
                          [](const auto& layout) { return std::string(NameOf(layout.param)); });
@@ -116,6 +195,8 @@ TEST_P(DatasetFaultTest, RefusesPlansThatCannotBe) {
   EXPECT_EQ(code_of([](Plan& p) { p.last_seed = 0; }), core::ErrorCode::kUsage);
   EXPECT_EQ(code_of([](Plan& p) { p.width = 8; }), core::ErrorCode::kUsage);
   EXPECT_EQ(code_of([](Plan& p) { p.layout = Layout::kCholec80, p.every = 2; }), core::ErrorCode::kUsage);
+  EXPECT_EQ(code_of([](Plan& p) { p.has_pictures = false; }), core::ErrorCode::kUsage);
+  EXPECT_EQ(code_of([](Plan& p) { p.recordings = {"/nowhere.trocar"}; }), core::ErrorCode::kFileMissing);
   EXPECT_EQ(code_of([](Plan& p) { p.surgeon = "nobody"; }), core::ErrorCode::kUnknownName);
   EXPECT_FALSE(fs::exists(folder_ / "a"));
 }

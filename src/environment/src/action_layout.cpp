@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "trocar/core/assert.h"
+
 namespace trocar::environment {
 namespace {
 
@@ -31,6 +33,11 @@ bool HasKind(const scene::InstrumentSetup& setup, std::initializer_list<instrume
 std::size_t PartOf(double value, std::size_t count) {
   const double part = 0.5 * (value + 1) * static_cast<double>(count);
   return std::min(count - 1, static_cast<std::size_t>(std::max(part, 0.0)));
+}
+
+/// Of the parts of PartOf.
+double MiddleOf(std::size_t part, std::size_t count) {
+  return -1 + (2 * static_cast<double>(part) + 1) / static_cast<double>(count);
 }
 
 }  // namespace
@@ -185,6 +192,57 @@ Motion ActionLayout::ReadDiscrete(std::span<const double> action, scene::Input& 
   if (has_assistant_)
     input.assistant = static_cast<scene::AssistantCommand>(static_cast<int>(action[next++]));
   return motion;
+}
+
+void ActionLayout::Write(std::span<const math::Vec3, kHandCount> ports, const scene::Input& before,
+                         const scene::Input& after, double seconds, std::span<double> action) const {
+  TROCAR_ASSERT(kind_ != ActionKind::kDiscrete && seconds > 0 && action.size() == size_);
+  const auto share = [&](double way, double rate) { return std::clamp(way / (seconds * rate), -1.0, 1.0); };
+  std::size_t next = 0;
+  for (std::size_t hand = 0; hand < kHandCount; ++hand) {
+    const instrument::TrocarJoints &from = before.hands[hand], &to = after.hands[hand];
+    if (kind_ == ActionKind::kTip) {
+      const math::Vec3 way = instrument::CalcToolPose(ports[hand], to).translation -
+                             instrument::CalcToolPose(ports[hand], from).translation;
+      for (const double along : {way.x, way.y, way.z}) action[next++] = share(along, kMaxTipSpeed);
+      action[next++] = share(to.spin - from.spin, kMaxSpin);
+    } else {
+      action[next++] = share(to.pan - from.pan, kMaxTurn);
+      action[next++] = share(to.tilt - from.tilt, kMaxTurn);
+      action[next++] = share(to.spin - from.spin, kMaxSpin);
+      action[next++] = share(to.depth - from.depth, kMaxTipSpeed);
+    }
+    action[next++] = share(to.jaw - from.jaw, kMaxJaw);
+    const scene::HandControls& controls = after.controls[hand];
+    for (const Pedal pedal : pedals_[hand]) {
+      switch (pedal) {
+        case Pedal::kCut:
+          action[next++] = controls.cut ? 1 : -1;
+          break;
+        case Pedal::kCoagulate:
+          action[next++] = controls.coagulate ? 1 : -1;
+          break;
+        case Pedal::kRinse:
+          action[next++] = controls.rinse ? 1 : -1;
+          break;
+        case Pedal::kAspirate:
+          action[next++] = controls.aspirate ? 1 : -1;
+          break;
+        case Pedal::kNextTool:
+          action[next++] = MiddleOf(controls.tool, tools_[hand]);
+          break;
+      }
+    }
+  }
+  if (moves_camera_) {
+    const instrument::TrocarJoints &from = before.laparoscope, &to = after.laparoscope;
+    action[next++] = share(to.pan - from.pan, kMaxTurn);
+    action[next++] = share(to.tilt - from.tilt, kMaxTurn);
+    action[next++] = share(to.spin - from.spin, kMaxTurn);
+    action[next++] = share(to.depth - from.depth, kMaxTipSpeed);
+  }
+  if (has_assistant_) action[next++] = MiddleOf(static_cast<std::size_t>(after.assistant), kCommands);
+  TROCAR_ASSERT(next == size_);
 }
 
 void ActionLayout::Move(const scene::Scene& scene, const Motion& motion, double dt,

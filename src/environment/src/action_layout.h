@@ -41,6 +41,13 @@ class ActionLayout {
   /// Reads an action.
   /// \param[in,out] input  pedals, tools and the assistant's command are set
   Motion Read(std::span<const double> action, scene::Input& input) const;
+  /// The action that takes hands and camera from one input to another: what Read and Move undo, cut to -1 to 1. Not of
+  /// discrete actions (TROCAR_ASSERT).
+  /// \param ports        p_world_port of each hand
+  /// \param seconds      between the two [s], > 0
+  /// \param[out] action  (Size())
+  void Write(std::span<const math::Vec3, kHandCount> ports, const scene::Input& before,
+             const scene::Input& after, double seconds, std::span<double> action) const;
   /// Moves what is held for the time `dt` [s].
   void Move(const scene::Scene& scene, const Motion& motion, double dt, scene::Input& input) const;
 

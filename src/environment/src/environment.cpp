@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "action_layout.h"
+#include "episode.h"
 #include "reward.h"
 #include "state_layout.h"
 #include "trocar/core/assert.h"
@@ -14,9 +15,6 @@
 
 namespace trocar::environment {
 namespace {
-
-constexpr double kTaskSeconds = 300, kOperationSeconds = 1800;
-constexpr double kIdleSeconds = 30;  // beyond a task's own limit, which counts from the first movement
 
 core::Error Unusable(const std::string& what) {
   return core::Error{core::ErrorCode::kUsage, what};
@@ -44,17 +42,6 @@ core::Result<scene::Scene> ReadLayout(const EnvironmentSettings& settings, std::
   const auto path = scene::FindTask(settings.task);
   if (!path) return path.error();
   return scene::ReadTask(*path, {settings.level, seed, settings.patient});
-}
-
-/// Whether a goal is about what the laparoscope shows.
-bool IsAboutCamera(const scene::Scene& scene) {
-  if (!scene.task) return false;
-  for (const scene::Goal& goal : scene.task->goals) {
-    for (const scene::Condition& step : goal.steps) {
-      if (step.kind == scene::ConditionKind::kCameraSees) return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace
@@ -85,12 +72,7 @@ core::Result<std::shared_ptr<EnvironmentModel>> EnvironmentModel::Make(const Env
   if (!simulation) return simulation.error();
   const scene::Scene& scene = simulation->GetScene();
   Content& made = *model->content_;
-  if (made.settings.most_seconds == 0) {
-    const bool has_limit = scene.task && std::isfinite(scene.task->time_limit);
-    made.settings.most_seconds = has_limit                        ? scene.task->time_limit + kIdleSeconds
-                                 : scene.operation && !scene.task ? kOperationSeconds
-                                                                  : kTaskSeconds;
-  }
+  if (made.settings.most_seconds == 0) made.settings.most_seconds = UsualSeconds(scene);
   made.settings.moves_camera = made.settings.moves_camera || IsAboutCamera(scene);
   made.ticks =
       std::max(1, static_cast<int>(std::lround(1 / (settings.actions_per_second * scene.tick_seconds))));

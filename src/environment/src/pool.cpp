@@ -15,8 +15,6 @@
 namespace trocar::environment {
 namespace {
 
-constexpr int kMostEnvironments = 4096;
-
 core::Error WrongState(const std::string& what) {
   return core::Error{core::ErrorCode::kEnvironmentState, what};
 }
@@ -52,6 +50,7 @@ struct Pool::Content {
     const std::size_t size = model->StateSize();
     return std::span(all).subspan(static_cast<std::size_t>(id) * size, size);
   }
+  core::Status Observe(std::int32_t id, std::vector<float>& rows_of_states, bool is_final);
   core::Status DoReset(std::int32_t id, std::optional<std::uint64_t> seed);
   core::Status DoStep(std::int32_t id);
   void Serve();
@@ -59,12 +58,17 @@ struct Pool::Content {
   void HandOver(std::span<const std::int32_t> ids);
 };
 
+core::Status Pool::Content::Observe(std::int32_t id, std::vector<float>& rows_of_states, bool is_final) {
+  const Environment& environment = *slots[static_cast<std::size_t>(id)].environment;
+  environment.Observe(StateRow(rows_of_states, id));
+  return settings.observe ? settings.observe(id, environment, is_final) : core::Status{};
+}
+
 core::Status Pool::Content::DoReset(std::int32_t id, std::optional<std::uint64_t> seed) {
   const auto row = static_cast<std::size_t>(id);
   Slot& slot = slots[row];
   if (const auto reset = slot.environment->Reset(seed); !reset) return reset;
-  slot.environment->Observe(StateRow(rows.state, id));
-  return {};
+  return Observe(id, rows.state, false);
 }
 
 core::Status Pool::Content::DoStep(std::int32_t id) {
@@ -87,14 +91,12 @@ core::Status Pool::Content::DoStep(std::int32_t id) {
   const auto outcome = slot.environment->Step(slot.action);
   if (!outcome) return outcome.error();
   write(*outcome);
-  slot.environment->Observe(StateRow(rows.state, id));
   if (slot.environment->IsOver() && settings.autoreset == Autoreset::kSameStep) {
-    const auto last = StateRow(rows.state, id);
-    std::copy(last.begin(), last.end(), StateRow(rows.final_state, id).begin());
+    if (const auto seen = Observe(id, rows.final_state, true); !seen) return seen;
     rows.was_reset[row] = 1;
     return DoReset(id, {});
   }
-  return {};
+  return Observe(id, rows.state, false);
 }
 
 void Pool::Content::Serve() {

@@ -2,6 +2,8 @@
 #include "geometry_drawer.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "camera_matrices.h"
 
@@ -11,31 +13,47 @@ namespace {
 constexpr const char* kVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
+layout(location = 4) in vec3 a_earlier;
 uniform mat4 u_camera_from_surface;
+uniform mat4 u_earlier_from_surface;
 uniform mat3 u_rotation;
 uniform mat4 u_clip_from_camera;
 out vec3 v_position;
 out vec3 v_normal;
+out vec3 v_now;
+out vec3 v_before;
 void main() {
   vec4 position = u_camera_from_surface * vec4(a_position, 1.0);
   v_position = position.xyz;
   v_normal = u_rotation * a_normal;
   gl_Position = u_clip_from_camera * position;
+  v_now = gl_Position.xyw;
+  v_before = (u_clip_from_camera * (u_earlier_from_surface * vec4(a_earlier, 1.0))).xyw;
 }
 )";
 
 constexpr const char* kFragmentShader = R"(#version 330 core
 in vec3 v_position;
 in vec3 v_normal;
+in vec3 v_now;
+in vec3 v_before;
 uniform uint u_label;
+uniform float u_has_earlier;
+uniform vec2 u_half_size;
 layout(location = 0) out vec4 o_geometry;
 layout(location = 1) out uint o_label;
+layout(location = 2) out vec2 o_flow;
 void main() {
   // between opposite normals there is none
   o_geometry = vec4(normalize(v_normal + vec3(0.0, 0.0, 1e-9)), -v_position.z);
   o_label = u_label;
+  bool is_known = u_has_earlier > 0.5 && v_before.z > 0.0;
+  vec2 way = v_now.xy / v_now.z - v_before.xy / v_before.z;
+  o_flow = is_known ? way * u_half_size * vec2(1.0, -1.0) : vec2(1e9);
 }
 )";
+
+constexpr GLfloat kUnknownFlow = 1e9f;  // as the shader has it
 
 }  // namespace
 
@@ -43,7 +61,7 @@ GeometryDrawer::~GeometryDrawer() {
   if (framebuffer_ == 0) return;
   glDeleteProgram(program_.name);
   glDeleteFramebuffers(1, &framebuffer_);
-  for (const GLuint buffer : {normals_, labels_, depth_}) glDeleteRenderbuffers(1, &buffer);
+  for (const GLuint buffer : {normals_, labels_, flow_, depth_}) glDeleteRenderbuffers(1, &buffer);
 }
 
 core::Status GeometryDrawer::Resize(int width, int height) {
@@ -53,7 +71,7 @@ core::Status GeometryDrawer::Resize(int width, int height) {
     program_ = *program;
     label_place_ = program_.Find("u_label");
     glGenFramebuffers(1, &framebuffer_);
-    for (GLuint* buffer : {&normals_, &labels_, &depth_}) glGenRenderbuffers(1, buffer);
+    for (GLuint* buffer : {&normals_, &labels_, &flow_, &depth_}) glGenRenderbuffers(1, buffer);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   if (width == width_ && height == height_) return {};
@@ -64,10 +82,9 @@ core::Status GeometryDrawer::Resize(int width, int height) {
   };
   attach(normals_, GL_RGBA32F, GL_COLOR_ATTACHMENT0);
   attach(labels_, GL_R16UI, GL_COLOR_ATTACHMENT1);
+  attach(flow_, GL_RG32F, GL_COLOR_ATTACHMENT2);
   attach(depth_, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
   glBindRenderbuffer(GL_RENDERBUFFER, 0);
-  constexpr GLenum kBuffers[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-  glDrawBuffers(2, kBuffers);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     width_ = height_ = 0;
     return core::Error{core::ErrorCode::kNoGraphics,
@@ -79,8 +96,10 @@ core::Status GeometryDrawer::Resize(int width, int height) {
   return {};
 }
 
-core::Status GeometryDrawer::Begin(const Matrix4& clip_from_camera, int width, int height) {
+core::Status GeometryDrawer::Begin(const Matrix4& clip_from_camera, int width, int height, bool has_flow) {
   if (const auto status = Resize(width, height); !status) return status;
+  constexpr GLenum kBuffers[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+  glDrawBuffers(has_flow ? 3 : 2, kBuffers);
   glViewport(0, 0, width, height);
   constexpr GLfloat kNoGeometry[] = {0, 0, 0, 0};
   constexpr GLuint kNoLabel[] = {0, 0, 0, 0};
@@ -88,14 +107,21 @@ core::Status GeometryDrawer::Begin(const Matrix4& clip_from_camera, int width, i
   glClearBufferfv(GL_COLOR, 0, kNoGeometry);
   glClearBufferuiv(GL_COLOR, 1, kNoLabel);
   glClearBufferfv(GL_DEPTH, 0, &kFarthest);
+  constexpr GLfloat kNoFlow[] = {kUnknownFlow, kUnknownFlow, 0, 0};
+  if (has_flow) glClearBufferfv(GL_COLOR, 2, kNoFlow);
   glUseProgram(program_.name);
   program_.Set("u_clip_from_camera", clip_from_camera);
+  program_.Set("u_half_size",
+               std::array{0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height)});
   return {};
 }
 
 void GeometryDrawer::Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale,
-                          std::uint16_t label) {
+                          std::uint16_t label, const std::optional<math::Pose>& X_earlier_surface) {
   glUseProgram(program_.name);
+  const bool has_earlier = X_earlier_surface && surface.earlier != 0;
+  program_.Set("u_has_earlier", has_earlier ? 1.0f : 0.0f);
+  if (has_earlier) program_.Set("u_earlier_from_surface", MakeMatrix(*X_earlier_surface, scale));
   program_.Set("u_camera_from_surface", MakeMatrix(X_camera_surface, scale));
   program_.Set("u_rotation", MakeRotation(X_camera_surface.rotation));
   glUniform1ui(label_place_, label);
@@ -107,11 +133,12 @@ const Program& GeometryDrawer::BeginFine(std::uint16_t label) {
   glUseProgram(program_.name);
   program_.Set("u_camera_from_surface", MakeMatrix({}, {1, 1, 1}));
   program_.Set("u_rotation", MakeRotation({}));
+  program_.Set("u_has_earlier", 0.0f);
   glUniform1ui(label_place_, label);
   return program_;
 }
 
-void GeometryDrawer::Read(GeometryPicture& picture) {
+void GeometryDrawer::Read(GeometryPicture& picture, bool has_flow) {
   const auto columns = static_cast<std::size_t>(width_), rows = static_cast<std::size_t>(height_);
   picture.width = width_;
   picture.height = height_;
@@ -136,6 +163,17 @@ void GeometryDrawer::Read(GeometryPicture& picture) {
       std::copy(from, from + 3, picture.normals.begin() + static_cast<std::ptrdiff_t>(3 * i));
       picture.depth[i] = from[3];
     }
+  }
+  picture.flow.clear();
+  if (!has_flow) return;
+  picture.flow.resize(2 * columns * rows);
+  glReadBuffer(GL_COLOR_ATTACHMENT2);
+  glReadPixels(0, 0, width_, height_, GL_RG, GL_FLOAT, staging_.data());
+  for (std::size_t row = 0; row < rows; ++row) {
+    const float* from = staging_.data() + 2 * columns * (rows - 1 - row);
+    std::transform(
+        from, from + 2 * columns, picture.flow.begin() + static_cast<std::ptrdiff_t>(2 * columns * row),
+        [](float v) { return v < 0.5f * kUnknownFlow ? v : std::numeric_limits<float>::quiet_NaN(); });
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "camera_matrices.h"
@@ -56,6 +57,11 @@ struct Renderer::Content {
   RoundPicture round;
   ExposureMeter meter;
   GeometryDrawer geometry;
+  /// What the flow picture before showed.
+  struct {
+    Pose X_camera_world;
+    std::vector<SurfaceDraw> surfaces;
+  } earlier;
   SurfaceId rod, cone, puddle;
 
   core::Status Make() {
@@ -127,19 +133,46 @@ struct Renderer::Content {
     glDisable(GL_BLEND);
   }
 
-  void DrawGeometry(const Frame& frame, const MaterialLabels& labels, const Viewport& viewport) {
-    glEnable(GL_CULL_FACE);
+  /// Where the n-th drawing of the same surface was in the flow picture before.
+  std::optional<Pose> FindEarlier(const Frame& frame, std::size_t index) const {
+    const SurfaceId id = frame.surfaces[index].surface;
+    const auto is_same = [id](const SurfaceDraw& draw) { return draw.surface == id; };
+    auto before = std::count_if(frame.surfaces.begin(),
+                                frame.surfaces.begin() + static_cast<std::ptrdiff_t>(index), is_same);
+    for (const SurfaceDraw& draw : earlier.surfaces) {
+      if (is_same(draw) && before-- == 0) return earlier.X_camera_world * draw.X_world_surface;
+    }
+    return {};
+  }
+
+  /// For the next flow picture.
+  void Remember(const Frame& frame, const Pose& X_camera_world) {
+    earlier.X_camera_world = X_camera_world;
+    earlier.surfaces.clear();
     for (const SurfaceDraw& draw : frame.surfaces) {
+      Surface* surface = surfaces.Find(draw.surface);
+      if (surface == nullptr || draw.label == 0) continue;
+      SurfaceStore::Remember(*surface);
+      earlier.surfaces.push_back(draw);
+    }
+  }
+
+  void DrawGeometry(const Frame& frame, const MaterialLabels& labels, const Viewport& viewport,
+                    bool has_flow) {
+    glEnable(GL_CULL_FACE);
+    for (std::size_t i = 0; i < frame.surfaces.size(); ++i) {
+      const SurfaceDraw& draw = frame.surfaces[i];
       const Surface* surface = surfaces.Find(draw.surface);
-      if (surface != nullptr && draw.label != 0)
-        geometry.Draw(*surface, viewport.X_camera_world * draw.X_world_surface, {1, 1, 1}, draw.label);
+      if (surface == nullptr || draw.label == 0) continue;
+      geometry.Draw(*surface, viewport.X_camera_world * draw.X_world_surface, {1, 1, 1}, draw.label,
+                    has_flow ? FindEarlier(frame, i) : std::nullopt);
     }
     for (const Puddle& p : frame.puddles) {
       const std::uint16_t label = labels[static_cast<std::size_t>(FindLiquid(looks, p))];
       if (!(p.radius > 0.0) || label == 0) continue;
       const Pose X_world_puddle{math::RotationBetween({0, 0, 1}, p.up), p.centre};
       geometry.Draw(*surfaces.Find(puddle), viewport.X_camera_world * X_world_puddle,
-                    {p.radius, p.radius, p.radius}, label);
+                    {p.radius, p.radius, p.radius}, label, {});
     }
     glDisable(GL_CULL_FACE);  // blobs and ribbons face the eye
     std::vector<Fibre> fibres;
@@ -200,7 +233,7 @@ SurfaceId Renderer::AddSurface(const geometry::TriangleMesh& mesh, Material mate
 }
 
 void Renderer::UpdateSurface(SurfaceId id, std::span<const Vec3> positions, std::span<const Vec3> normals) {
-  const Surface* surface = content_->surfaces.Find(id);
+  Surface* surface = content_->surfaces.Find(id);
   TROCAR_ASSERT(surface != nullptr && positions.size() == surface->vertex_count &&
                 normals.size() == positions.size());
   if (surface != nullptr) content_->surfaces.UploadMoving(*surface, positions, normals);
@@ -276,6 +309,16 @@ void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, in
 
 core::Status Renderer::DrawGeometry(const Frame& frame, const MaterialLabels& fine, int width, int height,
                                     GeometryPicture& picture) {
+  return DrawGeometryNow(frame, fine, width, height, false, picture);
+}
+
+core::Status Renderer::DrawGeometryAndFlow(const Frame& frame, const MaterialLabels& fine, int width,
+                                           int height, GeometryPicture& picture) {
+  return DrawGeometryNow(frame, fine, width, height, true, picture);
+}
+
+core::Status Renderer::DrawGeometryNow(const Frame& frame, const MaterialLabels& fine, int width, int height,
+                                       bool has_flow, GeometryPicture& picture) {
   Content& c = *content_;
   for (const GLenum state :
        {GL_BLEND, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB, GL_POLYGON_OFFSET_FILL}) {
@@ -288,13 +331,16 @@ core::Status Renderer::DrawGeometry(const Frame& frame, const MaterialLabels& fi
   glDepthRange(0.0, 1.0);
   glCullFace(GL_BACK);
   glFrontFace(GL_CCW);
-  if (const auto status = c.geometry.Begin(MakeProjection(frame.camera, width, height), width, height);
+  if (const auto status =
+          c.geometry.Begin(MakeProjection(frame.camera, width, height), width, height, has_flow);
       !status)
     return status;
   const Pose X_camera_world = math::Inverse(frame.camera.X_world_camera);
   c.DrawGeometry(frame, fine,
-                 {X_camera_world, CalcFocalLength(frame.camera, height), 0.5 * width, 0.5 * height});
-  c.geometry.Read(picture);
+                 {X_camera_world, CalcFocalLength(frame.camera, height), 0.5 * width, 0.5 * height},
+                 has_flow);
+  c.geometry.Read(picture, has_flow);
+  if (has_flow) c.Remember(frame, X_camera_world);
   glBindVertexArray(0);
   glUseProgram(0);
   glDisable(GL_CULL_FACE);
@@ -309,6 +355,9 @@ core::Status Renderer::DrawGeometry(const Frame& frame, const MaterialLabels& fi
       picture.labels[i] = 0;
       picture.depth[i] = 0;
       std::fill_n(picture.normals.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0.0f);
+      if (has_flow)
+        std::fill_n(picture.flow.begin() + static_cast<std::ptrdiff_t>(2 * i), 2,
+                    std::numeric_limits<float>::quiet_NaN());
     }
   }
   return {};

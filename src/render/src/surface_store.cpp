@@ -27,9 +27,9 @@ bool IsInUse(const Surface& surface) {
 void Free(Surface& surface) {
   if (!IsInUse(surface)) return;
   glDeleteVertexArrays(1, &surface.array);
-  for (const GLuint buffer : {surface.moving, surface.rest, surface.indices, surface.marks})
+  for (const GLuint buffer : {surface.moving, surface.rest, surface.indices, surface.marks, surface.earlier})
     glDeleteBuffers(1, &buffer);
-  surface.marks = 0;
+  surface.marks = surface.earlier = 0;
   ++surface.generation;
 }
 
@@ -85,8 +85,9 @@ Surface* SurfaceStore::Find(SurfaceId id) {
   return surface.generation == id.generation ? &surface : nullptr;
 }
 
-void SurfaceStore::UploadMoving(const Surface& surface, std::span<const Vec3> positions,
+void SurfaceStore::UploadMoving(Surface& surface, std::span<const Vec3> positions,
                                 std::span<const Vec3> normals) {
+  surface.has_moved = true;
   staging_.resize(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i)
     staging_[i] = {ToFloat(positions[i]), ToFloat(normals[i])};
@@ -122,6 +123,27 @@ void SurfaceStore::UploadTriangles(Surface& surface, std::span<const Triangle> t
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
                GL_STATIC_DRAW);
   glBindVertexArray(0);
+}
+
+void SurfaceStore::Remember(Surface& surface) {
+  if (surface.earlier != 0 && !surface.has_moved) return;
+  const auto bytes = static_cast<GLsizeiptr>(surface.vertex_count * sizeof(MovingVertex));
+  if (surface.earlier == 0) {
+    glGenBuffers(1, &surface.earlier);
+    glBindVertexArray(surface.array);
+    glBindBuffer(GL_ARRAY_BUFFER, surface.earlier);
+    glBufferData(GL_ARRAY_BUFFER, bytes, nullptr, GL_STREAM_COPY);
+    glEnableVertexAttribArray(4);
+    glVertexAttribPointer(4, 3, GL_FLOAT, GL_FALSE, sizeof(MovingVertex), nullptr);
+    glBindVertexArray(0);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+  }
+  glBindBuffer(GL_COPY_READ_BUFFER, surface.moving);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, surface.earlier);
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, bytes);
+  glBindBuffer(GL_COPY_READ_BUFFER, 0);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+  surface.has_moved = false;
 }
 
 geometry::TriangleMesh SurfaceStore::Read(const Surface& surface) {

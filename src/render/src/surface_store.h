@@ -20,12 +20,15 @@ struct Surface {
   std::uint32_t generation = 0;  ///< odd while in use
   Material material = Material::kLiver;
   GLuint array = 0, moving = 0, rest = 0, indices = 0;
-  GLuint marks = 0;  ///< 0: it has none
+  GLuint marks = 0;        ///< 0: it has none
+  GLuint earlier = 0;      ///< positions when Remember was called; 0: it was not
+  bool has_moved = false;  ///< since then
   GLsizei index_count = 0;
   std::size_t vertex_count = 0;
 };
 
-/// Attributes of a vertex: 0 position, 1 normal, 2 rest position and ambient_occlusion, 3 marks.
+/// Attributes of a vertex: 0 position, 1 normal, 2 rest position and ambient_occlusion, 3 marks,
+/// 4 earlier position.
 /// Needs the OpenGL context of the renderer that owns it.
 class SurfaceStore {
  public:
@@ -43,12 +46,14 @@ class SurfaceStore {
   Surface* Find(SurfaceId id);
 
   /// \param positions, normals  (nv) of the surface [m], [-] unit
-  void UploadMoving(const Surface& surface, std::span<const math::Vec3> positions,
+  void UploadMoving(Surface& surface, std::span<const math::Vec3> positions,
                     std::span<const math::Vec3> normals);
   /// \param marks  (nv)
   static void UploadMarks(Surface& surface, std::span<const SurfaceMark> marks);
   /// \pre indices below nv (TROCAR_ASSERT)
   static void UploadTriangles(Surface& surface, std::span<const geometry::Triangle> triangles);
+  /// Keeps where the vertices are now as their earlier positions.
+  static void Remember(Surface& surface);
   /// Back from the graphics card, as it moves now.
   static geometry::TriangleMesh Read(const Surface& surface);
 

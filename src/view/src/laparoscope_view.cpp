@@ -407,6 +407,15 @@ void LaparoscopeView::Draw(int width, int height) {
 }
 
 core::Status LaparoscopeView::DrawGeometry(int width, int height, render::GeometryPicture& picture) {
+  return DrawGeometryNow(width, height, false, picture);
+}
+
+core::Status LaparoscopeView::DrawGeometryAndFlow(int width, int height, render::GeometryPicture& picture) {
+  return DrawGeometryNow(width, height, true, picture);
+}
+
+core::Status LaparoscopeView::DrawGeometryNow(int width, int height, bool has_flow,
+                                              render::GeometryPicture& picture) {
   Content& c = *content_;
   c.frame.has_mask = c.options.has_mask;
   const std::size_t foreground = c.frame.surfaces.size();
@@ -414,7 +423,9 @@ core::Status LaparoscopeView::DrawGeometry(int width, int height, render::Geomet
     c.frame.surfaces.insert(c.frame.surfaces.end(), c.background.begin(), c.background.end());
   const Pose X_world_laparoscope = c.frame.camera.X_world_camera;
   if (c.overlay.X_world_camera) c.frame.camera.X_world_camera = *c.overlay.X_world_camera;
-  core::Status drawn = c.renderer.DrawGeometry(c.frame, MakeMaterialLabels(), width, height, picture);
+  const render::MaterialLabels fine = MakeMaterialLabels();
+  core::Status drawn = has_flow ? c.renderer.DrawGeometryAndFlow(c.frame, fine, width, height, picture)
+                                : c.renderer.DrawGeometry(c.frame, fine, width, height, picture);
   c.frame.camera.X_world_camera = X_world_laparoscope;
   c.frame.surfaces.resize(foreground);
   return drawn;

@@ -12,6 +12,7 @@
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/render/offscreen_context.h"
+#include "trocar/render/renderer.h"
 #include "trocar/scene/task.h"
 #include "trocar/view/laparoscope_view.h"
 
@@ -36,6 +37,12 @@ struct RayCast {
   std::vector<double> depth;
   std::vector<std::uint16_t> label;
   std::vector<Vec3> normal;  // camera frame, of the triangle
+  /// Of the triangle that was met: its mesh, its place there, and where in it.
+  struct Place {
+    std::size_t mesh = 0, triangle = 0;
+    double u = 0, v = 0;
+  };
+  std::vector<Place> place;
 };
 
 RayCast CastRays(const std::vector<LabelledMesh>& meshes, const math::Pose& X_world_camera, double focal) {
@@ -43,12 +50,14 @@ RayCast CastRays(const std::vector<LabelledMesh>& meshes, const math::Pose& X_wo
   cast.depth.assign(kWidth * kHeight, std::numeric_limits<double>::infinity());
   cast.label.assign(kWidth * kHeight, 0);
   cast.normal.assign(kWidth * kHeight, {});
+  cast.place.assign(kWidth * kHeight, {});
   const math::Pose X_camera_world = math::Inverse(X_world_camera);
   for (const LabelledMesh& labelled : meshes) {
     if (labelled.label == 0) continue;
     std::vector<Vec3> points;
     for (const Vec3& p : labelled.mesh.positions) points.push_back(X_camera_world * p);
-    for (const auto& t : labelled.mesh.triangles) {
+    for (std::size_t index = 0; index < labelled.mesh.triangles.size(); ++index) {
+      const auto& t = labelled.mesh.triangles[index];
       const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
       const Vec3 e1 = b - a, e2 = c - a, normal = math::Cross(e1, e2);
       if (math::Dot(normal, a) >= 0) continue;  // seen from behind
@@ -75,6 +84,7 @@ RayCast CastRays(const std::vector<LabelledMesh>& meshes, const math::Pose& X_wo
           cast.depth[i] = depth;
           cast.label[i] = labelled.label;
           cast.normal[i] = math::Normalized(normal);
+          cast.place[i] = {static_cast<std::size_t>(&labelled - meshes.data()), index, u, v};
         }
       }
     }
@@ -85,11 +95,14 @@ RayCast CastRays(const std::vector<LabelledMesh>& meshes, const math::Pose& X_wo
 class LabelsTest : public testing::Test {
  protected:
   void Show(std::shared_ptr<const scene::Scene> scene, int ticks) {
-    auto simulation = simulation::Simulation::Make(scene, 1);
-    ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
+    auto made = simulation::Simulation::Make(scene, 1);
+    ASSERT_TRUE(made.ok()) << made.error().Text();
+    simulation_.emplace(std::move(*made));
+    auto& simulation = simulation_;
     auto surgeon = agent::MakeSurgeon("expert", scene, 1);
     ASSERT_TRUE(surgeon.ok()) << surgeon.error().Text();
-    for (int i = 0; i < ticks; ++i) simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
+    surgeon_ = std::move(*surgeon);
+    Play(ticks);
     auto context = render::OffscreenContext::Make();
     ASSERT_TRUE(context.ok()) << context.error().Text();
     context_.emplace(std::move(*context));
@@ -103,6 +116,9 @@ class LabelsTest : public testing::Test {
     ASSERT_TRUE(drawn.ok()) << drawn.error().Text();
     for (const std::uint16_t label : picture_.labels) seen_.insert(ClassOf(label));
   }
+  void Play(int ticks) {
+    for (int i = 0; i < ticks; ++i) simulation_->Step(surgeon_->Act(simulation_->GetSnapshot()));
+  }
   static std::shared_ptr<const scene::Scene> Operation() {
     auto scene = scene::FindOperation("cholecystectomy", {}, 1);
     EXPECT_TRUE(scene.ok() && *scene);
@@ -111,6 +127,8 @@ class LabelsTest : public testing::Test {
 
   bool has_mask_ = false;
   std::optional<render::OffscreenContext> context_;
+  std::optional<simulation::Simulation> simulation_;
+  std::unique_ptr<agent::Surgeon> surgeon_;
   std::optional<LaparoscopeView> view_;
   render::GeometryPicture picture_;
   std::set<LabelClass> seen_;
@@ -142,6 +160,45 @@ TEST_F(LabelsTest, AgreeWithRaysOnEveryVisibleOrganPixelOfTheBuiltInPatient) {
   EXPECT_GE(share(same), 0.999);
   EXPECT_GE(share(same_depth), 0.998);
   EXPECT_GE(share(same_side), 0.98);
+}
+
+// each pixel's surface point, carried back with its triangle and projected into the camera of then, lies where the flow says
+TEST_F(LabelsTest, FlowIsWhereSurfacePointsCameFrom) {
+  Show(Operation(), 360);
+  ASSERT_TRUE(view_->DrawGeometryAndFlow(kWidth, kHeight, picture_).ok());
+  EXPECT_TRUE(std::all_of(picture_.flow.begin(), picture_.flow.end(), [](float v) { return std::isnan(v); }))
+      << "nothing is known of before";
+  const std::vector<LabelledMesh> before = view_->ReadMeshes();
+  render::Camera camera = view_->GetFrame().camera;
+  Play(24);
+  view_->Update(simulation_->GetSnapshot());
+  ASSERT_TRUE(view_->DrawGeometryAndFlow(kWidth, kHeight, picture_).ok());
+  const std::vector<LabelledMesh> now = view_->ReadMeshes();
+  ASSERT_EQ(now.size(), before.size());
+  const RayCast cast = CastRays(now, view_->GetFrame().camera.X_world_camera, view_->FocalLength(kHeight));
+  std::size_t compared = 0, same = 0, moved = 0;
+  for (std::size_t i = 0; i < picture_.labels.size(); ++i) {
+    const LabelClass label = ClassOf(picture_.labels[i]);
+    if (picture_.labels[i] != cast.label[i] || picture_.labels[i] == 0 || IsFine(label)) continue;
+    const RayCast::Place& place = cast.place[i];
+    const auto& mesh = before[place.mesh].mesh;
+    const auto& t = mesh.triangles[place.triangle];
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const Vec3 p = a + place.u * (b - a) + place.v * (c - a);
+    const math::Vec2 from = render::CalcPixel(camera, p, kWidth, kHeight);
+    const double wanted[] = {static_cast<double>(i % kWidth) - from.x,
+                             static_cast<double>(i / kWidth) - from.y};
+    const double off = std::hypot(picture_.flow[2 * i] - wanted[0], picture_.flow[2 * i + 1] - wanted[1]);
+    ++compared;
+    if (off < 0.02) ++same;
+    if (std::hypot(wanted[0], wanted[1]) > 0.5) ++moved;
+  }
+  ASSERT_GT(compared, picture_.labels.size() / 2);
+  EXPECT_GT(moved, 200U) << "a tool moves";
+  EXPECT_GE(static_cast<double>(same) / static_cast<double>(compared), 0.998);
+  // nothing moves any more
+  ASSERT_TRUE(view_->DrawGeometryAndFlow(kWidth, kHeight, picture_).ok());
+  for (const float v : picture_.flow) EXPECT_TRUE(std::isnan(v) || std::abs(v) < 1e-3F);
 }
 
 TEST_F(LabelsTest, NameOrgansAndScenery) {

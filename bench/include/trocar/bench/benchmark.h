@@ -18,7 +18,8 @@ struct BenchmarkOptions {
   int threads = 1;         ///< of what can use more than one
   int repeats = 5;         ///< the quickest counts
   int attempts = 100'000;  ///< of the store
-  int steps = 3000;        ///< random actions of the environments' soak
+  int steps = 3000;        ///< random actions of the soak, over all environments
+  std::uint64_t seed = 1;  ///< of those actions
   std::string url;  ///< an empty database for the store; empty: a SQLite file for the time of the benchmark
 };
 
@@ -55,6 +56,7 @@ core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& option
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunContoursBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunEnvironmentBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunSoakBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunStateBenchmark(const BenchmarkOptions& options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file dataset.h  Labelled data sets from scripted attempts, in layouts that others' loaders read. docs/datasets.md says
+/// \file dataset.h  Labelled data sets from scripted or recorded attempts, in layouts that others' loaders read. docs/datasets.md says
 /// what each holds.
 #pragma once
 
@@ -39,11 +39,14 @@ struct Plan {
   /// Patients in place of the scene's own, by turns: video i shows patient i modulo their number.
   std::vector<std::filesystem::path> patients;
   std::uint64_t first_seed = 1, last_seed = 1;  ///< a video each, both included
-  int width = 854, height = 480;                ///< [pixels], 16 to 4096
-  double every = 1;                             ///< between two frames of a video [s], 0.04 to 60
-  double most_seconds = 1800;                   ///< of a video, > 0
-  bool has_variation = true;                    ///< light, lens, colour and smoke differ by seed
-  int jobs = 1;                                 ///< videos at a time; not part of what is made
+  /// In place of task, level, surgeon, patients and seeds: a video of each, numbered from 1.
+  std::vector<std::filesystem::path> recordings;
+  int width = 854, height = 480;  ///< [pixels], 16 to 4096
+  double every = 1;               ///< between two frames of a video [s], 0.04 to 60
+  double most_seconds = 1800;     ///< of a video, > 0
+  bool has_variation = true;      ///< light, lens, colour and smoke differ by seed
+  bool has_pictures = true;       ///< without: states, actions, forces and positions alone, of layout kTrocar
+  int jobs = 1;                   ///< videos at a time; not part of what is made
 };
 
 struct Summary {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,8 @@
 
 namespace trocar::environment {
 
+inline constexpr int kMostEnvironments = 4096;  ///< of a pool
+
 /// What happens after the last action of an episode, in Gymnasium's words.
 enum class Autoreset : std::uint8_t {
   kNextStep,  ///< the next action is not used: it begins the next episode, with reward 0
@@ -20,11 +23,19 @@ enum class Autoreset : std::uint8_t {
   kDisabled   ///< an action to an environment whose episode is over is refused
 };
 
+/// Looks at an environment that was reset or stepped, on the pool's thread that did it, before Receive names it: to draw it,
+/// for example. Different environments may be looked at at a time.
+/// \param is_final  of an episode that is over, while kSameStep begins the next one
+/// \return an error, which Receive tells
+using PoolObserver =
+    std::function<core::Status(std::int32_t id, const Environment& environment, bool is_final)>;
+
 struct PoolSettings {
-  int count = 1;    ///< environments, 1 to 4096
+  int count = 1;    ///< environments, 1 to kMostEnvironments
   int threads = 0;  ///< 0: one for each environment, at most as many as the machine has
   Autoreset autoreset = Autoreset::kNextStep;
   std::uint64_t seed = 1;  ///< environment i begins with seed + i
+  PoolObserver observe;    ///< may be empty
 };
 
 /// What all environments of a pool came to; row i is environment i's. A row is written while its environment is at work, from

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file geometry_picture.h  What lies at each pixel of a picture: depth, normal and label. For learning and for measuring,
+/// \file geometry_picture.h  What lies at each pixel of a picture: depth, normal, label and motion. For learning and for measuring,
 /// not for people.
 #pragma once
 
@@ -20,6 +20,10 @@ struct GeometryPicture {
   std::vector<float> depth;    ///< (height * width) along the line of sight from the lens [m]; 0: nothing
   std::vector<float> normals;  ///< (height * width * 3) unit, camera frame: +x right, +y up, +z to the eye
   std::vector<std::uint16_t> labels;  ///< (height * width) SurfaceDraw::label, or of the material
+  /// (height * width * 2) optical flow, where it was asked for, else empty: the pixel less that of the same surface point in
+  /// the flow picture before, +x right, +y down [pixels]. NaN where nothing lies, and where nothing is known: in the first
+  /// picture, of fibres, blobs and puddles, of what is new, and of what was behind the lens.
+  std::vector<float> flow;
 };
 
 }  // namespace trocar::render

@@ -73,11 +73,16 @@ class Renderer {
   /// \return kNoGraphics for a size that the driver does not have, or kShaderFailed
   core::Status DrawGeometry(const Frame& frame, const MaterialLabels& fine, int width, int height,
                             GeometryPicture& picture);
+  /// The same with GeometryPicture::flow, since this was called last.
+  core::Status DrawGeometryAndFlow(const Frame& frame, const MaterialLabels& fine, int width, int height,
+                                   GeometryPicture& picture);
 
   /// The surface as the graphics card has it, in single precision; for tests. Empty for one that was removed.
   geometry::TriangleMesh ReadSurface(SurfaceId surface) const;
 
  private:
+  core::Status DrawGeometryNow(const Frame& frame, const MaterialLabels& fine, int width, int height,
+                               bool has_flow, GeometryPicture& picture);
   void DrawOnce(const Frame& frame, double exposure, unsigned target, int width, int height);
 
   struct Content;

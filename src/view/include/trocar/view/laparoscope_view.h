@@ -85,6 +85,8 @@ class LaparoscopeView {
   /// What lies at each pixel of the picture that Draw() makes: depth, normal and label (labels.h).
   /// \return the renderer's error
   core::Status DrawGeometry(int width, int height, render::GeometryPicture& picture);
+  /// The same with the optical flow since this was called last.
+  core::Status DrawGeometryAndFlow(int width, int height, render::GeometryPicture& picture);
   /// The surfaces of that picture in the world, as the graphics card has them; for tests and for measuring.
   std::vector<LabelledMesh> ReadMeshes() const;
   /// Of the laparoscope's camera in a picture of that height [pixels]; its principal point is the picture's middle.
@@ -96,6 +98,7 @@ class LaparoscopeView {
  private:
   struct Content;
   explicit LaparoscopeView(std::unique_ptr<Content> content);
+  core::Status DrawGeometryNow(int width, int height, bool has_flow, render::GeometryPicture& picture);
   std::unique_ptr<Content> content_;
 };
 

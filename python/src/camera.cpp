@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "trocar/view/labels.h"
+
+namespace trocar::python {
+
+core::Result<std::unique_ptr<Camera>> Camera::Make(int width, int height) {
+  if (width < 8 || width > 4096 || height < 8 || height > 4096)
+    return core::Error{core::ErrorCode::kUsage, "a picture has 8 to 4096 pixels a side"};
+  auto context = render::OffscreenContext::Make();
+  if (!context) return context.error();
+  auto target = render::OffscreenTarget::Make(width, height);
+  if (!target) return target.error();
+  context->Release();
+  return std::unique_ptr<Camera>(new Camera(std::move(*context), std::move(*target)));
+}
+
+Camera::Camera(render::OffscreenContext context, render::OffscreenTarget target)
+    : context_(std::move(context)), target_(std::move(target)) {}
+
+Camera::~Camera() {
+  if (!context_ || !context_->MakeCurrent().ok()) return;
+  view_.reset();
+  target_.reset();
+}
+
+template <typename Work>
+core::Status Camera::InContext(const Work& work) {
+  if (const auto current = context_->MakeCurrent(); !current) return current;
+  const core::Status done = work();
+  context_->Release();
+  return done;
+}
+
+core::Status Camera::Show(const simulation::Simulation& simulation) {
+  if (!view_ || scene_ != &simulation.GetScene() || model_ != simulation.ModelFingerprint()) {
+    view_.reset();
+    auto made = view::LaparoscopeView::Make(simulation.GetScene(), simulation.Surfaces(),
+                                            simulation.GetSnapshot(), simulation.Strands());
+    if (!made) return made.error();
+    view_.emplace(std::move(*made));
+    // exposure control remembers earlier pictures: here a picture is a function of the state alone
+    view_->SetOptions({.has_force_arrows = false, .has_automatic_exposure = false});
+    scene_ = &simulation.GetScene();
+    model_ = simulation.ModelFingerprint();
+  }
+  view_->Update(simulation.GetSnapshot());
+  focal_length_ = view_->FocalLength(target_->Height());
+  return {};
+}
+
+core::Status Camera::Draw(const simulation::Simulation& simulation, render::Image& image) {
+  return InContext([&]() -> core::Status {
+    if (const auto shown = Show(simulation); !shown) return shown;
+    target_->Bind();
+    view_->Draw(target_->Width(), target_->Height());
+    target_->Read(image);
+    return {};
+  });
+}
+
+core::Status Camera::LookAt(const simulation::Simulation& simulation, bool has_flow,
+                            render::GeometryPicture& picture) {
+  return InContext([&]() -> core::Status {
+    if (const auto shown = Show(simulation); !shown) return shown;
+    return has_flow ? view_->DrawGeometryAndFlow(target_->Width(), target_->Height(), picture)
+                    : view_->DrawGeometry(target_->Width(), target_->Height(), picture);
+  });
+}
+
+PoolPictures::PoolPictures(int count, int width, int height, const Parts& parts)
+    : width_(width), height_(height), parts_(parts), eyes_(static_cast<std::size_t>(count)) {
+  const std::size_t pixels =
+      static_cast<std::size_t>(count) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  for (Rows* rows : {&now_, &final_}) {
+    if (parts.has_picture) rows->picture.resize(3 * pixels);
+    if (parts.has_depth) rows->depth.resize(pixels);
+    if (parts.has_masks) rows->masks.resize(pixels);
+    if (parts.has_normals) rows->normals.resize(3 * pixels);
+  }
+}
+
+core::Status PoolPictures::Observe(std::int32_t id, const environment::Environment& environment,
+                                   bool is_final) {
+  Eye& eye = eyes_[static_cast<std::size_t>(id)];
+  if (eye.camera == nullptr) {
+    auto made = Camera::Make(width_, height_);
+    if (!made) return made.error();
+    eye.camera = std::move(*made);
+  }
+  Rows& rows = is_final ? final_ : now_;
+  const auto first = static_cast<std::ptrdiff_t>(id) * width_ * height_;
+  if (parts_.has_picture) {
+    if (const auto drawn = eye.camera->Draw(environment.GetSimulation(), eye.image); !drawn) return drawn;
+    std::copy(eye.image.pixels.begin(), eye.image.pixels.end(), rows.picture.begin() + 3 * first);
+  }
+  if (!parts_.HasGeometry()) return {};
+  if (const auto seen = eye.camera->LookAt(environment.GetSimulation(), false, eye.geometry); !seen)
+    return seen;
+  if (parts_.has_depth)
+    std::copy(eye.geometry.depth.begin(), eye.geometry.depth.end(), rows.depth.begin() + first);
+  if (parts_.has_masks) {
+    std::transform(eye.geometry.labels.begin(), eye.geometry.labels.end(), rows.masks.begin() + first,
+                   [](std::uint16_t label) { return static_cast<std::uint8_t>(view::ClassOf(label)); });
+  }
+  if (parts_.has_normals) {
+    // single precision rounds the unit vectors' components beyond 1 at times
+    std::transform(eye.geometry.normals.begin(), eye.geometry.normals.end(), rows.normals.begin() + 3 * first,
+                   [](float v) { return std::clamp(v, -1.0F, 1.0F); });
+  }
+  return {};
+}
+
+}  // namespace trocar::python

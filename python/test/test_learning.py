@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The samples that learn, in short: what was learnt is better than chance. They need python3-torch and python3-h5py."""
+import importlib.util
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+import numpy as np
+
+import trocar
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "samples" / "python"))
+MISSING = [name for name in ("torch", "h5py") if importlib.util.find_spec(name) is None]
+if MISSING:
+    print(f"skipped: {', '.join(MISSING)} cannot be imported; run tools/install-packages --test")
+    sys.exit(77)
+
+import clone  # noqa: E402
+import learning  # noqa: E402
+import reach  # noqa: E402
+import torch  # noqa: E402
+
+
+def write_demonstrations(folder, *options):
+    subprocess.run([os.environ["TROCAR_PROGRAM"], "dataset", "--layout", "trocar", "--no-pictures", "--every", "0.1", *options,
+                    "-o", folder], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+class Learning(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        torch.set_num_threads(1)
+
+    def test_reach_is_learnt_from_nothing(self):
+        policy, curve, _ = reach.train(most_steps=45_000)
+        seeds = range(10_001, 10_021)
+        learnt, _ = learning.judge(reach.TASK, seeds, lambda environment, seed: policy.act, **reach.SETTINGS)
+        chance, _ = learning.judge(reach.TASK, seeds, learning.random_policy, **reach.SETTINGS)
+        self.assertGreater(learnt, chance + 0.2)
+        self.assertGreater(max(curve[1]), 0.2)
+
+    def test_lift_and_grasp_is_cloned(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_demonstrations(folder + "/set", "--task", "lift_and_grasp", "--seeds", "1:20")
+            demonstrations = clone.Demonstrations(folder + "/set")
+        self.assertEqual(demonstrations.task, "lift_and_grasp")
+        learnt = clone.Clone(demonstrations)
+        nothing = dict(learnt.net.state_dict())
+        seeds, settings = range(10_001, 10_007), clone.settings(demonstrations)
+        learnt.learn(15)
+        self.assertTrue(any((learnt.net.state_dict()[name] != nothing[name]).any() for name in nothing))
+        # the plate is lifted or more: a chance policy does not even touch it
+        steps = {}
+        for name, policy in (("learnt", learnt.make_policy), ("random", learning.random_policy)):
+            steps[name] = np.mean([self.most_steps(demonstrations, policy, seed, settings) for seed in seeds])
+        self.assertGreater(steps["learnt"], steps["random"] + 0.2)
+
+    @staticmethod
+    def most_steps(demonstrations, make_policy, seed, settings):
+        """Share of the goal's steps that were done, at most during an episode."""
+        with trocar.make(demonstrations.task, seed=seed, **{k: v for k, v in settings.items() if k != "tremble"}) as environment:
+            policy = make_policy(environment, seed)
+            state, _ = environment.reset(seed=seed)
+            most = done = 0.0
+            while True:
+                state, _, terminated, truncated, info = environment.step(policy(state))
+                done += info["features"]["step"]
+                most = max(most, done)
+                if terminated or truncated:
+                    return most
+
+    def test_demonstrated_actions_do_what_was_demonstrated(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_demonstrations(folder + "/set", "--task", "lift_and_grasp", "--seeds", "3:3")
+            shown = clone.Demonstrations(folder + "/set")
+        states, actions = shown.states[0], shown.actions[0]
+        with trocar.make("lift_and_grasp", seed=3, actions="tip") as environment:
+            self.assertEqual([f["name"] for f in environment.state_fields], [f["name"] for f in shown.fields["state"]])
+            self.assertEqual([f["name"] for f in environment.action_fields], [f["name"] for f in shown.fields["action_tip"]])
+            state, _ = environment.reset(seed=3)
+            np.testing.assert_allclose(state, states[0], atol=1e-6)
+            tips = learning.columns(environment.state_fields, ["left.tip", "right.tip"])
+            for step in range(30):
+                state, *_ = environment.step(actions[step].astype(float))
+                np.testing.assert_allclose(state[tips], states[step + 1][tips], atol=0.0005)
+
+    def test_curve_is_a_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "curve.svg"
+            learning.write_curve(path, "Title", "steps", [0, 10, 20], {"success": [0, 0.5, 1], "goals": [0, 0.2, 0.4]})
+            root = xml.etree.ElementTree.parse(path).getroot()
+        lines = [element for element in root.iter() if element.tag.endswith("polyline")]
+        self.assertEqual(len(lines), 2)
+        heights = [float(point.split(",")[1]) for point in lines[0].get("points").split()]
+        self.assertEqual(heights, sorted(heights, reverse=True))
+
+
+if __name__ == "__main__":
+    unittest.main()
