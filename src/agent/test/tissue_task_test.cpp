@@ -498,7 +498,8 @@ TEST(TaskOnPatient, ExpertTakesLiftsAndTurnsTheGallbladder) {
   const auto shared = std::make_shared<const Scene>(std::move(*scene));
   const auto played = PlayTask(shared, "expert", 1, 60);
   ASSERT_TRUE(played.ok()) << played.error().Text();
-  EXPECT_EQ(played->task.phase, TaskPhase::kCompleted) << played->doing << " after " << played->seconds << " s";
+  EXPECT_EQ(played->task.phase, TaskPhase::kCompleted)
+      << played->doing << " after " << played->seconds << " s";
   EXPECT_EQ(CountErrors(*shared, played->task, "slipped"), 0u);
   EXPECT_EQ(CountErrors(*shared, played->task, "pinched"), 0u);
 }
