@@ -27,7 +27,6 @@ using simulation::Simulation;
 
 constexpr double kSeconds = 12;         // of the operation that is recorded
 constexpr double kHapticSeconds = 4;    // that the 1 kHz loop is watched
-constexpr double kIndexSeconds = 3;     // as the window keeps it
 constexpr double kVisitSeconds = 0.75;  // as the replay window keeps it
 
 struct Played {
@@ -97,7 +96,7 @@ core::Result<Cost> Step(const Played& played, int threads, Keeps keeps, const st
     std::filesystem::remove(path, ignored);
     std::filesystem::remove(record::IndexPathOf(path), ignored);
     record::RecorderSettings settings;
-    settings.index_seconds = kIndexSeconds;
+    settings.index_seconds = record::kIndexSeconds;
     auto started = record::Recorder::Start(path, Describe(), *simulation, std::move(settings));
     if (!started) return started.error();
     recorder = std::move(*started);
@@ -179,7 +178,7 @@ core::Result<SeekTimes> Seek(const Played& played, int threads, const std::files
     longest.processor = std::max(longest.processor, taken.processor);
     return is_there;
   };
-  for (const double moment : {9.0, 6.0, 12.0, 3.0}) {
+  for (const double moment : {10.0, 6.0, 12.0, 2.0}) {
     if (!seek(moment, times.indexed)) return WrongAnswer("seek", "it ends at another tick");
   }
   settings.visit_seconds = kVisitSeconds;
@@ -275,7 +274,7 @@ core::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& opti
                   {"branch", times->branch.clock, "s"},
                   {"branch/processor time", times->branch.processor, "s"},
                   {"recording", size_of(path), "B"},
-                  {"index of 3 s and visits", size_of(record::IndexPathOf(path)), "B"}};
+                  {"index and visits", size_of(record::IndexPathOf(path)), "B"}};
   result.ratios = {{"a tick with recording to one without", recorded.thread / bare.thread},
                    {"the same, with the writing thread", recorded.process / bare.process},
                    {"a tick with what metrics are made of to one without", traced.thread / bare.thread},

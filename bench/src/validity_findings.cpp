@@ -48,16 +48,17 @@ int WorseSense(const std::string& metric) {
   return definition->better == training::BetterWhen::kLower ? 1 : -1;
 }
 
-/// People by their attempts, those who have all of them.
+/// People by their attempts, those who have so many.
 std::vector<std::vector<double>> TableOf(const std::vector<const StudyAttempt*>& attempts, const Name& name,
-                                         int repeats) {
+                                         int count, int StudyAttempt::*fixed) {
   std::map<int, std::vector<double>> people;
   for (const StudyAttempt* attempt : attempts) {
+    if (attempt->*fixed != 0) continue;
     if (const double* value = Find(*attempt, name)) people[attempt->person].push_back(*value);
   }
   std::vector<std::vector<double>> table;
   for (auto& [person, values] : people) {
-    if (static_cast<int>(values.size()) == repeats) table.push_back(std::move(values));
+    if (static_cast<int>(values.size()) == count) table.push_back(std::move(values));
   }
   return table;
 }
@@ -66,7 +67,7 @@ const std::string kNovice(agent::NameOf(agent::SkillLevel::kNovice)),
     kMiddle(agent::NameOf(agent::SkillLevel::kIntermediate)),
     kExpert(agent::NameOf(agent::SkillLevel::kExpert));
 
-std::optional<MetricFinding> FindOut(Values& groups, const Name& name, int repeats) {
+std::optional<MetricFinding> FindOut(Values& groups, const Name& name, const StudyOptions& options) {
   MetricFinding finding;
   finding.metric = name.first, finding.hand = name.second;
   const auto &novices = groups[kNovice], &middles = groups[kMiddle], &experts = groups[kExpert];
@@ -94,13 +95,19 @@ std::optional<MetricFinding> FindOut(Values& groups, const Name& name, int repea
   finding.separates = are_apart && finding.auc > 0.5;
   finding.is_reversed = are_apart && !finding.separates;
   finding.effect = CalcEffectSize(low, high);
-  std::vector<std::vector<double>> table;
-  for (const auto* level : {&novices, &middles, &experts}) {
-    auto part = TableOf(*level, name, repeats);
-    table.insert(table.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
-  }
-  finding.icc = CalcIntraclassCorrelation(table);
-  finding.alpha = CalcCronbachAlpha(table);
+  const auto table_of = [&](int count, int StudyAttempt::*fixed) {
+    std::vector<std::vector<double>> table;
+    for (const auto* level : {&novices, &middles, &experts}) {
+      auto part = TableOf(*level, name, count, fixed);
+      table.insert(table.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
+    }
+    return table;
+  };
+  const auto repeated = table_of(options.repeats, &StudyAttempt::patient);
+  finding.icc = CalcIntraclassCorrelation(repeated);
+  finding.alpha = CalcCronbachAlpha(repeated);
+  if (options.patients > 1)
+    finding.patient_icc = CalcIntraclassCorrelation(table_of(options.patients, &StudyAttempt::repeat));
   return finding;
 }
 
@@ -171,7 +178,7 @@ std::vector<TaskFindings> FindOutOfStudy(const StudyOptions& options,
       if (group != kNovice && group != kMiddle && group != kExpert) others.push_back(group);
     }
     for (const Name& name : names) {
-      if (auto finding = FindOut(groups, name, options.repeats)) {
+      if (auto finding = FindOut(groups, name, options)) {
         findings.metrics.push_back(std::move(*finding));
       } else {
         findings.left_out.push_back(WordsOf(name));

@@ -55,10 +55,17 @@ std::string RangeText(double low, double high, const Shown& shown) {
   return Number(shown.scale * std::min(low, high)) + " to " + Number(shown.scale * std::max(low, high));
 }
 
+/// Whether it was done on several patients.
+bool HasPatients(const TaskFindings& task) {
+  return std::any_of(task.metrics.begin(), task.metrics.end(),
+                     [](const MetricFinding& finding) { return finding.patient_icc.has_value(); });
+}
+
 void AddMetricTable(std::string& page, const TaskFindings& task) {
   page +=
       "<table><tr><th>metric</th><th>unit</th><th>novices</th><th>experts</th><th>effect</th><th>AUC</th>"
-      "<th>ICC</th><th>alpha</th><th></th></tr>\n";
+      "<th>ICC</th><th>alpha</th>" +
+      std::string(HasPatients(task) ? "<th>ICC over patients</th>" : "") + "<th></th></tr>\n";
   for (const MetricFinding& finding : task.metrics) {
     const Shown shown = ShownOf(finding);
     page += "<tr><td>" + EscapeMarkup(shown.name) + "</td><td>" + EscapeMarkup(shown.unit) +
@@ -66,7 +73,9 @@ void AddMetricTable(std::string& page, const TaskFindings& task) {
             "</td><td class=\"number\">" + RangeText(finding.expert_low, finding.expert_high, shown) +
             "</td><td class=\"number\">" + Number(finding.effect) + "</td><td class=\"number\">" +
             Number(finding.auc, 3) + "</td><td class=\"number\">" + Number(finding.icc) +
-            "</td><td class=\"number\">" + Number(finding.alpha) + "</td><td class=\"" +
+            "</td><td class=\"number\">" + Number(finding.alpha) +
+            (HasPatients(task) ? "</td><td class=\"number\">" + Number(finding.patient_icc) : "") +
+            "</td><td class=\"" +
             (finding.separates     ? "pass\">separates"
              : finding.is_reversed ? "fail\">separates the wrong way round"
                                    : "limit\">does not separate") +
@@ -184,7 +193,9 @@ std::string FormatStudyPage(const StudyOptions& options, const std::vector<TaskF
           "value is worse than an expert's; 0.5 says nothing. <b>ICC</b>(1,1) and Cronbach's <b>alpha</b>: "
           "how well an attempt "
           "repeats on another seed, over people of all three levels; above " +
-          Number(kGoodIcc, 3) + " is good.</p>\n";
+          Number(kGoodIcc, 3) +
+          " is good. <b>ICC over patients</b>: the same of attempts by the same hands on other generated "
+          "patients.</p>\n";
   for (const TaskFindings& task : findings) AddTask(page, task, attempts);
   page += "</body></html>\n";
   return page;
@@ -204,6 +215,7 @@ std::string FormatStudyJson(const StudyOptions& options, const std::vector<TaskF
            {"effect", OrNull(f.effect)},
            {"icc", OrNull(f.icc)},
            {"alpha", OrNull(f.alpha)},
+           {"patient_icc", OrNull(f.patient_icc)},
            {"novice", {{"low", f.novice_low}, {"high", f.novice_high}, {"mean", f.novice_mean}}},
            {"intermediate", {{"mean", f.middle_mean}}},
            {"expert",
@@ -231,6 +243,7 @@ std::string FormatStudyJson(const StudyOptions& options, const std::vector<TaskF
   const ordered_json all = {{"program", std::string(core::VersionText())},
                             {"people", options.people},
                             {"repeats", options.repeats},
+                            {"patients", options.patients},
                             {"spread", options.spread},
                             {"seed", options.seed},
                             {"disclaimer", std::string(training::MetricsDisclaimer())},
@@ -242,7 +255,7 @@ std::string FormatStudyCsv(const std::vector<TaskFindings>& findings) {
   std::string csv =
       "task,level,metric,hand,separates,ordered,auc,effect,icc,alpha,novice_low,novice_high,novice_mean,"
       "intermediate_mean,"
-      "expert_low,expert_high,expert_mean,expert_sd,novices,experts\n";
+      "expert_low,expert_high,expert_mean,expert_sd,patient_icc,novices,experts\n";
   const auto cell = [](const std::optional<double>& value) {
     return value ? Number(*value, 9) : std::string();
   };
@@ -254,7 +267,7 @@ std::string FormatStudyCsv(const std::vector<TaskFindings>& findings) {
            {std::optional(f.auc), f.effect, f.icc, f.alpha, std::optional(f.novice_low),
             std::optional(f.novice_high), std::optional(f.novice_mean), std::optional(f.middle_mean),
             std::optional(f.expert_low), std::optional(f.expert_high), std::optional(f.expert_mean),
-            std::optional(f.expert_sd)})
+            std::optional(f.expert_sd), f.patient_icc})
         csv += "," + cell(value);
       csv += "," + std::to_string(f.novices) + "," + std::to_string(f.experts) + "\n";
     }

@@ -16,6 +16,8 @@
 #include <utility>
 
 #include "trocar/agent/skill.h"
+#include "trocar/anatomy/generate_patient.h"
+#include "trocar/anatomy/patient.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
@@ -42,35 +44,62 @@ struct Group {
   SurgeonSkill skill;
   std::string error;  ///< of a careless one, which is made by its name
   int repeats = 1;
+  bool is_level = false;  ///< done on every patient, too
 };
 
 /// What is still to be played.
 struct Job {
   std::string task;
   const Group* group = nullptr;
-  int person = 0, repeat = 0;
+  int person = 0, repeat = 0, patient = 0;
+  bool on_patient = false;
   std::uint64_t seed = 0;
 };
 
-using Key = std::tuple<std::string, std::string, int, int>;
+using Key = std::tuple<std::string, std::string, int, int, int>;
 Key KeyOf(const StudyAttempt& attempt) {
-  return {attempt.task, attempt.group, attempt.person, attempt.repeat};
+  return {attempt.task, attempt.group, attempt.person, attempt.repeat, attempt.patient};
 }
 
 core::Result<std::shared_ptr<const Scene>> ReadScene(const StudyOptions& options, const std::string& task,
-                                                     std::uint64_t seed) {
+                                                     std::uint64_t seed,
+                                                     const std::filesystem::path& patient = {}) {
   const auto path = scene::FindTask(task);
   if (!path.ok()) return path.error();
-  auto read = scene::ReadTask(*path, {options.level, seed, {}});
+  auto read = scene::ReadTask(*path, {options.level, seed, patient});
   if (!read.ok()) return read.error();
   return std::make_shared<const Scene>(std::move(*read));
+}
+
+/// How a task is called in what is written: the name of its file.
+std::string NameOfTask(const std::string& task) {
+  return task.ends_with(".json") ? std::filesystem::path(task).stem().string() : task;
+}
+
+/// The n-th generated patient of a study.
+std::filesystem::path PatientFolder(const StudyOptions& options, int patient) {
+  return options.folder / "patients" / std::to_string(options.seed + static_cast<std::uint64_t>(patient));
+}
+
+/// Generates the patients that are not there yet.
+core::Status MakePatients(const StudyOptions& options) {
+  for (int patient = 0; patient < options.patients; ++patient) {
+    const std::filesystem::path folder = PatientFolder(options, patient);
+    std::error_code failure;
+    if (std::filesystem::exists(folder, failure)) continue;
+    std::filesystem::create_directories(folder.parent_path(), failure);
+    const auto made = anatomy::GeneratePatient(options.seed + static_cast<std::uint64_t>(patient));
+    if (!made.ok()) return made.error();
+    if (auto written = anatomy::WritePatient(folder, *made); !written.ok()) return written;
+  }
+  return {};
 }
 
 std::vector<Group> ListGroups(const StudyOptions& options, const Scene& scene) {
   std::vector<Group> groups;
   for (int level = 0; level < agent::kSkillLevelCount; ++level) {
     const auto one = static_cast<agent::SkillLevel>(level);
-    groups.push_back({std::string(agent::NameOf(one)), agent::LevelSkill(one), "", options.repeats});
+    groups.push_back({std::string(agent::NameOf(one)), agent::LevelSkill(one), "", options.repeats, true});
   }
   const SurgeonSkill able = agent::LevelSkill(agent::SkillLevel::kExpert);
   for (int i = 0; options.has_weaknesses && i < agent::kWeaknessCount; ++i) {
@@ -94,7 +123,9 @@ core::Result<std::unique_ptr<Surgeon>> MakePerson(const StudyOptions& options, c
 }
 
 core::Result<StudyAttempt> PlayAttempt(const StudyOptions& options, const Job& job) {
-  const auto scene = ReadScene(options, job.task, job.seed);
+  const auto scene =
+      ReadScene(options, job.task, job.seed,
+                job.on_patient ? PatientFolder(options, job.patient) : std::filesystem::path());
   if (!scene.ok()) return scene.error();
   auto person = MakePerson(options, job, *scene);
   if (!person.ok()) return person.error();
@@ -111,7 +142,7 @@ core::Result<StudyAttempt> PlayAttempt(const StudyOptions& options, const Job& j
   const training::AttemptTrace made = trace.Calc();
   const auto metrics = training::CalcAttemptMetrics(made);
   if (!metrics.ok()) return metrics.error();
-  StudyAttempt attempt{job.task, job.group->name, job.person, job.repeat, job.seed};
+  StudyAttempt attempt{NameOfTask(job.task), job.group->name, job.person, job.repeat, job.seed, job.patient};
   attempt.phase = std::string(scene::PhaseName(end.task.phase));
   attempt.is_completed = end.task.phase == scene::TaskPhase::kCompleted;
   attempt.seconds = end.time;
@@ -133,15 +164,11 @@ core::Result<StudyAttempt> PlayAttempt(const StudyOptions& options, const Job& j
 json ToJson(const StudyAttempt& attempt) {
   json values = json::array();
   for (const StudyValue& value : attempt.values) values.push_back({value.metric, value.hand, value.value});
-  return {{"task", attempt.task},
-          {"group", attempt.group},
-          {"person", attempt.person},
-          {"repeat", attempt.repeat},
-          {"seed", attempt.seed},
-          {"phase", attempt.phase},
-          {"completed", attempt.is_completed},
-          {"caught", attempt.is_caught},
-          {"seconds", attempt.seconds},
+  return {{"task", attempt.task},        {"group", attempt.group},
+          {"person", attempt.person},    {"repeat", attempt.repeat},
+          {"seed", attempt.seed},        {"patient", attempt.patient},
+          {"phase", attempt.phase},      {"completed", attempt.is_completed},
+          {"caught", attempt.is_caught}, {"seconds", attempt.seconds},
           {"values", std::move(values)}};
 }
 
@@ -149,8 +176,8 @@ std::optional<StudyAttempt> FromJson(const std::string& line) {
   const json read = json::parse(line, nullptr, false);
   if (!read.is_object() || !read.contains("values")) return std::nullopt;  // cut where the study was stopped
   try {
-    StudyAttempt attempt{read.at("task"), read.at("group"), read.at("person"), read.at("repeat"),
-                         read.at("seed")};
+    StudyAttempt attempt{read.at("task"),   read.at("group"), read.at("person"),
+                         read.at("repeat"), read.at("seed"),  read.value("patient", 0)};
     attempt.phase = read.at("phase");
     attempt.is_completed = read.at("completed");
     attempt.is_caught = read.at("caught");
@@ -203,6 +230,7 @@ core::Result<std::vector<StudyAttempt>> ReadBefore(const StudyOptions& options) 
 /// The groups of each task, and all jobs in their order.
 struct Plan {
   std::map<std::string, std::vector<Group>> groups;
+  std::map<std::string, int> patients;  // 0 where the task has none
   std::vector<Job> jobs;
 };
 
@@ -211,11 +239,16 @@ core::Result<Plan> MakePlan(const StudyOptions& options) {
   for (const std::string& task : options.tasks) {
     const auto scene = ReadScene(options, task, options.seed);
     if (!scene.ok()) return scene.error();
-    if (!(*scene)->task || (*scene)->HasPatient())
+    if (!(*scene)->task)
       return core::Error{core::ErrorCode::kUsage,
-                         "\"" + task + "\" is no training task without a patient; see trocar play --list"};
+                         "\"" + task + "\" is no training task; see trocar play --list"};
+    if ((*scene)->HasPatient() && options.patients == 0)
+      return core::Error{
+          core::ErrorCode::kUsage,
+          "\"" + task + "\" has a patient; say with --patients on how many generated ones it is done"};
     if (plan.groups.contains(task)) continue;
     plan.groups[task] = ListGroups(options, **scene);
+    plan.patients[task] = (*scene)->HasPatient() ? options.patients : 0;
   }
   // person after person, so that a study that is stopped early has some of every group
   for (int person = 0; person < options.people; ++person) {
@@ -224,7 +257,12 @@ core::Result<Plan> MakePlan(const StudyOptions& options) {
                                  kRepeatStep * static_cast<std::uint64_t>(repeat);
       for (const auto& [task, groups] : plan.groups) {
         for (const Group& group : groups) {
-          if (repeat < group.repeats) plan.jobs.push_back({task, &group, person, repeat, seed});
+          if (repeat >= group.repeats) continue;
+          const int patients = plan.patients[task];
+          // to repeat is asked on one patient, to go to another one of the first attempts
+          const int most = repeat == 0 && group.is_level ? std::max(1, patients) : 1;
+          for (int patient = 0; patient < most; ++patient)
+            plan.jobs.push_back({task, &group, person, repeat, patient, patients > 0, seed});
         }
       }
     }
@@ -244,13 +282,15 @@ core::Result<std::vector<StudyAttempt>> RunStudy(
     const StudyOptions& options, const std::function<void(const std::string&, double)>& progress) {
   const auto plan = MakePlan(options);
   if (!plan.ok()) return plan.error();
+  if (const auto made = MakePatients(options); !made.ok()) return made.error();
   auto before = ReadBefore(options);
   if (!before.ok()) return before.error();
   std::map<Key, StudyAttempt> done;
   for (StudyAttempt& attempt : *before) done.insert_or_assign(KeyOf(attempt), std::move(attempt));
   std::vector<Job> open;
   for (const Job& job : plan->jobs) {
-    if (!done.contains({job.task, job.group->name, job.person, job.repeat})) open.push_back(job);
+    if (!done.contains({NameOfTask(job.task), job.group->name, job.person, job.repeat, job.patient}))
+      open.push_back(job);
   }
   std::ofstream out(options.folder / "attempts.jsonl", std::ios::app);
   std::atomic<std::size_t> next{0};
@@ -292,7 +332,8 @@ core::Result<std::vector<StudyAttempt>> RunStudy(
   if (error) return *error;
   std::vector<StudyAttempt> all;
   for (const Job& job : plan->jobs) {
-    const auto found = done.find({job.task, job.group->name, job.person, job.repeat});
+    const auto found =
+        done.find({NameOfTask(job.task), job.group->name, job.person, job.repeat, job.patient});
     if (found != done.end()) all.push_back(found->second);
   }
   return all;

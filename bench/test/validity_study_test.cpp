@@ -63,6 +63,56 @@ TEST(Study, GoesOnWhereItStoppedAndGivesTheSameForAnyNumberOfJobs) {
   EXPECT_EQ(other.error().code, core::ErrorCode::kUsage);
 }
 
+StudyOptions OnPatients(const std::filesystem::path& folder) {
+  StudyOptions options = SmallStudy(folder);
+  options.tasks = {(*scene::FindDataFolder() / "scenes/study/gallbladder_retraction.json").string()};
+  options.people = 1;
+  options.patients = 2;
+  return options;
+}
+
+TEST(Study, PlaysFirstAttemptsOnEachPatientAndRepeatsOnTheFirst) {
+  test::TemporaryFolder folder;
+  StudyOptions options = OnPatients(folder.Path());
+  options.repeats = 3;
+  EXPECT_EQ(*CountStudyAttempts(options), 12u) << "3 levels; 2 patients and 2 repeats more";
+  options.patients = 0;
+  EXPECT_EQ(RunStudy(options).error().code, core::ErrorCode::kUsage) << "on which patients?";
+}
+
+// The same hands on other anatomy: reliability over patients beside that over repeats.
+TEST(StudySlow, AsksHowFarThePatientDecides) {
+  test::TemporaryFolder folder;
+  StudyOptions options = OnPatients(folder.Path());
+  options.repeats = 1;
+  const auto attempts = RunStudy(options);
+  ASSERT_TRUE(attempts.ok()) << attempts.error().Text();
+  ASSERT_EQ(attempts->size(), 6u);
+  std::map<std::string, std::map<int, double>> paths;
+  for (const StudyAttempt& attempt : *attempts) {
+    EXPECT_EQ(attempt.task, "gallbladder_retraction");
+    EXPECT_TRUE(attempt.is_completed) << attempt.group << " on patient " << attempt.patient;
+    EXPECT_EQ(attempt.seed, attempts->front().seed) << "the same hands";
+    for (const StudyValue& value : attempt.values) {
+      if (value.metric == "path_length" && value.hand == "left")
+        paths[attempt.group][attempt.patient] = value.value;
+    }
+  }
+  for (const auto& [group, of] : paths) {
+    ASSERT_EQ(of.size(), 2u) << group;
+    EXPECT_NE(of.at(0), of.at(1)) << group << ": another patient, other ways";
+  }
+  const auto findings = FindOutOfStudy(options, *attempts);
+  ASSERT_EQ(findings.size(), 1u);
+  const auto time = std::find_if(findings[0].metrics.begin(), findings[0].metrics.end(),
+                                 [](const auto& f) { return f.metric == "time"; });
+  ASSERT_NE(time, findings[0].metrics.end());
+  EXPECT_TRUE(time->patient_icc.has_value());
+  EXPECT_FALSE(time->icc.has_value()) << "nobody repeated";
+  EXPECT_THAT(FormatStudyPage(options, findings, *attempts, "a machine"), HasSubstr("ICC over patients"));
+  EXPECT_EQ(RunStudy(options)->size(), 6u) << "what was done is read, patient for patient";
+}
+
 TEST(Study, RefusesWhatIsNoTaskOfItsOwn) {
   test::TemporaryFolder folder;
   StudyOptions options = SmallStudy(folder.Path());
@@ -89,6 +139,32 @@ std::vector<StudyAttempt> MadeUp(int people) {
     }
   }
   return attempts;
+}
+
+// A number that belongs to the person is reliable over patients, one that belongs to the anatomy is not.
+TEST(Findings, TellPeopleFromPatients) {
+  StudyOptions options;
+  options.people = 10;
+  options.repeats = 2;
+  options.patients = 3;
+  std::vector<StudyAttempt> attempts;
+  math::Random random(7);
+  for (const StudyAttempt& one : MadeUp(10)) {
+    for (int patient = 0; patient < options.patients; ++patient) {
+      StudyAttempt attempt{one.task, one.group, one.person, one.repeat, one.seed, patient};
+      attempt.values = {{"time", "", one.values[0].value + 0.1 * random.Uniform()},
+                        {"coach:detour", "", 10.0 * patient + 0.1 * random.Uniform() + 0.001 * one.person}};
+      attempts.push_back(attempt);
+    }
+  }
+  const auto findings = FindOutOfStudy(options, attempts);
+  const auto find = [&](const std::string& metric) {
+    return *std::find_if(findings[0].metrics.begin(), findings[0].metrics.end(),
+                         [&](const auto& f) { return f.metric == metric; });
+  };
+  EXPECT_GT(*find("time").patient_icc, 0.99);
+  EXPECT_LT(*find("coach:detour").patient_icc, 0.1);
+  EXPECT_FALSE(FindOutOfStudy({}, MadeUp(10))[0].metrics[0].patient_icc.has_value());
 }
 
 TEST(Findings, SeparateRepeatAndClusterAsTheNumbersWereMade) {

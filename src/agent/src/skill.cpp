@@ -196,7 +196,7 @@ SurgeonSkill SampleSkill(const SurgeonSkill& around, double spread, std::uint64_
 core::Result<std::unique_ptr<Surgeon>> MakeSkilledSurgeon(std::shared_ptr<const Scene> scene,
                                                           const SurgeonSkill& skill, std::uint64_t seed) {
   std::unique_ptr<Surgeon> hands;
-  if (scene->task && !scene->HasPatient()) {
+  if (IsDoneByGoals(*scene)) {
     hands = std::make_unique<TaskSurgeon>(scene, skill, ErrorScenario::kNone, seed);
   } else if (IsCholecystectomy(*scene)) {
     hands = std::make_unique<CholecystectomySurgeon>(scene, skill, OperationErrorScenario::kNone, seed);

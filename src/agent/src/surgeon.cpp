@@ -14,7 +14,7 @@ using scene::ErrorRule;
 namespace {
 
 bool HasGoals(const Scene& scene) {
-  return scene.task && !scene.HasPatient();
+  return IsDoneByGoals(scene);
 }
 /// Whether the task counts an error of that name.
 bool Counts(const Scene& scene, std::string_view name) {

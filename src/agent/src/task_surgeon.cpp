@@ -30,6 +30,10 @@ constexpr double kAbovePlace = 0.028, kLetGoHeight = 0.0025;
 
 }  // namespace
 
+bool IsDoneByGoals(const Scene& scene) noexcept {
+  return scene.task.has_value() && !(scene.HasPatient() && scene.operation);
+}
+
 TaskSurgeon::TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
                          ErrorScenario error_scenario, std::uint64_t seed)
     : scene_(std::move(scene)),
@@ -216,6 +220,16 @@ void TaskSurgeon::PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t
     case ConditionKind::kCutFree:
       PlanTissue(seen, c);
       return;
+    case ConditionKind::kEvent:
+      // tissue is taken where the step before has brought the tip
+      if (c.event == static_cast<int>(scene::EventKind::kGrasp) && c.hand != kAnyHand && step > 0 &&
+          goal.steps[step - 1].kind == ConditionKind::kTipInRegion) {
+        const int before = goal.steps[step - 1].regions.front();
+        GraspTissue(seen, c.hand, task.regions[static_cast<std::size_t>(before)].centre);
+        return;
+      }
+      Wait(0.5);
+      break;
     default:  // no goal that a hand could bring about
       Wait(0.5);
       break;

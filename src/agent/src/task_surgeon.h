@@ -101,6 +101,9 @@ struct TaskAct {
   void VisitState(core::StateArchive& archive);
 };
 
+/// A training task, with a patient or without one. An operation has plans of its own, also where a task asks for a part of it.
+bool IsDoneByGoals(const Scene& scene) noexcept;
+
 class TaskSurgeon final : public Surgeon {
  public:
   TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill, ErrorScenario error_scenario,
@@ -150,6 +153,7 @@ class TaskSurgeon final : public Surgeon {
   double FindClearPlace(const Snapshot& seen, int band) const;
   void BurnBand(const Snapshot& seen, int band);
   void PressPedal(int hand, double seconds);
+  void GraspTissue(const Snapshot& seen, int hand, const Vec3& p_before);
   void CutCircle(const Snapshot& seen, int sheet, double aside, double turns);
   void FollowSheet(int hand, const Vec3& p_sheet, double hurry);
   Vec3 FindTip(const Snapshot& seen, int hand, int object, const Vec3& p_world_object) const;

@@ -23,6 +23,11 @@ constexpr double kRunIn = 0.003;       // of a cut that leads to a line, from ou
 constexpr double kDrift = 0.0004;      // outwards in one turn, so that its end meets the run-in [m]
 constexpr int kWaypoints = 60;         // of a circle
 constexpr double kMostBurning = 6.0;   // [s]
+constexpr double kWide = 0.8;          // opening of jaws that are to take tissue, as a share
+constexpr double kIntoTissue = 0.014;  // from before the tissue to where jaws close on it [m]
+constexpr double kFarther = 0.004;     // each time that they closed on nothing [m]
+constexpr double kJawMargin = 0.2;     // beyond the time that jaws need [s]
+constexpr double kCareful = 0.5;       // speed into tissue, as a share of a hand's own
 constexpr double kBetter = 0.0005;     // of one place on a band over another, for more clearance [m]
 
 /// Spin that turns the tool's +y as nearly as can be along `across`; FindSpin leaves open which way round.
@@ -68,6 +73,21 @@ void TaskSurgeon::PlanTissue(const Snapshot& seen, const Condition& wanted) {
       break;
   }
   Wait(wanted.seconds + 0.1);
+}
+
+/// Takes the tissue that lies along the shaft behind a place: farther in each time that the jaws closed on nothing.
+void TaskSurgeon::GraspTissue(const Snapshot& seen, int hand, const Vec3& p_before) {
+  const auto h = static_cast<std::size_t>(hand);
+  const double max_jaw = scene_->instruments[h].tray[seen.operation.tools[h]].max_jaw;
+  const Vec3 along = math::Normalized(p_before - HandOf(hand).Port());
+  const bool misses = random_.Uniform() < skill_.miss_share;
+  // what they closed on was nothing: they open away from it
+  if (fruitless_plans_ > 0) ReachPoint(hand, p_before);
+  const double seconds = kJawMargin + kWide * max_jaw / skill_.hand.jaw_rate;
+  SetJaw("open the jaws", hand, kWide * max_jaw, seconds);
+  const double way = misses ? 0.0 : kIntoTissue + kFarther * fruitless_plans_ + skill_.press;
+  ReachPoint(hand, p_before + way * along, kCareful);
+  SetJaw("close on the tissue", hand, 0.0, seconds);
 }
 
 /// Has a hand take up a tool, out of the way of the tissue.

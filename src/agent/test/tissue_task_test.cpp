@@ -487,5 +487,22 @@ TEST(HookDissection, CurrentPartsWhatItTouchesAndNothingElse) {
   EXPECT_EQ(std::count(whole.begin(), whole.end(), 0), 1);
 }
 
+// --- a task on a patient
+
+// The first steps of the operation, without its tray: whoever misses takes the tissue in another try.
+TEST(TaskOnPatient, ExpertTakesLiftsAndTurnsTheGallbladder) {
+  const auto data = scene::FindDataFolder();
+  auto scene = ReadTask(*data / "scenes/study/gallbladder_retraction.json");
+  ASSERT_TRUE(scene.ok()) << scene.error().Text();
+  ASSERT_TRUE(scene->HasPatient());
+  const auto shared = std::make_shared<const Scene>(std::move(*scene));
+  const auto played = PlayTask(shared, "expert", 1, 60);
+  ASSERT_TRUE(played.ok()) << played.error().Text();
+  EXPECT_EQ(played->task.phase, TaskPhase::kCompleted)
+      << played->doing << " after " << played->seconds << " s";
+  EXPECT_EQ(CountErrors(*shared, played->task, "slipped"), 0u);
+  EXPECT_EQ(CountErrors(*shared, played->task, "pinched"), 0u);
+}
+
 }  // namespace
 }  // namespace trocar::agent

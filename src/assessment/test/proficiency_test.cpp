@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "trocar/core/safe_file.h"
 #include "trocar/scene/task.h"
@@ -243,6 +244,29 @@ TEST(DeliveredProficiencies, AreOfTasksThatThereAreAndSayTheirSources) {
     for (const Threshold& threshold : one.thresholds)
       has_safety = has_safety || threshold.purpose == Purpose::kSafety;
     EXPECT_TRUE(has_safety) << one.key << ": fast and careless would pass";
+  }
+}
+
+// Whoever trains at easy or hard is told what to reach there, too; and that nobody has measured people.
+TEST(DeliveredProficiencies, CoverTheLevelsOfTasks) {
+  const auto all = ListProficiencies();
+  const auto tasks = scene::ListTasks();
+  ASSERT_TRUE(all.ok() && tasks.ok());
+  for (const auto& task : *tasks) {
+    for (const std::string& level : task.levels) {
+      const auto found = std::find_if(all->begin(), all->end(), [&](const Proficiency& one) {
+        return one.task == task.key && one.level == level;
+      });
+      ASSERT_NE(found, all->end()) << task.key << " " << level;
+      const bool has_time =
+          std::any_of(found->thresholds.begin(), found->thresholds.end(),
+                      [](const Threshold& threshold) { return threshold.purpose == Purpose::kTime; });
+      EXPECT_TRUE(has_time) << found->key;
+      if (level == "normal") continue;  // some of those are published ones
+      EXPECT_NE(found->source.find("--level " + level), std::string::npos)
+          << found->key << ": made at that level";
+      EXPECT_NE(found->source.find("Scripted surgeons, not people"), std::string::npos) << found->key;
+    }
   }
 }
 

@@ -211,7 +211,7 @@ void AddIndex(CLI::App& record, Outcome& outcome) {
   CLI::App* command = record.add_subcommand(
       "index", "Replay once and keep saved states beside a recording, so that any moment is found quickly");
   auto path = std::make_shared<std::string>();
-  auto seconds = std::make_shared<double>(3);
+  auto seconds = std::make_shared<double>(record::kIndexSeconds);
   auto threads = std::make_shared<int>(1);
   command->add_option("file", *path, "Recording")->required()->type_name("FILE");
   command->add_option("--seconds", *seconds, "Between two states [s]")

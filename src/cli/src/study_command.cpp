@@ -177,6 +177,13 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 20))
       ->type_name("R")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--patients", a->options.patients,
+          "Generated patients on whom each novice, intermediate and expert does a task that has one, as "
+          "scenes/study/gallbladder_retraction.json: for the reliability over patients")
+      ->check(CLI::Range(1, 100))
+      ->type_name("P");
   command->add_option("--spread", a->options.spread, "By which share people of a group differ")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("SHARE")
@@ -214,6 +221,9 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       "report.html.\n"
       "Examples:\n"
       "  trocar study --task instrument_navigation,peg_transfer --people 50 --jobs 4 -o study\n"
+      "  trocar study --task scenes/study/gallbladder_retraction.json --levels-only --people 6 --patients 5 "
+      "-o "
+      "patients\n"
       "  trocar study samples/studies/stiffness.json --jobs 2 -o out/stiffness\n"
       "  trocar study plan.json --backend slurm --jobs 64 --launch=--time=2:00:00 -o out/plan");
   command->callback(

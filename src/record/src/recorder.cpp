@@ -295,7 +295,6 @@ void Recorder::Content::WriteEntries() {
     if (entry.state_slot >= 0) WriteState(entry);
     handover.tail.store(taken + 1, std::memory_order_release);
   }
-  CloseChunk();
 }
 
 void Recorder::Content::AddMark(std::string text) {
@@ -316,12 +315,13 @@ bool Recorder::Content::WriteMarks() {
     const std::lock_guard lock(mutex);
     now.swap(marks);
   }
+  if (!now.empty()) CloseChunk();
   for (const TextMark& mark : now) writer.Put(ChunkKind::kMark, mark.tick, BytesOf(mark.text));
   return !now.empty();
 }
 
 void Recorder::Content::SyncAndTell() {
-  const std::uint64_t written = handover.tail.load(std::memory_order_relaxed);
+  const std::uint64_t written = handover.tail.load(std::memory_order_relaxed) - chunk.count;
   const int files = writer.FileCount();
   const core::Status synced = writer.Sync();
   if (writer.FileCount() != files) {
@@ -362,6 +362,8 @@ void Recorder::Content::Run() {
     }
     const bool has_ticks = handover.head.load() != handover.tail.load();
     WriteEntries();
+    // where nobody waits a chunk is written when it is whole, so that the same attempt gives the same bytes at any pace
+    if (!settings.waits || is_last) CloseChunk();
     SeeClock();
     const bool has_marks = WriteMarks();
     if (has_ticks || has_marks || is_last) SyncAndTell();

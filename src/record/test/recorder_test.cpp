@@ -222,6 +222,28 @@ TEST_F(RecorderTest, TellsWhatIsSafe) {
   EXPECT_FALSE(recording->ending.has_value());
 }
 
+// A slow computer wrote two ticks a chunk, and a third of the recording was chunks' headers.
+TEST_F(RecorderTest, ChunksAreWholeAtAnyPaceWhereNobodyWaits) {
+  const auto record = [&](const std::filesystem::path& file, std::chrono::milliseconds pause) {
+    auto simulation = Make();
+    auto recorder = Recorder::Start(file, Describe(), simulation, Settings());
+    ASSERT_TRUE(recorder.ok()) << recorder.error().Text();
+    for (std::uint64_t tick = 0; tick < 50; ++tick) {
+      simulation.Step(InputOf(tick));
+      (*recorder)->Add(InputOf(tick), simulation);
+      std::this_thread::sleep_for(pause);
+    }
+    ASSERT_TRUE((*recorder)->Finish(simulation).ok());
+  };
+  const auto quick = folder_ / "quick.trocar", slow = folder_ / "slow.trocar";
+  record(quick, std::chrono::milliseconds(0));
+  record(slow, std::chrono::milliseconds(20));
+  EXPECT_EQ(std::filesystem::file_size(slow), std::filesystem::file_size(quick));
+  const auto recording = ReadRecording(slow);
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->inputs.size(), 50u);
+}
+
 TEST(RecordingFolder, IsWhereThePersonKeepsData) {
   const auto with = [](const char* own, const char* shared) {
     ::setenv("TROCAR_DATA_HOME", own, 1);

@@ -111,7 +111,9 @@ class Survival : public RecordedScene {
   std::uint64_t CountLost(std::mt19937_64& random, bool forgets_sync) {
     auto disk = std::make_shared<FakeDisk>();
     auto simulation = Make();
-    auto recorder = Recorder::Start("x", Describe(), simulation, On(disk));
+    RecorderSettings settings = On(disk);
+    settings.waits = false;  // as in the window: whatever there is is written
+    auto recorder = Recorder::Start("x", Describe(), simulation, settings);
     EXPECT_TRUE(recorder.ok());
     disk->forgets_sync = forgets_sync;
     Play(simulation, **recorder, 0, 30 + random() % 200);

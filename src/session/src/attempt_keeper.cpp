@@ -14,8 +14,6 @@ namespace {
 
 /// A shorter attempt is a look at the scene.
 constexpr double kShortestAttempt = 1.0;  // s
-/// Between states of the index, so that any moment is found in two seconds.
-constexpr double kIndexSeconds = 3;
 /// Of the indexes of all attempts; the oldest go first.
 constexpr std::uint64_t kIndexBytes = std::uint64_t{2} << 30;
 
@@ -47,7 +45,7 @@ void AttemptKeeper::BeforeStep(const Simulation& simulation, bool is_demonstrati
   }
   record::TrimIndexes(keeping_->folder, kIndexBytes);
   record::RecorderSettings settings;
-  settings.index_seconds = kIndexSeconds;
+  settings.index_seconds = record::kIndexSeconds;
   auto recorder =
       record::Recorder::Start(MakeName(*keeping_), std::move(description), simulation, std::move(settings));
   if (recorder.ok()) {

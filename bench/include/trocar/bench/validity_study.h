@@ -19,10 +19,13 @@
 namespace trocar::bench {
 
 struct StudyOptions {
-  std::vector<std::string> tasks;  ///< keys of delivered tasks, without patients
+  std::vector<std::string> tasks;  ///< keys of delivered tasks, or files of tasks
   std::string level = "normal";
   int people = 20;  ///< of each group
   int repeats = 2;  ///< attempts of each novice, intermediate and expert, on other seeds; 1 for all others
+  /// Generated ones, on each of which every novice, intermediate and expert does a task that has a patient, the repeats on the
+  /// first; 0: such a task is refused.
+  int patients = 0;
   double spread = 0.2;  ///< by which people of a group differ, agent::SampleSkill
   std::uint64_t seed = 1;
   bool has_weaknesses = true;    ///< people with one weakness
@@ -42,6 +45,7 @@ struct StudyAttempt {
   std::string task, group;
   int person = 0, repeat = 0;
   std::uint64_t seed = 0;
+  int patient = 0;    ///< the how-manieth generated one; 0 also where the task has none
   std::string phase;  ///< how it ended, scene::PhaseName
   bool is_completed = false;
   bool is_caught = false;  ///< of a careless one: the error that it commits was found
@@ -60,8 +64,10 @@ struct MetricFinding {
   bool is_ordered = false;   ///< the intermediates' mean lies between
   double auc = 0.5;  ///< that a novice's is worse; of metrics that are better neither way, the larger side
   std::optional<double> effect;      ///< novices minus experts, pooled standard deviations
-  std::optional<double> icc, alpha;  ///< over the repeats of all three levels
-  int novices = 0, experts = 0;      ///< attempts in which it was defined
+  std::optional<double> icc, alpha;  ///< over the repeats of all three levels, on the first patient
+  /// ICC(1,1) over patients: first attempts of the same people, the same hands, other anatomy.
+  std::optional<double> patient_icc;
+  int novices = 0, experts = 0;  ///< attempts in which it was defined
 };
 
 /// Whom a number shows: of a weakness, or a careless surgeon, against experts.

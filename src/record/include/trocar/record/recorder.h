@@ -26,7 +26,8 @@ struct RecorderSettings {
   /// Between states of the index beside the recording, which makes seeking quick and may be deleted [s]; 0: none is written.
   double index_seconds = 0;
   std::uint64_t index_bytes = std::uint64_t{1} << 30;  ///< beyond it the index takes no more
-  /// Where no person's time counts: Add waits for a writer that falls behind. Else the recording would end there.
+  /// Where no person's time counts: Add waits for a writer that falls behind (else the recording would end there), and inputs are
+  /// written in whole chunks of 100 ms of the simulation, however long these take.
   bool waits = false;
   OpenStorage open = MakeFile;
   /// Looked at by the writing thread: a wall clock that jumps is marked in the recording.

@@ -115,6 +115,8 @@ class Recording {
   std::vector<Keyframe> keyframes_;  // compressed
 };
 
+/// Between the states of an index [s]: the ticks from one to the next take less than a second of processor time.
+inline constexpr double kIndexSeconds = 2;
 /// The state index beside a recording: attempt.trocar.index. It is made again where it is missing.
 std::filesystem::path IndexPathOf(const std::filesystem::path& recording);
 /// Deletes state indexes of a folder, the oldest first, until all of them together have no more than so many bytes.

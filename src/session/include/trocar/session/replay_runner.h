@@ -13,7 +13,7 @@ namespace trocar::session {
 
 struct ReplayRunnerSettings {
   /// In idle processor time the whole recording is computed once, and states are kept this far apart [s]; 0: it is not.
-  double fill_seconds = 3;
+  double fill_seconds = record::kIndexSeconds;
 };
 
 /// Where a replay stands, and where it is to be.
