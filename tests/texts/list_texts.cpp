@@ -225,6 +225,14 @@ int main(int count, char** arguments) {
   for (const char* what : {"Reading", "Seeking", "Drawing", "reading labels", "looking at the labels",
                            "assembling the patient", "done"})
     Print(what);
+  // who held the hands, what came of it, and who was operated on, as recordings say it
+  for (const char* text :
+       {"once", "twice", "Generated patient, seed {1}", "Patient from a label map", "mouse and keyboard",
+        "mouse and keyboard, {1}", "the demonstration", "exam, {1}", "expert, seed {1}", "novice, seed {1}",
+        "completed, score {1}", "completed, critical view, {1} mL of blood", "completed, {1} mL of blood",
+        "not completed, critical view, {1} mL of blood", "not completed, {1} mL of blood", "time over",
+        "ended", "running", "ready"})
+    Print(text);
   // what is undone in the editor of contours
   for (const char* step :
        {"add a point", "follow an edge", "close a hole", "close a contour",
