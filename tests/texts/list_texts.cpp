@@ -52,6 +52,12 @@ void Print(std::string_view text) {
   std::printf("\nmsgid \"%s\"\nmsgstr \"\"\n", quoted.c_str());
 }
 
+/// One that is translated in a context.
+void PrintIn(const char* context, std::string_view text) {
+  std::printf("\nmsgctxt \"%s\"\nmsgid \"%.*s\"\nmsgstr \"\"\n", context, static_cast<int>(text.size()),
+              text.data());
+}
+
 /// A key of a file as the window shows it: "cystic duct" of "cystic_duct".
 void PrintWords(std::string name) {
   for (char& c : name) {
@@ -205,6 +211,9 @@ int main(int count, char** arguments) {
   for (const app::SimulatorCommand& command : app::SimulatorCommands()) {
     if (app::KeyBindings::CanChange(command) && *command.help.meaning == '\0') PrintWords(command.id);
   }
+  for (const app::MouseButton button :
+       {app::MouseButton::kLeft, app::MouseButton::kMiddle, app::MouseButton::kRight})
+    PrintIn("mouse button", app::NameOf(button));
   PrintCommands(app::ReplayCommands());
   PrintCommands(centre::CentreCommands());
   PrintCommands(editor::ContourCommands());
