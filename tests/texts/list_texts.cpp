@@ -52,6 +52,12 @@ void Print(std::string_view text) {
   std::printf("\nmsgid \"%s\"\nmsgstr \"\"\n", quoted.c_str());
 }
 
+/// One that is translated in a context.
+void PrintIn(const char* context, std::string_view text) {
+  std::printf("\nmsgctxt \"%s\"\nmsgid \"%.*s\"\nmsgstr \"\"\n", context, static_cast<int>(text.size()),
+              text.data());
+}
+
 /// A key of a file as the window shows it: "cystic duct" of "cystic_duct".
 void PrintWords(std::string name) {
   for (char& c : name) {
@@ -205,6 +211,9 @@ int main(int count, char** arguments) {
   for (const presenter::SimulatorCommand& command : presenter::SimulatorCommands()) {
     if (presenter::KeyBindings::CanChange(command) && *command.help.meaning == '\0') PrintWords(command.id);
   }
+  for (const presenter::MouseButton button :
+       {presenter::MouseButton::kLeft, presenter::MouseButton::kMiddle, presenter::MouseButton::kRight})
+    PrintIn("mouse button", presenter::NameOf(button));
   PrintCommands(presenter::ReplayCommands());
   PrintCommands(centre::CentreCommands());
   PrintCommands(editor::ContourCommands());
@@ -225,6 +234,14 @@ int main(int count, char** arguments) {
   for (const char* what : {"Reading", "Seeking", "Drawing", "reading labels", "looking at the labels",
                            "assembling the patient", "done"})
     Print(what);
+  // who held the hands, what came of it, and who was operated on, as recordings say it
+  for (const char* text :
+       {"once", "twice", "Generated patient, seed {1}", "Patient from a label map", "mouse and keyboard",
+        "mouse and keyboard, {1}", "the demonstration", "exam, {1}", "expert, seed {1}", "novice, seed {1}",
+        "completed, score {1}", "completed, critical view, {1} mL of blood", "completed, {1} mL of blood",
+        "not completed, critical view, {1} mL of blood", "not completed, {1} mL of blood", "time over",
+        "ended", "running", "ready"})
+    Print(text);
   // what is undone in the editor of contours
   for (const char* step :
        {"add a point", "follow an edge", "close a hole", "close a contour",
