@@ -45,13 +45,13 @@ class Learning(unittest.TestCase):
 
     def test_lift_and_grasp_is_cloned(self):
         with tempfile.TemporaryDirectory() as folder:
-            write_demonstrations(folder + "/set", "--task", "lift_and_grasp", "--seeds", "1:20")
+            write_demonstrations(folder + "/set", "--task", "lift_and_grasp", "--seeds", "1:60")
             demonstrations = clone.Demonstrations(folder + "/set")
         self.assertEqual(demonstrations.task, "lift_and_grasp")
         learnt = clone.Clone(demonstrations)
         nothing = dict(learnt.net.state_dict())
         seeds, settings = range(10_001, 10_007), clone.settings(demonstrations)
-        learnt.learn(15)
+        learnt.learn(20)
         self.assertTrue(any((learnt.net.state_dict()[name] != nothing[name]).any() for name in nothing))
         # the plate is lifted or more: a chance policy does not even touch it
         steps = {}

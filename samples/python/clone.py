@@ -12,11 +12,11 @@ import argparse
 import json
 import pathlib
 
+import learning  # first: it says how many threads torch gets
+
 import h5py
 import numpy as np
 import torch
-
-import learning
 
 CHUNK = 8    # actions that are foretold
 DONE = 3     # of them are done before the next look
@@ -125,7 +125,7 @@ class Clone:
         return act
 
 
-def clone(demonstrations, epochs, looks=8, seeds=range(9_001, 9_021), show=print):
+def clone(demonstrations, epochs, looks=8, seeds=range(9_001, 9_021), show=lambda text: print(text, flush=True)):
     """A clone, and its learning curve: epochs, and the share of goals and of successes over a few seeds."""
     learnt = Clone(demonstrations)
     curve = ([], [], [])
@@ -150,7 +150,7 @@ def settings(demonstrations, slack=1.5):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", help="a set of the layout trocar")
-    parser.add_argument("--epochs", type=int, default=80)
+    parser.add_argument("--epochs", type=int, default=40)
     parser.add_argument("--seeds", default="10001:10100", help="on which the clone is judged, both included")
     parser.add_argument("--curve", default="clone.svg", help="picture of the learning curve")
     arguments = parser.parse_args()
@@ -158,7 +158,8 @@ def main():
     first, last = map(int, arguments.seeds.split(":"))
     unseen = range(first, last + 1)
     demonstrations = Demonstrations(arguments.folder)
-    print(f"{len(demonstrations.states)} demonstrations of {demonstrations.task}, the longest of {demonstrations.longest:.0f} s")
+    print(f"{len(demonstrations.states)} demonstrations of {demonstrations.task}, the longest of {demonstrations.longest:.0f} s",
+          flush=True)
     learnt, curve = clone(demonstrations, arguments.epochs)
     learning.write_curve(arguments.curve, f"{demonstrations.task}, cloned from {len(demonstrations.states)} demonstrations",
                          "epochs", curve[0], {"success": curve[1], "goals done": curve[2]})

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the samples that learn share: networks, how a policy is judged on unseen seeds, and the picture of a learning curve."""
+import os
 from concurrent.futures import ThreadPoolExecutor
+
+# small networks, beside simulations on every core: more threads of torch's would wait for each other. Before torch is there
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 import torch

@@ -9,10 +9,11 @@ import argparse
 import pathlib
 import time
 
+import learning  # first: it says how many threads torch gets
+
 import numpy as np
 import torch
 
-import learning
 import trocar
 
 TASK = str(pathlib.Path(__file__).with_name("reach.json"))
