@@ -27,6 +27,8 @@ class ChunkWriter {
 
   const std::filesystem::path& Path() const { return path_; }
   std::uint64_t FileId() const { return file_id_; }
+  /// Whether something was put that Sync has not written yet.
+  bool HasWaiting() const { return !waiting_.empty(); }
   std::uint64_t Bytes() const { return written_ + waiting_.size(); }
   /// How many files there have been.
   int FileCount() const { return file_count_; }

@@ -185,7 +185,7 @@ struct Recorder::Content {
   void WriteEvents(const Entry& entry);
   void AddMark(std::string text);
   void SeeClock();
-  bool WriteMarks();
+  void WriteMarks();
   void SyncAndTell();
   void Stop();
 };
@@ -309,7 +309,7 @@ void Recorder::Content::SeeClock() {
   if (const auto jump = clock_watch.See(now)) AddMark(JumpText(*jump, now.wall));
 }
 
-bool Recorder::Content::WriteMarks() {
+void Recorder::Content::WriteMarks() {
   std::vector<TextMark> now;
   {
     const std::lock_guard lock(mutex);
@@ -317,7 +317,6 @@ bool Recorder::Content::WriteMarks() {
   }
   if (!now.empty()) CloseChunk();
   for (const TextMark& mark : now) writer.Put(ChunkKind::kMark, mark.tick, BytesOf(mark.text));
-  return !now.empty();
 }
 
 void Recorder::Content::SyncAndTell() {
@@ -360,13 +359,12 @@ void Recorder::Content::Run() {
       wake.wait_for(lock, kWritePeriod, [&] { return is_stopping; });
       is_last = is_stopping;
     }
-    const bool has_ticks = handover.head.load() != handover.tail.load();
     WriteEntries();
     // where nobody waits a chunk is written when it is whole, so that the same attempt gives the same bytes at any pace
     if (!settings.waits || is_last) CloseChunk();
     SeeClock();
-    const bool has_marks = WriteMarks();
-    if (has_ticks || has_marks || is_last) SyncAndTell();
+    WriteMarks();
+    if (writer.HasWaiting() || is_last) SyncAndTell();
     if (is_last) return;
   }
 }
