@@ -49,10 +49,8 @@ class Learning(unittest.TestCase):
             demonstrations = clone.Demonstrations(folder + "/set")
         self.assertEqual(demonstrations.task, "lift_and_grasp")
         learnt = clone.Clone(demonstrations)
-        nothing = dict(learnt.net.state_dict())
         seeds, settings = range(10_001, 10_007), clone.settings(demonstrations)
         learnt.learn(20)
-        self.assertTrue(any((learnt.net.state_dict()[name] != nothing[name]).any() for name in nothing))
         # the plate is lifted or more: a chance policy does not even touch it
         steps = {}
         for name, policy in (("learnt", learnt.make_policy), ("random", learning.random_policy)):
