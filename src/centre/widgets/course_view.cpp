@@ -97,8 +97,7 @@ void CourseView::ShowMap(const CoursePage& page, Gtk::Box& into) {
         step.locked_by.empty() ? step.progress : core::TranslateWith("after {1}", {step.locked_by}), "fine"));
     if (!step.due.empty()) words->append(MakeText(step.due, step.is_overdue ? "caution" : "fine"));
     content->append(*words);
-    content->append(
-        MakeLine(WordOf(step.state), step.state == StepState::kDone ? "good" : "name"));
+    content->append(MakeLine(WordOf(step.state), step.state == StepState::kDone ? "good" : "name"));
     auto* button = Gtk::make_managed<Gtk::Button>();
     button->add_css_class("step");
     button->set_child(*content);

@@ -65,7 +65,8 @@ CataloguePattern ParsePattern(std::string_view text, std::string_view translatio
     text.remove_prefix(close + 1);
   }
   for (const std::string& part : pattern.fixed)
-    pattern.letters += static_cast<std::size_t>(std::count_if(part.begin(), part.end(), [](char c) { return c != ' '; }));
+    pattern.letters +=
+        static_cast<std::size_t>(std::count_if(part.begin(), part.end(), [](char c) { return c != ' '; }));
   return pattern;
 }
 
