@@ -71,7 +71,7 @@ core::Status MakePictures(const PicturesArguments& arguments, Outcome& outcome) 
 
 void AddPicturesCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* command =
-      app.add_subcommand("pictures", "Draw twenty-two pictures of the operation and of the training tasks");
+      app.add_subcommand("pictures", "Draw twenty-one pictures of the operation and of the training tasks");
   auto arguments = std::make_shared<PicturesArguments>();
   command->add_option("-o,--output", arguments->output, "Folder to write")
       ->type_name("DIR")

@@ -60,9 +60,6 @@ bool IsCriticalView(const Snapshot& now) {
 bool IsFree(const Snapshot& now) {
   return now.operation.is_gallbladder_free;
 }
-bool IsAspirating(const Snapshot& now) {
-  return now.operation.flow.ledger.rinse_aspirated > 1e-6;
-}
 bool IsInBag(const Snapshot& now) {
   return now.operation.is_in_bag;
 }
@@ -208,8 +205,7 @@ std::vector<SeriesSitting> ListPictureSeries() {
         {"07-scissors", "the cystic duct is divided", HasCuts<1>, 0.4},
         {"08-bed", "the gallbladder is taken off its bed", IsDetached<45>, 0.5},
         {"09-free", "the gallbladder is free, the bed lies open", IsFree, 0.5},
-        {"10-bag", "the gallbladder is in the bag", IsInBag, 0.5},
-        {"11-cleaning", "the suction-irrigator cleans the field", IsAspirating, 4}}},
+        {"10-bag", "the gallbladder is in the bag", IsInBag, 0.5}}},
       {"cholecystectomy", "bleeds", {{"12-bleeding", "an accident: the cystic artery bleeds", Bleeds, 4}}},
       {"camera_navigation_30",
        "expert",
