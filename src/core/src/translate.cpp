@@ -78,6 +78,8 @@ void UseLanguage(const fs::path& folder) {
 std::string Translate(std::string_view text) {
   if (text.empty()) return {};
   const std::string english(text);
+  // gettext would end it at a zero byte: somebody's text, none of the catalogue
+  if (english.find('\0') != std::string::npos) return english;
   return dgettext(kDomain, english.c_str());
 }
 

@@ -15,6 +15,13 @@ TEST(Translate, LeavesAllAsItIsWithoutACatalogue) {
   EXPECT_EQ(TranslatedMeaning(ErrorCode::kFileUnreadable), "");
 }
 
+TEST(Translate, LeavesTextsWithAZeroByteWhole) {
+  const std::string text("\0<b>", 4);
+  EXPECT_EQ(Translate(text), text);
+  EXPECT_EQ(TranslateIn("mouse button", text), text);
+  EXPECT_EQ(TranslateComposed(text), text);
+}
+
 TEST(Translate, FillsPlacesAndCounts) {
   UseLanguage({});
   EXPECT_EQ(TranslateWith("{1} of {2}", {"3", "4"}), "3 of 4");
