@@ -13,6 +13,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/record/recorder.h"
 #include "trocar/scene/task.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::dataset {
 namespace {
@@ -62,11 +63,6 @@ void RecordExpert(const fs::path& file, double seconds) {
 
 class DatasetTest : public testing::TestWithParam<Layout> {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / ("dataset_" + std::string(NameOf(GetParam())));
-    fs::remove_all(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   /// The first seconds of two operations.
   Plan SmallPlan() const {
     Plan plan;
@@ -76,7 +72,8 @@ class DatasetTest : public testing::TestWithParam<Layout> {
     plan.most_seconds = 2;
     return plan;
   }
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.Path() / "sets";
 };
 
 TEST_P(DatasetTest, IsReadByAnotherProgramAndIsTheSameAgain) {

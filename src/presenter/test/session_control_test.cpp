@@ -193,6 +193,10 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   ASSERT_TRUE(until([&] { return control->GetSentInput().hands[scene::kLeft].pan == 0.5; }));
   for (int frame = 0; frame < 20; ++frame) control->Advance(0.01);
   EXPECT_FALSE(left().coagulate) << "the foot that stayed does not count";
+  // a tool that is far behind its hand would draw it back where the device is out of sight for a moment
+  ASSERT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) {
+    return std::fabs(now.instruments[scene::kLeft].joints.pan - 0.5) < 0.01;
+  }));
   control->ChooseHand(device::kLeftHand);
   control->SetPedal(Pedal::kClutch, true);
   control->Advance(0.01);
