@@ -41,30 +41,24 @@ std::string FormatSource(const Plan& plan) {
 }
 
 ordered_json DescribePlan(const Plan& plan) {
-  if (!plan.recordings.empty()) {
-    return {{"layout", NameOf(plan.layout)},
-            {"recordings", plan.recordings.size()},
-            {"width", plan.width},
-            {"height", plan.height},
-            {"every_seconds", plan.every},
-            {"most_seconds", plan.most_seconds},
-            {"has_variation", plan.has_variation},
-            {"has_pictures", plan.has_pictures}};
+  ordered_json text = {{"layout", NameOf(plan.layout)}};
+  if (plan.recordings.empty()) {
+    text["task"] = plan.task;
+    text["level"] = plan.level;
+    text["surgeon"] = plan.surgeon;
+    text["patients"] = ordered_json::array();
+    for (const auto& patient : plan.patients) text["patients"].push_back(patient.filename().string());
+    text["seeds"] = {plan.first_seed, plan.last_seed};
+  } else {
+    text["recordings"] = plan.recordings.size();
   }
-  auto patients = ordered_json::array();
-  for (const auto& patient : plan.patients) patients.push_back(patient.filename().string());
-  return {{"layout", NameOf(plan.layout)},
-          {"task", plan.task},
-          {"level", plan.level},
-          {"surgeon", plan.surgeon},
-          {"patients", patients},
-          {"seeds", {plan.first_seed, plan.last_seed}},
-          {"width", plan.width},
-          {"height", plan.height},
-          {"every_seconds", plan.every},
-          {"most_seconds", plan.most_seconds},
-          {"has_variation", plan.has_variation},
-          {"has_pictures", plan.has_pictures}};
+  text["width"] = plan.width;
+  text["height"] = plan.height;
+  text["every_seconds"] = plan.every;
+  text["most_seconds"] = plan.most_seconds;
+  text["has_variation"] = plan.has_variation;
+  text["has_pictures"] = plan.has_pictures;
+  return text;
 }
 
 std::string DescribeSource(const Plan& plan) {
