@@ -84,6 +84,7 @@ class ScriptedHands {
   }
 
   const Scene& GetScene() const { return *scene_; }
+  const std::shared_ptr<const Scene>& SharedScene() const { return scene_; }
 
  private:
   std::shared_ptr<const Scene> scene_;
@@ -104,7 +105,30 @@ inline std::optional<math::Vec3> FindSpilledStone(const Snapshot& seen, int hand
   return found;
 }
 
-/// Takes a stone, lifts it, and lets it fall.
+/// Draws the hook with its current through the gallbladder's wall, from the fundus on.
+inline void OpenGallbladder(ScriptedHands& hands) {
+  constexpr double kDeep = 0.005, kWay = 0.020;  // of the hook in the wall, and along it [m]
+  const Scene& scene = hands.GetScene();
+  const math::Vec3 port = scene.instruments[scene::kRight].p_world_port;
+  const math::Vec3 fundus = scene.patient.LandmarkOf(roles::LandmarkRole::kFundus)->position;
+  const math::Vec3 neck = scene.patient.LandmarkOf(roles::LandmarkRole::kInfundibulum)->position;
+  const math::Vec3 in = math::Normalized(fundus - port), along = math::Normalized(neck - fundus);
+  const auto press = [](bool is_down) {
+    return [=](const Snapshot&, int, Input& input) {
+      input.controls[scene::kRight].cut = is_down;
+      return false;
+    };
+  };
+  hands.Reach(scene::kRight, 100, [=](const Snapshot&) { return fundus - 0.01 * in; });
+  hands.Add(press(true));
+  hands.Reach(scene::kRight, 40, [=](const Snapshot&) { return fundus + kDeep * in; });
+  hands.Reach(scene::kRight, 120, [=](const Snapshot&) { return fundus + kDeep * in + kWay * along; });
+  hands.Add(press(false));
+  hands.Reach(scene::kRight, 40, [=](const Snapshot&) { return fundus - 0.03 * in; });
+  hands.Wait(60);
+}
+
+/// Takes a stone and lifts it.
 inline void TakeStone(int hand, ScriptedHands& hands) {
   const math::Vec3 port = hands.GetScene().instruments[static_cast<std::size_t>(hand)].p_world_port;
   const auto beyond = [=](double way) {
@@ -171,17 +195,54 @@ inline void SpreadFat(int hand, ScriptedHands& hands) {
   }
 }
 
+/// Closes a grasper on what lies at a place, and pulls at it while it asks for another tool.
+/// \param jaw   share of its opening to which it closes
+/// \param pull  of the tip
+inline void HoldAndAsk(int hand, const math::Vec3& place, const std::string& other, double jaw,
+                       const math::Vec3& pull, ScriptedHands& hands) {
+  const math::Vec3 port = hands.GetScene().instruments[static_cast<std::size_t>(hand)].p_world_port;
+  const math::Vec3 in = math::Normalized(place - port);
+  hands.Reach(hand, 70, [=](const Snapshot&) { return place - 0.03 * in; });
+  hands.Jaw(hand, 30, 1.0);
+  hands.Reach(hand, 30, [=](const Snapshot&) { return place + 0.006 * in; });
+  hands.Jaw(hand, 40, jaw);
+  hands.Exchange(hand, 20, other);
+  hands.Reach(hand, 80, [=](const Snapshot&) { return place + 0.006 * in + pull; });
+}
+
+/// Cuts the circle out, lifts it, and pulls lightly held at the rest until it slips.
+inline void LiftPiece(ScriptedHands& hands) {
+  const math::Vec3 middle = hands.GetScene().model->sheets.front().centre;
+  hands.LeaveTo("expert", [](const Snapshot& seen) { return seen.operation.sheets.front().is_free; });
+  hands.Wait(10);
+  HoldAndAsk(scene::kLeft, middle, "suction_irrigator", 0.0, {0.005, 0, 0.03}, hands);
+  hands.Exchange(scene::kRight, 75, "grasper");
+  HoldAndAsk(scene::kRight, middle + math::Vec3{0.027, 0, 0}, "hook", 0.19, {0, 0, 0.06}, hands);
+}
+
+/// Goes on cutting where the tissue stands still because it was bad too often in a row.
+inline void CutFrozen(ScriptedHands& hands) {
+  constexpr int kBad = 6, kGoesOnCutting = 200;
+  const auto has_cut = [](const Snapshot& seen) { return seen.operation.topology.version > 20; };
+  std::shared_ptr<Surgeon> surgeon = std::move(*MakeSurgeon("expert", hands.SharedScene(), 1));
+  int bad = -1;
+  hands.Add([=](const Snapshot& seen, int, Input& input) mutable {
+    input = surgeon->Act(seen);
+    if (bad < 0 && !has_cut(seen)) return true;
+    if (++bad < kBad) {
+      input.settings.solver.kind = tissue::SolverKind::kRelaxationPaper;
+      input.settings.solver.relaxation.alpha = 1e6;  // far beyond the bound of stability [m/N]
+    }
+    return bad < kGoesOnCutting;
+  });
+}
+
 /// \return nothing where nobody has that name
 inline std::optional<ScriptedHands> MakeScriptedHands(const std::string& name,
                                                       std::shared_ptr<const Scene> scene) {
   ScriptedHands hands(std::move(scene));
   if (name == "takes_stones") {
-    // opens the gallbladder, takes stones with either hand, lets them go, and takes one out
-    hands.LeaveTo("perforates", [](const Snapshot& seen) {
-      return std::count_if(seen.operation.stones.begin(), seen.operation.stones.end(), [](const auto& stone) {
-               return stone.place == simulation::StonePlace::kSpilled;
-             }) > 3;
-    });
+    OpenGallbladder(hands);
     hands.Exchange(scene::kRight, 75, "grasper");
     for (const int hand : {scene::kRight, scene::kLeft}) {
       TakeStone(hand, hands);
@@ -190,6 +251,16 @@ inline std::optional<ScriptedHands> MakeScriptedHands(const std::string& name,
     TakeStone(scene::kRight, hands);
     hands.Exchange(scene::kRight, 75, "suction_irrigator");
     hands.Wait(60);
+    return hands;
+  }
+  if (name == "lifts_piece") return LiftPiece(hands), hands;
+  if (name == "cuts_frozen") return CutFrozen(hands), hands;
+  if (name == "lets_assistant_hold") {
+    hands.Wait(60);
+    hands.Add([](const Snapshot&, int tick, Input& input) {
+      input.assistant = scene::AssistantCommand::kRetract;
+      return tick < 400;
+    });
     return hands;
   }
   const int hand = name.ends_with("_left") ? scene::kLeft : scene::kRight;
