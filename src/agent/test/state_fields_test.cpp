@@ -351,8 +351,7 @@ class CourseControl {
       bool is_prepared = false;
       const auto leave_out = [&](const std::string& field) {
         if (!std::exchange(is_prepared, true)) control.Prepare();
-        const bool is_asked_for = listed_.contains(field) || (search_.IsOn() && !search_.IsForAll());
-        return control.LeaveOut(field, is_asked_for);
+        return control.LeaveOut(field, search_.IsOn() && !search_.IsForAll());
       };
       for (const auto& [field, hash] : control.Saved()) {
         if (table_.same.contains(field) && !control.IsAsAtStart(field) && TriesOf(field) < kTries) {
