@@ -127,7 +127,8 @@ std::string FormatSurroundings(const BuildReport& report) {
   std::string text;
   char line[320];
   if (!report.neighbours.empty()) {
-    text += "neighbour                     from      parts triangles  min angle   volume  of voxels  left out\n";
+    text +=
+        "neighbour                     from      parts triangles  min angle   volume  of voxels  left out\n";
     for (const NeighbourReport& one : report.neighbours) {
       std::snprintf(line, sizeof line, "%-29s %-9s %5d %9zu %6.1f deg %5.0f mL", one.name.c_str(),
                     one.is_seen ? "map" : "template", one.is_seen ? one.parts : 1, one.triangles,

@@ -12,6 +12,7 @@
 
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/meshing/label_volume.h"
+#include "trocar/meshing/mesh_smoothing.h"
 #include "trocar/meshing/volume_mesher.h"
 
 namespace trocar::anatomy {
@@ -38,28 +39,26 @@ struct Numbers {
   int first, last;
   NeighbourRole role;
 };
-constexpr Numbers kVersion2[] = {
-    {2, 2, NeighbourRole::kRightKidney}, {6, 6, NeighbourRole::kStomach},
-    {7, 7, NeighbourRole::kPancreas},    {18, 18, NeighbourRole::kSmallBowel},
-    {19, 19, NeighbourRole::kDuodenum},  {20, 20, NeighbourRole::kColon},
-    {25, 50, NeighbourRole::kSpine},     {52, 52, NeighbourRole::kAorta},
-    {63, 63, NeighbourRole::kVenaCava},  {64, 64, NeighbourRole::kPortalVein},
-    {92, 115, NeighbourRole::kRibs}};
+constexpr Numbers kVersion2[] = {{2, 2, NeighbourRole::kRightKidney}, {6, 6, NeighbourRole::kStomach},
+                                 {7, 7, NeighbourRole::kPancreas},    {18, 18, NeighbourRole::kSmallBowel},
+                                 {19, 19, NeighbourRole::kDuodenum},  {20, 20, NeighbourRole::kColon},
+                                 {25, 50, NeighbourRole::kSpine},     {52, 52, NeighbourRole::kAorta},
+                                 {63, 63, NeighbourRole::kVenaCava},  {64, 64, NeighbourRole::kPortalVein},
+                                 {92, 115, NeighbourRole::kRibs}};
 constexpr int kThirdLumbar2 = 29, kFourthLumbar2 = 28;
-constexpr Numbers kVersion1[] = {
-    {2, 2, NeighbourRole::kRightKidney}, {6, 6, NeighbourRole::kStomach},
-    {7, 7, NeighbourRole::kAorta},       {8, 8, NeighbourRole::kVenaCava},
-    {9, 9, NeighbourRole::kPortalVein},  {10, 10, NeighbourRole::kPancreas},
-    {18, 41, NeighbourRole::kSpine},     {55, 55, NeighbourRole::kSmallBowel},
-    {56, 56, NeighbourRole::kDuodenum},  {57, 57, NeighbourRole::kColon},
-    {58, 81, NeighbourRole::kRibs}};
+constexpr Numbers kVersion1[] = {{2, 2, NeighbourRole::kRightKidney}, {6, 6, NeighbourRole::kStomach},
+                                 {7, 7, NeighbourRole::kAorta},       {8, 8, NeighbourRole::kVenaCava},
+                                 {9, 9, NeighbourRole::kPortalVein},  {10, 10, NeighbourRole::kPancreas},
+                                 {18, 41, NeighbourRole::kSpine},     {55, 55, NeighbourRole::kSmallBowel},
+                                 {56, 56, NeighbourRole::kDuodenum},  {57, 57, NeighbourRole::kColon},
+                                 {58, 81, NeighbourRole::kRibs}};
 constexpr int kThirdLumbar1 = 20, kFourthLumbar1 = 19;
 
 constexpr double kPixelMm = 1.0;    // of a slice, unless the voxels are larger
 constexpr double kSpacingMm = 2.0;  // of the volume's lattice
 constexpr double kLeastPartMl = 0.4, kLeastPartShare = 0.03;
-constexpr int kMostParts = 8;                       // of one label
-constexpr double kTriangleMm2 = 22.0;               // one for so much of a ball's surface of that volume
+constexpr int kMostParts = 8;          // of one label
+constexpr double kTriangleMm2 = 22.0;  // one for so much of a ball's surface of that volume
 constexpr int kFewestTriangles = 240, kMostTriangles = 3600;  // of a part
 
 std::string Plain(std::string_view text) {
@@ -163,7 +162,8 @@ std::optional<Crop> CropLabel(const images::LabelVolume& volume, int label, cons
   oneapi::tbb::parallel_for(low[2], high[2] + 1, [&](int k) {
     for (int j = low[1]; j <= high[1]; ++j) {
       const auto row = (static_cast<std::size_t>(k) * volume.size[1] + j) * volume.size[0];
-      const auto to = (static_cast<std::size_t>(k - crop.low[2]) * crop.part.size[1] + (j - crop.low[1])) * width;
+      const auto to =
+          (static_cast<std::size_t>(k - crop.low[2]) * crop.part.size[1] + (j - crop.low[1])) * width;
       for (int i = low[0]; i <= high[0]; ++i) {
         if (volume.labels[row + static_cast<std::size_t>(i)] == label)
           crop.part.labels[to + static_cast<std::size_t>(i - crop.low[0])] = 1;
@@ -205,6 +205,8 @@ PartMesh MeshPart(const images::LabelVolume& part, double volume_mm3, const std:
   auto meshed = meshing::MeshVolume(std::move(*volume), settings);
   if (!meshed.ok()) return made.problem = meshed.error().message, made;
   made.mesh = std::move(meshed->mesh);
+  // a lattice this coarse loses some per cent of what is thin
+  meshing::SetVolume(made.mesh, volume_mm3);
   const Vec3 shift = {low[0] * frame.step_mm[0], low[1] * frame.step_mm[1], low[2] * frame.step_mm[2]};
   for (Vec3& p : made.mesh.positions) {
     p += shift;
@@ -259,8 +261,7 @@ LabelBoxes FindLabelBoxes(const images::LabelVolume& volume) {
   LabelBox* last = nullptr;
   for (int k = 0; k < volume.size[2]; ++k) {
     for (int j = 0; j < volume.size[1]; ++j) {
-      const std::int32_t* row =
-          &volume.labels[(static_cast<std::size_t>(k) * volume.size[1] + j) * width];
+      const std::int32_t* row = &volume.labels[(static_cast<std::size_t>(k) * volume.size[1] + j) * width];
       for (std::size_t begin = 0; begin < width;) {
         const std::int32_t label = row[begin];
         std::size_t end = begin + 1;

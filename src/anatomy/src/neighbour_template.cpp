@@ -45,8 +45,8 @@ Marks FindMarks(const Patient& patient, double midline) {
   marks.fundus = fundus->position, marks.neck = neck->position;
   marks.midline = midline;
   const Vec3 sides = marks.liver.max - marks.liver.min;
-  marks.size = std::clamp(
-      std::cbrt(sides.x / kMeanWidth * (sides.y / kMeanHeight) * (sides.z / kMeanDepth)), 0.8, 1.25);
+  marks.size = std::clamp(std::cbrt(sides.x / kMeanWidth * (sides.y / kMeanHeight) * (sides.z / kMeanDepth)),
+                          0.8, 1.25);
   return marks;
 }
 
@@ -62,8 +62,8 @@ class Obstacles {
       const auto near = surface.Find(p);
       const geometry::Triangle& t = mesh->triangles[near.triangle];
       const Vec3 a = mesh->positions[t[0]];
-      const Vec3 outward = math::Normalized(
-          math::Cross(mesh->positions[t[1]] - a, mesh->positions[t[2]] - a), Vec3{0, -1, 0});
+      const Vec3 outward =
+          math::Normalized(math::Cross(mesh->positions[t[1]] - a, mesh->positions[t[2]] - a), Vec3{0, -1, 0});
       const Vec3 to = p - near.at.point;
       const bool is_inside = math::Dot(to, outward) < 0;
       const double depth = radius + kGap + (is_inside ? near.distance : -near.distance);
@@ -105,7 +105,7 @@ struct TubeShape {
   CentreLine line;
   double spacing = 0.008;  ///< of its rings [m]
   int sides = 14;
-  double haustra = 0;      ///< depth of its bulges [-]
+  double haustra = 0;  ///< depth of its bulges [-]
 };
 
 TriangleMesh MakeTemplateTube(const TubeShape& shape, const Obstacles& obstacles) {
@@ -178,12 +178,14 @@ std::vector<TubeShape> ListTubes(const Marks& m) {
        0.010,
        14},
       {NeighbourRole::kPortalVein,
-       {{m.At(0.002, n.y - 0.032, 0.036), m.At(-0.002, n.y - 0.014, 0.040), n + s * Vec3{0.016, 0.002, -0.010}},
+       {{m.At(0.002, n.y - 0.032, 0.036), m.At(-0.002, n.y - 0.014, 0.040),
+         n + s * Vec3{0.016, 0.002, -0.010}},
         scaled({0.0065, 0.0065, 0.0055})},
        0.004,
        12},
       {NeighbourRole::kSpine,
-       {{m.At(0, bottom - 0.060, -0.008), m.At(0, 0.5 * (top + bottom), -0.012), m.At(0, top + 0.010, -0.016)},
+       {{m.At(0, bottom - 0.060, -0.008), m.At(0, 0.5 * (top + bottom), -0.012),
+         m.At(0, top + 0.010, -0.016)},
         scaled({0.019, 0.018, 0.016})},
        0.011,
        16}};

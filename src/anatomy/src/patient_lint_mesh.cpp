@@ -142,8 +142,9 @@ void Linter::LintNeighbour(std::size_t index) {
   }
   if (!mesh.manifold) {
     Add("L-MESH-MANIFOLD", neighbour.name,
-        Count(mesh.odd_edges, "edge", "edges") + " where not exactly two triangles meet side by side; repair "
-                                                 "the mesh");
+        Count(mesh.odd_edges, "edge", "edges") +
+            " where not exactly two triangles meet side by side; repair "
+            "the mesh");
   }
 }
 

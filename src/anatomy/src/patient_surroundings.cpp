@@ -96,9 +96,8 @@ std::vector<std::pair<std::string, Json>> MakeSurroundingsJson(const Patient& pa
     Json ports = Json::array();
     for (const Port& port : patient.ports) {
       const Vec3 p = ToLps(port.position);
-      ports.push_back({{"for", NameOf(port.use)},
-                       {"position", Json::array({p.x, p.y, p.z})},
-                       {"reason", port.reason}});
+      ports.push_back(
+          {{"for", NameOf(port.use)}, {"position", Json::array({p.x, p.y, p.z})}, {"reason", port.reason}});
     }
     members.emplace_back("ports", std::move(ports));
   }

@@ -16,24 +16,25 @@ namespace {
 
 // The usual patient: fundus from the navel on the insufflated wall, ports as in scenes/cholecystectomy.json [m].
 constexpr Vec3 kUsualFundus{-0.075, 0.095, -0.070};
-constexpr std::array<Vec3, kPortUseCount> kUsualPorts = {
-    Vec3{0, 0, 0}, Vec3{-0.090, 0.045, -0.015}, Vec3{0, 0.080, -0.003}, Vec3{-0.140, 0.060, -0.040}};
+constexpr std::array<Vec3, kPortUseCount> kUsualPorts = {Vec3{0, 0, 0}, Vec3{-0.090, 0.045, -0.015},
+                                                         Vec3{0, 0.080, -0.003}, Vec3{-0.140, 0.060, -0.040}};
 // The insufflated wall as surgery/cavity.h has it: how it falls away from its top, across and along the body [1/m].
 constexpr double kAcross = 2.3, kAlong = 0.27;
-constexpr double kLift = 0.040;          // of the wall by the gas [m]
+constexpr double kLift = 0.040;           // of the wall by the gas [m]
 constexpr double kWallThickness = 0.025;  // at the navel, skin to peritoneum [m]
-constexpr double kNavelRadius = 0.035;   // round it, in which the front is looked for [m]
+constexpr double kNavelRadius = 0.035;    // round it, in which the front is looked for [m]
 // What a navel may lie from the fundus, caudal and in front of it; beyond that the map is not believed [m].
 constexpr double kLeastCaudal = 0.050, kMostCaudal = 0.160, kLeastFront = 0.045, kMostFront = 0.125;
-constexpr double kNearest = 0.110, kFarthest = 0.190;  // of the laparoscope's port from the gallbladder's neck [m]
-constexpr double kLeastReach = 0.075, kMostReach = 0.220;  // of the others
+constexpr double kNearest = 0.110,
+                 kFarthest = 0.190;  // of the laparoscope's port from the gallbladder's neck [m]
+constexpr double kLeastReach = 0.075, kMostReach = 0.220;               // of the others
 constexpr double kRibGap = 0.015, kOrganGap = 0.010, kPortGap = 0.045;  // [m]
 constexpr double kStep = 0.005;
 constexpr int kMostSteps = 20;
 constexpr double kDegree = M_PI / 180.0;
-constexpr double kUsualHeadUp = 12, kUsualRightUp = 8;    // [deg]
-constexpr double kSteepHeadUp = 15, kSteepRightUp = 10;   // where bowel lies on the gallbladder
-constexpr double kBowelNear = 0.008;                      // [m]
+constexpr double kUsualHeadUp = 12, kUsualRightUp = 8;   // [deg]
+constexpr double kSteepHeadUp = 15, kSteepRightUp = 10;  // where bowel lies on the gallbladder
+constexpr double kBowelNear = 0.008;                     // [m]
 
 std::string Mm(double metres) {
   char text[32];
@@ -92,7 +93,8 @@ Navel FindNavel(const Patient& patient, const BodyShape& body) {
                           "gallbladder allows";
     navel.is_usual = false;
   } else {
-    navel.reason += ", " + Mm(kUsualFundus.y) + " caudal of the fundus as usual (no third and fourth lumbar vertebra named)";
+    navel.reason += ", " + Mm(kUsualFundus.y) +
+                    " caudal of the fundus as usual (no third and fourth lumbar vertebra named)";
   }
   const auto skin = body.skin.FindHeight(navel.place.x, navel.place.y, kNavelRadius);
   const auto organs = body.organs.FindHeight(navel.place.x, navel.place.y, kNavelRadius);
@@ -112,7 +114,8 @@ Navel FindNavel(const Patient& patient, const BodyShape& body) {
   } else if (organs && *organs > fundus.z - kLift) {
     place(*organs, "on what lies foremost there");
   } else {
-    navel.reason += ", " + Mm(-kUsualFundus.z) + " in front of it (nothing in the map lies behind the wall there)";
+    navel.reason +=
+        ", " + Mm(-kUsualFundus.z) + " in front of it (nothing in the map lies behind the wall there)";
   }
   return navel;
 }
@@ -129,7 +132,8 @@ class Wall {
         Add(neighbour.mesh);
       }
     }
-    for (const Vec3& p : patient.organs[static_cast<std::size_t>(patient.OrganOf(OrganRole::kLiver))].mesh.positions)
+    for (const Vec3& p :
+         patient.organs[static_cast<std::size_t>(patient.OrganOf(OrganRole::kLiver))].mesh.positions)
       liver_.Add(p);
   }
 
@@ -263,8 +267,9 @@ Table PlaceTable(const Patient& patient) {
             "Head up and right side up more than usual: the " + roles::SpokenName(bowel->role) + " lies " +
                 Mm(nearest) + " from the gallbladder and is to fall away."};
   }
-  return {kUsualHeadUp * kDegree, kUsualRightUp * kDegree,
-          bowel != nullptr ? "As usual: no bowel lies on the gallbladder." : "As usual: the map shows no bowel."};
+  return {
+      kUsualHeadUp * kDegree, kUsualRightUp * kDegree,
+      bowel != nullptr ? "As usual: no bowel lies on the gallbladder." : "As usual: the map shows no bowel."};
 }
 
 }  // namespace
@@ -301,7 +306,7 @@ void PlacePorts(const BodyShape& body, Patient& patient) {
 
 std::vector<std::string> SinkUnderGas(Patient& patient) {
   // ways that must be free: from each port to the gallbladder, the wider the farther from it
-  constexpr double kWide = 0.016, kFade = 0.050, kNarrowFrom = 0.060, kMostSinking = 0.070, kCell = 0.004;
+  constexpr double kWide = 0.016, kFade = 0.050, kNarrowFrom = 0.045, kMostSinking = 0.070, kCell = 0.004;
   std::vector<Vec3> targets;
   for (const LandmarkRole role : {LandmarkRole::kFundus, LandmarkRole::kGallbladderBody,
                                   LandmarkRole::kInfundibulum, LandmarkRole::kHepatocysticTriangle}) {
@@ -326,7 +331,8 @@ std::vector<std::string> SinkUnderGas(Patient& patient) {
         }
       }
       if (need <= 0) continue;
-      double& cell = needs[{static_cast<int>(std::floor(v.x / kCell)), static_cast<int>(std::floor(v.y / kCell))}];
+      double& cell =
+          needs[{static_cast<int>(std::floor(v.x / kCell)), static_cast<int>(std::floor(v.y / kCell))}];
       cell = std::max(cell, std::min(need, kMostSinking));
     }
   }

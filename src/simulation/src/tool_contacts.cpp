@@ -56,8 +56,7 @@ surgery::NeighbourSurface MakeNeighbour(const anatomy::Neighbour& neighbour) {
 
 core::Result<surgery::NeighbourContact> MakeNeighbours(const anatomy::Patient& patient) {
   std::vector<surgery::NeighbourSurface> surfaces;
-  for (const anatomy::Neighbour& neighbour : patient.neighbours)
-    surfaces.push_back(MakeNeighbour(neighbour));
+  for (const anatomy::Neighbour& neighbour : patient.neighbours) surfaces.push_back(MakeNeighbour(neighbour));
   return surgery::NeighbourContact::Make(surfaces);
 }
 
@@ -310,10 +309,10 @@ void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
         surgery::AddOverlapLimits(*now.tools[hand], X_world_proxy_[hand], X_world_device_[hand],
                                   now.joints[hand].jaw, candidates, now.grasped_surfaces[hand], limits);
     if (!neighbours_.IsEmpty()) {
-      overlap_[hand] = std::max(
-          overlap_[hand], surgery::AddOverlapLimits(*now.tools[hand], X_world_proxy_[hand],
-                                                    X_world_device_[hand], now.joints[hand].jaw,
-                                                    neighbours_.Candidates(), -1, limits));
+      overlap_[hand] =
+          std::max(overlap_[hand],
+                   surgery::AddOverlapLimits(*now.tools[hand], X_world_proxy_[hand], X_world_device_[hand],
+                                             now.joints[hand].jaw, neighbours_.Candidates(), -1, limits));
     }
     if (overlap_[hand] == 0.0 || round == kOverlapRounds) break;
   }

@@ -92,8 +92,8 @@ void NeighbourContact::Press(bool is_good) noexcept {
         place += spring.weights[k] * rest_[spring.nodes[k]];
     }
     const bool is_pressed = most > 0;
-    if (is_pressed && (dent.neighbour != reaction.surface ||
-                       math::Distance(dent.centre, place) > 0.5 * kDentRadius)) {
+    if (is_pressed &&
+        (dent.neighbour != reaction.surface || math::Distance(dent.centre, place) > 0.5 * kDentRadius)) {
       // another place: the old dent springs back, which the sweep of the next tick sees
       dent = {reaction.surface, place, {}};
     }

@@ -25,7 +25,8 @@ class BallUnderAPort : public testing::Test {
     contact_ = std::move(*made);
     contact_.Reset();
     tool_ = *instrument::FindTool("grasper");
-    proxy_ = proxy_before_ = instrument::CalcToolPose(kPort, instrument::FindJoints(kPort, {0, 0, 0.05}, 0, 0));
+    proxy_ = proxy_before_ =
+        instrument::CalcToolPose(kPort, instrument::FindJoints(kPort, {0, 0, 0.05}, 0, 0));
     offset_ = {};
   }
 

@@ -92,8 +92,8 @@ struct Snapshot {
   std::vector<ObjectSnapshot> objects;  ///< (Scene::objects)
   TaskSnapshot task;
   std::array<surgery::Dent, surgery::kDentCount> dents;  ///< that tools have pressed into Patient::neighbours
-  instrument::TrocarJoints laparoscope;  ///< after limits
-  Pose X_world_laparoscope;              ///< origin at the lens, looking along -z, +y up in the picture
+  instrument::TrocarJoints laparoscope;                  ///< after limits
+  Pose X_world_laparoscope;          ///< origin at the lens, looking along -z, +y up in the picture
   double residual = 0;               ///< largest node residual, relative: see tissue/solver_settings.h [-]
   int iterations = 0;                ///< of the solver in this tick
   std::size_t contacts = 0;          ///< contact springs of this tick
