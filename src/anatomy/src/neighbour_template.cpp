@@ -9,6 +9,7 @@
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/meshing/mesh_repair.h"
 #include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
@@ -124,7 +125,12 @@ TriangleMesh MakeTemplateTube(const TubeShape& shape, const Obstacles& obstacles
     if (end < 1.0) radii[i] *= std::max(0.35, std::sqrt(1.0 - (1.0 - end) * (1.0 - end)));
   }
   line.radii = std::move(radii);
-  return geometry::MakeTube(line, shape.sides);
+  TriangleMesh mesh = geometry::MakeTube(line, shape.sides);
+  // rings crowd on the inner side of a bend
+  for (Vec3& p : mesh.positions) p = 1000.0 * p;
+  meshing::RepairMesh(mesh);
+  for (Vec3& p : mesh.positions) p = 0.001 * p;
+  return mesh;
 }
 
 std::vector<TubeShape> ListTubes(const Marks& m) {

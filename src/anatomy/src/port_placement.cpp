@@ -265,7 +265,7 @@ Table PlaceTable(const Patient& patient) {
   if (nearest < kBowelNear) {
     return {kSteepHeadUp * kDegree, kSteepRightUp * kDegree,
             "Head up and right side up more than usual: the " + roles::SpokenName(bowel->role) + " lies " +
-                Mm(nearest) + " from the gallbladder and is to fall away."};
+                (nearest < 0.001 ? "on" : Mm(nearest) + " from") + " the gallbladder and is to fall away."};
   }
   return {
       kUsualHeadUp * kDegree, kUsualRightUp * kDegree,
@@ -283,9 +283,9 @@ void PlacePorts(const BodyShape& body, Patient& patient) {
   patient.table = PlaceTable(patient);
   patient.ports.clear();
   if (navel.is_usual) {
-    const Vec3 origin = navel.place;
+    // an assembled patient stands as usual: its origin is the navel
     for (std::size_t use = 0; use < kPortUseCount; ++use) {
-      patient.ports.push_back({static_cast<PortUse>(use), origin + kUsualPorts[use],
+      patient.ports.push_back({static_cast<PortUse>(use), kUsualPorts[use],
                                use == 0 ? "At the navel: " + navel.reason + "."
                                         : "At its usual place: the map shows nothing of this body's wall."});
     }
