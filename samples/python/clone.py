@@ -25,7 +25,8 @@ import trocar
 
 CHUNK = 8    # actions that are foretold
 DONE = 3     # of them are done before the next look
-STRAY = 0.001  # by which tips are moved away while learning, so that the policy finds back [m]
+# by which tips, spins and jaws are moved away while learning, so that the policy finds back [m], [rad]
+STRAY, STRAY_SPIN, STRAY_JAW = 0.001, 0.2, 0.02
 NEAR = 0.002  # differences of places are seen in detail below this [m]
 HANDS = ("left", "right")
 TIP_SPEED, SPIN_RATE, JAW_RATE = 0.12, 3.0, 2.5  # of an action of 1 [m/s], [rad/s]
@@ -54,9 +55,9 @@ class Demonstrations:
         self.longest = max(len(states) for states in self.states) * self.every
 
     def rows(self):
-        """(n, state), and for each the chunk (n, CHUNK, 2, 5): how far tip [m], spin and commanded jaw [rad] will be from what is seen.
+        """(n, state), and for each the chunk (n, CHUNK, 2, 5): how far each tip will be from here [m], its spin and commanded jaw [rad].
 
-        Not rates: those would add up whatever error a foreteller makes. Jaws that hold a thing are seen open and commanded shut.
+        Not rates: those add up whatever error is made. Jaws that hold a thing are seen open and commanded shut.
         """
         at = {field["name"]: np.arange(field["first"], field["first"] + field["count"]) for field in self.fields["state"]}
         tips = [at[f"{hand}.tip"] for hand in HANDS]
@@ -72,11 +73,9 @@ class Demonstrations:
             commanded[0] = np.where(seen[0, holds] > 0, 0, seen[0, jaws])
             for step in range(last):
                 commanded[step + 1] = np.maximum(commanded[step] + self.every * JAW_RATE * done[step, jaw_actions], 0)
-            parts = [places[ahead] - places[:last, None]]
-            for future, now in ((seen[:, spins], seen[:, spins]), (commanded, seen[:, jaws])):
-                parts.append((future[ahead] - now[:last, None])[..., None])
             states.append(seen[:last])
-            chunks.append(np.concatenate(parts, axis=-1))
+            chunks.append(np.concatenate([places[ahead] - places[:last, None], seen[:, spins][ahead][..., None],
+                                          commanded[ahead][..., None]], axis=-1))
         return np.concatenate(states), np.concatenate(chunks)
 
 
@@ -113,8 +112,9 @@ class Sight:
         return torch.as_tensor(np.clip((self.raw(states) - self.mean) / self.spread, -10, 10), dtype=torch.float32)
 
     def stray(self, states, random):
-        """Copies with tips moved aside, and what they hold with them; by how much, (n, 2, 3) [m]."""
+        """Copies with tips moved aside, and what they hold with them, spins and jaws, too; by how much tips were, (n, 2, 3) [m]."""
         states = states.copy()
+        states[:, self.turns] += random.normal(0, 1, (len(states), 4)) * ([STRAY_SPIN, STRAY_JAW] * 2)
         stray = random.normal(0, STRAY, (len(states), 2, 3))
         states[:, self.tips] += stray.reshape(-1, 6)
         for held, place in zip(self.held, self.things):
@@ -132,12 +132,13 @@ class Clone:
         states, chunks = demonstrations.rows()
         self.sight = Sight(demonstrations.fields["state"])
         self.sight.measure(states)
-        self.scale = np.abs(chunks).reshape(-1, 2, 5).max((0, 1)) + 1e-6
+        self.centre = chunks.reshape(-1, 2, 5).mean(0)
+        self.scale = np.abs(chunks - self.centre).reshape(-1, 2, 5).max((0, 1)) + 1e-6
         self.net = learning.network([self.sight.look(states[:1]).shape[1], 256, 256, 256, CHUNK * 10], torch.nn.ReLU)
 
     def foretell(self, state):
         with torch.no_grad():
-            return self.net(self.sight.look(state[None])).numpy().reshape(CHUNK, 2, 5) * self.scale
+            return self.net(self.sight.look(state[None])).numpy().reshape(CHUNK, 2, 5) * self.scale + self.centre
 
     def learn(self, epochs, show=lambda epoch: None):
         """Goes on learning, from all that was demonstrated so far."""
@@ -151,7 +152,7 @@ class Clone:
                 chunks = all_chunks[part].copy()
                 chunks[..., :3] -= stray[:, None]
                 foretold = self.net(self.sight.look(states))
-                wanted = torch.as_tensor((chunks / self.scale).reshape(len(part), -1), dtype=torch.float32)
+                wanted = torch.as_tensor(((chunks - self.centre) / self.scale).reshape(len(part), -1), dtype=torch.float32)
                 loss = torch.nn.functional.smooth_l1_loss(foretold, wanted, beta=0.02)
                 optimiser.zero_grad()
                 loss.backward()
@@ -169,7 +170,7 @@ class Clone:
             nonlocal plan
             now = np.concatenate([state[self.sight.tips].reshape(2, 3), state[self.sight.turns].reshape(2, 2)], axis=1)
             if not plan:
-                plan = list(now + self.foretell(state)[:DONE])
+                plan = list(self.foretell(state)[:DONE] + now * [1, 1, 1, 0, 0])
             shares = (plan.pop(0) - now) / (self.every * np.array([TIP_SPEED] * 3 + [SPIN_RATE, JAW_RATE]))
             action = np.zeros(environment.action_space.shape)
             action[moves] = np.clip(shares, -1, 1)
