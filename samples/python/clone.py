@@ -24,7 +24,7 @@ import torch
 import trocar
 
 CHUNK = 8    # actions that are foretold
-DONE = 3     # of them are done before the next look
+DONE = 7     # of them are done before the next look: before jaws open or close, hands rest for longer than the rest says
 # by which tips, spins and jaws are moved away while learning, so that the policy finds back [m], [rad]
 STRAY, STRAY_SPIN, STRAY_JAW = 0.001, 0.2, 0.02
 NEAR = 0.002  # differences of places are seen in detail below this [m]
