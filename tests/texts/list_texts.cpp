@@ -232,7 +232,7 @@ int main(int count, char** arguments) {
   for (const char* direction : editor::PatientDirections()) Print(direction);
   // what a long work is doing
   for (const char* what : {"Reading", "Seeking", "Drawing", "reading labels", "looking at the labels",
-                           "assembling the patient", "done"})
+                           "meshing the neighbours", "placing ports", "assembling the patient", "done"})
     Print(what);
   // who held the hands, what came of it, and who was operated on, as recordings say it
   for (const char* text :

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/anatomy/build_patient.h"
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <set>
@@ -118,6 +119,38 @@ std::string FormatReport(const BuildReport& report) {
       text += line;
     }
     text += "\n";
+  }
+  return text;
+}
+
+std::string FormatSurroundings(const BuildReport& report) {
+  std::string text;
+  char line[320];
+  if (!report.neighbours.empty()) {
+    text +=
+        "neighbour                     from      parts triangles  min angle   volume  of voxels  left out\n";
+    for (const NeighbourReport& one : report.neighbours) {
+      std::snprintf(line, sizeof line, "%-29s %-9s %5d %9zu %6.1f deg %5.0f mL", one.name.c_str(),
+                    one.is_seen ? "map" : "template", one.is_seen ? one.parts : 1, one.triangles,
+                    one.min_angle_deg, one.volume_ml);
+      text += line;
+      if (one.is_seen) {
+        std::snprintf(line, sizeof line, "   %5.1f mL   %4.1f mL", one.voxels_ml, one.left_out_ml);
+        text += line;
+      }
+      text += "\n";
+    }
+  }
+  for (const Port& port : report.patient.ports) {
+    std::snprintf(line, sizeof line, "Port for %s at %.0f, %.0f, %.0f mm (left, cranial, anterior). ",
+                  roles::SpokenName(NameOf(port.use)).c_str(), 1000 * port.position.x, 1000 * port.position.y,
+                  1000 * port.position.z);
+    text += line + port.reason + "\n";
+  }
+  if (const auto& table = report.patient.table) {
+    std::snprintf(line, sizeof line, "Table %.0f degrees head up, %.0f degrees right side up. ",
+                  table->head_up * 180.0 / M_PI, table->right_up * 180.0 / M_PI);
+    text += line + table->reason + "\n";
   }
   return text;
 }

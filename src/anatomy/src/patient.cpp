@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "patient_frame.h"
+#include "patient_surroundings.h"
 #include "trocar/core/json.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
@@ -142,9 +143,19 @@ std::string FormatPatient(const Patient& patient) {
     json["source"] = parameter.source;
     parameters.push_back(std::move(json));
   }
-  append_list("landmarks", landmarks, parameters.empty());
-  // a patient without parameters stays readable for programs that do not know them
-  if (!parameters.empty()) append_list("parameters", parameters, true);
+  const auto surroundings = MakeSurroundingsJson(patient);
+  append_list("landmarks", landmarks, parameters.empty() && surroundings.empty());
+  // a patient without these stays readable for programs that do not know them
+  if (!parameters.empty()) append_list("parameters", parameters, surroundings.empty());
+  for (std::size_t i = 0; i < surroundings.size(); ++i) {
+    const auto& [key, value] = surroundings[i];
+    const bool is_last = i + 1 == surroundings.size();
+    if (value.is_array()) {
+      append_list(key.c_str(), {value.begin(), value.end()}, is_last);
+    } else {
+      text += "\"" + key + "\": " + value.dump() + (is_last ? "\n" : ",\n");
+    }
+  }
   return text + "}\n";
 }
 
@@ -217,13 +228,27 @@ const Parameter* Patient::FindParameter(std::string_view parameter_name) const {
   return nullptr;
 }
 
+const Neighbour* Patient::NeighbourOf(NeighbourRole role) const {
+  for (const Neighbour& neighbour : neighbours) {
+    if (neighbour.role == role) return &neighbour;
+  }
+  return nullptr;
+}
+
+const Port* Patient::PortOf(PortUse use) const {
+  for (const Port& port : ports) {
+    if (port.use == use) return &port;
+  }
+  return nullptr;
+}
+
 core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
   const fs::path path = folder / "patient.json";
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly({"format", "version", "name", "provenance", "frame", "unit", "organs", "attachments",
-                  "tubes", "landmarks", "parameters"});
+                  "tubes", "landmarks", "parameters", "neighbours", "ports", "table"});
   if (root.Text("format") != kFormat) root.Complain(std::string("format must be \"") + kFormat + "\"");
   root.Integer("version", {kVersion, kVersion});
   if (root.Text("frame") != "LPS" || root.Text("unit") != "mm")
@@ -305,13 +330,16 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
       patient.parameters.push_back(std::move(parameter));
     }
   }
+  ReadSurroundings(root, patient);
   if (const auto status = document->Check(); !status.ok()) return status.error();
   UncheckedPatient unchecked{std::move(patient), {}};
-  for (Organ& organ : unchecked.patient.organs) {
-    auto mesh = geometry::ReadPly(folder / (organ.name + ".ply"));
+  const auto read_mesh = [&](auto& thing) {
+    auto mesh = geometry::ReadPly(folder / (thing.name + ".ply"));
     unchecked.mesh_errors.push_back(mesh.ok() ? Error{} : mesh.error());
-    if (mesh.ok()) organ.mesh = Converted(std::move(*mesh), FromLps);
-  }
+    if (mesh.ok()) thing.mesh = Converted(std::move(*mesh), FromLps);
+  };
+  for (Organ& organ : unchecked.patient.organs) read_mesh(organ);
+  for (Neighbour& neighbour : unchecked.patient.neighbours) read_mesh(neighbour);
   return unchecked;
 }
 
@@ -347,10 +375,15 @@ core::Status WritePatient(const fs::path& folder, const Patient& patient) {
   }
   fs::create_directories(partial, failure);
   if (failure) return fail(failure.message());
+  const auto write_mesh = [&](const auto& thing) {
+    return geometry::WritePly(partial / (thing.name + ".ply"), Converted(thing.mesh, ToLps),
+                              "LPS millimetres, " + thing.name);
+  };
   for (const Organ& organ : patient.organs) {
-    const auto status = geometry::WritePly(partial / (organ.name + ".ply"), Converted(organ.mesh, ToLps),
-                                           "LPS millimetres, " + organ.name);
-    if (!status.ok()) return fail(status.error().message);
+    if (const auto status = write_mesh(organ); !status.ok()) return fail(status.error().message);
+  }
+  for (const Neighbour& neighbour : patient.neighbours) {
+    if (const auto status = write_mesh(neighbour); !status.ok()) return fail(status.error().message);
   }
   if (const auto status = core::WriteFile(partial / "patient.json", FormatPatient(patient)); !status.ok()) {
     return fail(status.error().message);
@@ -443,6 +476,7 @@ core::Status CheckPatient(const Patient& patient) {
       }
     }
   }
+  if (core::Status good = CheckSurroundings(patient, names); !good) return good;
   for (const Attachment& a : patient.attachments) {
     const bool in_range = a.organ_a < patient.organs.size() && a.organ_b < patient.organs.size() &&
                           a.vertex_a < patient.organs[a.organ_a].mesh.positions.size() &&

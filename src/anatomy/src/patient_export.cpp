@@ -41,6 +41,8 @@ std::vector<NamedMesh> CollectMeshes(const Patient& patient, int tube_sides) {
   for (const Organ& organ : patient.organs) {
     meshes.push_back({organ.name, organ.mesh, organ.name, ColourOf(organ.role)});
   }
+  for (const Neighbour& neighbour : patient.neighbours)
+    meshes.push_back({neighbour.name, neighbour.mesh, neighbour.name, kOther});
   for (const Tube& tube : patient.tubes) {
     const bool is_duct = tube.kind == TubeKind::kDuct;
     meshes.push_back({tube.name, geometry::MakeTube(tube.line, tube_sides), KindName(tube.kind),

@@ -8,9 +8,13 @@
 #include <map>
 #include <vector>
 
+#include "body_shape.h"
 #include "duct_template.h"
 #include "label_names.h"
+#include "label_neighbours.h"
 #include "label_plausibility.h"
+#include "neighbour_template.h"
+#include "port_placement.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/core/printable.h"
 #include "trocar/geometry/mesh_measures.h"
@@ -183,6 +187,37 @@ core::Result<std::vector<meshing::StructureMesh>> MeshOrgans(
   return meshes;
 }
 
+/// Neighbours, ports and table of an assembled patient.
+/// \param shift  of the map's frame [m]: world = 0.001 map + shift
+void AddSurroundings(const images::LabelVolume& volume, const OrganLabels& organs, const VoxelFrame& frame,
+                     const Vec3& shift, const images::Progress& progress, BuildReport& report) {
+  progress("meshing the neighbours", 0.75);
+  Patient& patient = report.patient;
+  const LabelBoxes boxes = FindLabelBoxes(volume);
+  const NeighbourLabels labels = FindNeighbourLabels(volume, organs, boxes);
+  for (NeighbourMesh& one : MeshNeighbours(volume, labels, organs, boxes, frame, report.notes)) {
+    for (Vec3& p : one.mesh.positions) p = 0.001 * p + shift;
+    report.neighbours.push_back(one.report);
+    patient.neighbours.push_back({one.report.name, std::move(one.mesh), true, one.role});
+  }
+  progress("placing ports", 0.9);
+  const BodyShape body = MeasureBody(volume, labels, frame, shift);
+  std::vector<Neighbour> templates = MakeTemplateNeighbours(patient, FindMidline(patient, body));
+  for (Neighbour& one : templates) {
+    report.neighbours.push_back({one.name, false});
+    patient.neighbours.push_back(std::move(one));
+  }
+  PlacePorts(body, patient);
+  for (std::string& note : SinkUnderGas(patient)) report.notes.push_back(std::move(note));
+  for (std::size_t i = 0; i < report.neighbours.size(); ++i) {
+    NeighbourReport& one = report.neighbours[i];
+    const auto inspected = geometry::InspectMesh(patient.neighbours[i].mesh);
+    one.triangles = inspected.triangles;
+    one.volume_ml = 1e6 * inspected.volume;
+    one.min_angle_deg = inspected.min_angle * 180.0 / M_PI;
+  }
+}
+
 }  // namespace
 
 core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options) {
@@ -275,6 +310,10 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   auto patient = AssemblePatient(world, *meshes);
   if (!patient.ok()) return patient.error();
   report.patient = std::move(*patient);
+  const auto liver = static_cast<std::size_t>(report.patient.OrganOf(OrganRole::kLiver));
+  const Vec3 shift =
+      report.patient.organs[liver].mesh.positions.front() - 0.001 * (*meshes)[0].mesh.positions.front();
+  AddSurroundings(*volume, *labels, *frame, shift, report_progress, report);
   if (!options.output.empty()) {
     if (const auto status = WritePatient(options.output, report.patient); !status.ok()) return status.error();
   }

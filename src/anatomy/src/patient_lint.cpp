@@ -45,6 +45,7 @@ geometry::TriangleMesh Outward(geometry::TriangleMesh mesh) {
 LintReport Linter::Run() {
   LintNames();
   for (std::size_t i = 0; i < patient_.organs.size(); ++i) LintMesh(i);
+  for (std::size_t i = 0; i < patient_.neighbours.size(); ++i) LintNeighbour(i);
   LintUnit();
   LintVolumes();
   for (std::size_t i = 0; i < patient_.organs.size(); ++i) LintRegions(i);
@@ -83,6 +84,11 @@ void Linter::LintNames() {
   look(patient_.organs, "organs");
   look(patient_.tubes, "tubes");
   look(patient_.landmarks, "landmarks");
+  look(patient_.neighbours, "neighbours");
+  for (const Neighbour& neighbour : patient_.neighbours) {
+    if (patient_.FindPart(neighbour.name) >= 0)
+      Add("L-NAME-TWICE", neighbour.name, "an organ or tube has the name of a neighbour; rename one");
+  }
   const auto look_at_roles = [this](const auto& things, const std::string& where, const char* what) {
     if (const auto* second = FindSecondOfRole(things))
       Add("L-ROLE-TWICE", where + second->name,
@@ -91,6 +97,7 @@ void Linter::LintNames() {
   };
   look_at_roles(patient_.organs, "", "organ");
   look_at_roles(patient_.landmarks, "", "landmark");
+  look_at_roles(patient_.neighbours, "", "neighbour");
   for (const Organ& organ : patient_.organs) look_at_roles(organ.regions, organ.name + "/", "region");
   for (const Tube& tube : patient_.tubes) {
     if (patient_.FindOrgan(tube.name) >= 0)

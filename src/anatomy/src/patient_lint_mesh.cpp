@@ -115,6 +115,39 @@ void Linter::LintSurface(const Organ& organ, MeshSummary& summary) {
   }
 }
 
+/// Neighbours are scenery that is touched: their surfaces must be whole, and need not be fit for springs.
+void Linter::LintNeighbour(std::size_t index) {
+  const Neighbour& neighbour = patient_.neighbours[index];
+  const std::size_t error = patient_.organs.size() + index;
+  if (error < mesh_errors_.size() && mesh_errors_[error].code != ErrorCode::kNone) {
+    Add("L-MESH-UNREADABLE", neighbour.name, mesh_errors_[error].Text());
+    return;
+  }
+  if (const auto status = geometry::CheckMesh(neighbour.mesh); !status.ok()) {
+    Add("L-MESH-NUMBER", neighbour.name, status.error().message);
+    return;
+  }
+  if (neighbour.mesh.triangles.empty()) {
+    Add("L-MESH-EMPTY", neighbour.name, "the mesh has no triangle; build it again");
+    return;
+  }
+  const auto mesh = geometry::InspectMesh(neighbour.mesh);
+  if (!mesh.closed) {
+    Add("L-MESH-OPEN", neighbour.name,
+        Count(mesh.boundary_edges, "edge belongs", "edges belong") +
+            " to one triangle only: the surface has a hole; close it");
+  } else if (!mesh.outward) {
+    Add("L-MESH-INSIDE-OUT", neighbour.name,
+        "the triangles face inwards; turn each one round (flip the normals when exporting)");
+  }
+  if (!mesh.manifold) {
+    Add("L-MESH-MANIFOLD", neighbour.name,
+        Count(mesh.odd_edges, "edge", "edges") +
+            " where not exactly two triangles meet side by side; repair "
+            "the mesh");
+  }
+}
+
 void Linter::LintUnit() {
   const Organ* liver = FindUsable(OrganRole::kLiver);
   if (liver == nullptr) return;

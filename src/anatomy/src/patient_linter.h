@@ -15,7 +15,7 @@ namespace trocar::anatomy {
 /// Each stage adds its findings; later stages use what earlier ones found usable.
 class Linter {
  public:
-  /// \param mesh_errors  (organs), or empty where all meshes were read
+  /// \param mesh_errors  (organs, then neighbours), or empty where all meshes were read
   Linter(const Patient& patient, const std::vector<core::Error>& mesh_errors)
       : patient_(patient), mesh_errors_(mesh_errors) {}
 
@@ -34,6 +34,7 @@ class Linter {
   // patient_lint_mesh.cpp
   void LintMesh(std::size_t index);
   void LintSurface(const Organ& organ, MeshSummary& summary);
+  void LintNeighbour(std::size_t index);
   void LintUnit();
   void LintVolumes();
   // patient_lint_regions.cpp

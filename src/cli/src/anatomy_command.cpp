@@ -77,6 +77,7 @@ core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   std::fputs(FormatTable(rows).c_str(), stdout);
   std::printf(
       "Distance: of mesh and label surface from each other, the largest both ways, and the mesh's mean.\n");
+  std::printf("\n%s", anatomy::FormatSurroundings(*report).c_str());
   if (!report->notes.empty()) std::printf("\n");
   for (const std::string& note : report->notes) std::printf("%s\n", note.c_str());
   std::printf("\n%s.\nWrote %s\n", report->patient.provenance.c_str(), options.output.c_str());

@@ -131,6 +131,34 @@ bool LieAlike(const LabelVolume& a, const LabelVolume& b) {
   return is_alike;
 }
 
+Error DifferingMasks(const fs::path& folder) {
+  return {ErrorCode::kLabelsMismatch, core::Printable(folder.string()) +
+                                          ": its masks differ in size or place; write them all for the same "
+                                          "image"};
+}
+
+/// Masks of what lies round liver and gallbladder that are there, as labels from 3 on where no other one is.
+core::Status AddNeighbourMasks(const fs::path& folder, LabelVolume& all) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i < roles::kNeighbourRoleCount; ++i)
+    names.emplace_back(NameOf(static_cast<roles::NeighbourRole>(i)));
+  // between them lies the navel
+  names.insert(names.end(), {"vertebrae_L3", "vertebrae_L4"});
+  int label = 3;
+  for (const std::string& name : names) {
+    const fs::path file = FindMask(folder, name);
+    if (file.empty()) continue;
+    const auto mask = ReadLabelFile(file, Links::kRefuse);
+    if (!mask) return mask.error();
+    if (!LieAlike(all, *mask)) return DifferingMasks(folder);
+    for (std::size_t i = 0; i < all.labels.size(); ++i) {
+      if (mask->labels[i] != 0 && all.labels[i] == 0) all.labels[i] = label;
+    }
+    all.names.emplace_back(name, label++);
+  }
+  return {};
+}
+
 /// One mask an organ, named after it: what TotalSegmentator writes unless it is told otherwise (--ml).
 core::Result<LabelVolume> ReadMasks(const fs::path& folder) {
   LabelVolume all;
@@ -149,15 +177,14 @@ core::Result<LabelVolume> ReadMasks(const fs::path& folder) {
       all.size = mask->size, all.direction = mask->direction, all.origin = mask->origin;
       all.labels.resize(mask->labels.size());
     } else if (!LieAlike(all, *mask)) {
-      return Error{ErrorCode::kLabelsMismatch, core::Printable(folder.string()) +
-                                                   ": its masks differ in size or place; write them all for "
-                                                   "the same image"};
+      return DifferingMasks(folder);
     }
     for (std::size_t i = 0; i < all.labels.size(); ++i) {
       if (mask->labels[i] != 0) all.labels[i] = label;
     }
     all.names.emplace_back(organ, label);
   }
+  if (const auto status = AddNeighbourMasks(folder, all); !status.ok()) return status.error();
   return all;
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 using geometry::TriangleMesh;
 using math::Vec3;
+using roles::NeighbourRole;
 
 // Wall: an ellipsoid through the usual port sites (domain facts, section 1.3), so that tools come out of it
 // there.
@@ -88,17 +89,24 @@ TriangleMesh MakeStomach() {
 
 }  // namespace
 
-std::vector<BackgroundPart> MakeAbdomen(std::span<const Vec3> inside, std::span<const Obstacle> above) {
+std::vector<BackgroundPart> MakeAbdomen(std::span<const Vec3> inside, std::span<const Obstacle> above,
+                                        std::span<const NeighbourRole> without) {
+  const auto is_wanted = [&](NeighbourRole role) {
+    return std::find(without.begin(), without.end(), role) == without.end();
+  };
   std::vector<BackgroundPart> parts;
-  parts.push_back({"colon", Material::kBowel,
-                   MakeBowel({{-0.150, -0.030, -0.130},
-                              {-0.115, 0.010, -0.125},
-                              {-0.055, -0.005, -0.118},
-                              {0.000, -0.015, -0.112},
-                              {0.060, -0.005, -0.115},
-                              {0.120, 0.030, -0.130}},
-                             0.021, 0.026, 0.22)});
-  parts.push_back({"stomach", Material::kBowel, MakeStomach()});
+  if (is_wanted(NeighbourRole::kColon)) {
+    parts.push_back({NameOf(NeighbourRole::kColon), Material::kBowel,
+                     MakeBowel({{-0.150, -0.030, -0.130},
+                                {-0.115, 0.010, -0.125},
+                                {-0.055, -0.005, -0.118},
+                                {0.000, -0.015, -0.112},
+                                {0.060, -0.005, -0.115},
+                                {0.120, 0.030, -0.130}},
+                               0.021, 0.026, 0.22)});
+  }
+  if (is_wanted(NeighbourRole::kStomach))
+    parts.push_back({NameOf(NeighbourRole::kStomach), Material::kBowel, MakeStomach()});
   parts.push_back({"omentum", Material::kFat, geometry::MakeOmentum(above)});
   parts.push_back({"wall", Material::kPeritoneum, MakeWall(inside)});
   return parts;

@@ -40,8 +40,15 @@ Vec3 ReadTarget(const core::JsonView& view, std::string_view key, const anatomy:
          (target.Has("offset_mm") ? ReadPointMm(target, "offset_mm", range::kOffsetMm) : Vec3{});
 }
 
+/// The patient's own port, else the scene's.
+Vec3 ReadPort(const core::JsonView& view, const anatomy::Patient& patient, anatomy::PortUse use) {
+  const Vec3 of_scene = ReadPointMm(view, "port_mm");
+  const anatomy::Port* port = patient.PortOf(use);
+  return port != nullptr ? port->position : of_scene;
+}
+
 void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy::Patient& patient,
-                    InstrumentSetup& setup) {
+                    anatomy::PortUse use, InstrumentSetup& setup) {
   const core::JsonView view = root.Object("instruments").Object(hand);
   view.AllowOnly({"tool", "tray", "port_mm", "tip", "spin_deg", "jaw_deg"});
   const auto add = [&](const std::string& name) {
@@ -59,7 +66,7 @@ void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy:
     for (const core::JsonView& name : view.Array("tray")) add(name.AsText());
   }
   if (!setup.tray.empty()) setup.tool = setup.tray.front();
-  setup.p_world_port = ReadPointMm(view, "port_mm");
+  setup.p_world_port = ReadPort(view, patient, use);
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "tip", patient),
                                       view.NumberOr("spin_deg", 0.0, range::kTurnDeg) * kDegree,
                                       view.NumberOr("jaw_deg", 0.0, range::kJawDeg) * kDegree);
@@ -89,7 +96,7 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
     hand.AllowOnly({"port_mm", "at", "lift_mm"});
     AssistantSetup assistant;
     assistant.tool = *instrument::FindTool("grasper");
-    assistant.p_world_port = ReadPointMm(hand, "port_mm");
+    assistant.p_world_port = ReadPort(hand, patient, anatomy::PortUse::kAssistant);
     assistant.lift = ReadPointMm(hand, "lift_mm", range::kOffsetMm);
     const std::string name = hand.Text("at");
     if (const anatomy::Landmark* landmark = patient.FindLandmark(name)) {
@@ -129,7 +136,7 @@ void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient
     view.Complain("holder must be trainee or automatic, not \"" + holder + "\"",
                   core::ErrorCode::kUnknownName);
   settings.holds_camera = holder == "automatic";
-  setup.p_world_port = ReadPointMm(view, "port_mm");
+  setup.p_world_port = ReadPort(view, patient, anatomy::PortUse::kLaparoscope);
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "target", patient),
                                       view.NumberOr("post_deg", 0.0, range::kTurnDeg) * kDegree, 0.0);
   setup.home.depth = 0.001 * view.Number("depth_mm", range::kLaparoscopeDepthMm);
@@ -238,8 +245,12 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   }
   ReadSettings(view, scene.settings);
   view.Object("instruments").AllowOnly({"left", "right"});
-  ReadInstrument(view, "left", scene.patient, scene.instruments[kLeft]);
-  ReadInstrument(view, "right", scene.patient, scene.instruments[kRight]);
+  if (scene.patient.table) {
+    scene.settings.head_up = scene.patient.table->head_up;
+    scene.settings.right_up = scene.patient.table->right_up;
+  }
+  ReadInstrument(view, "left", scene.patient, anatomy::PortUse::kLeftHand, scene.instruments[kLeft]);
+  ReadInstrument(view, "right", scene.patient, anatomy::PortUse::kRightHand, scene.instruments[kRight]);
   ReadLaparoscope(view, scene.patient, scene.laparoscope, scene.settings);
   ReadOperation(view, scene.patient, scene);
   CheckPorts(view, scene);

@@ -82,6 +82,13 @@ std::uint64_t CalcFingerprint(const SimulationModel& model) {
     for (const double value : {setup.p_world_port.x, setup.p_world_port.y, setup.p_world_port.z})
       hash.Add(value);
   }
+  for (const anatomy::Neighbour& neighbour : scene.patient.neighbours) {
+    hash.Add(std::uint64_t{neighbour.mesh.triangles.size()});
+    hash.Add(static_cast<std::uint64_t>(neighbour.role));
+    for (const Vec3& p : neighbour.mesh.positions) {
+      for (const double value : {p.x, p.y, p.z}) hash.Add(value);
+    }
+  }
   // states that were saved with the delivered tables stay what they are
   if (scene.operation && scene.operation->parameters != scene::OperationParameters{}) {
     using Words = std::array<std::uint64_t, sizeof(scene::OperationParameters) / sizeof(std::uint64_t)>;

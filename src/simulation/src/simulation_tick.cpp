@@ -364,6 +364,7 @@ void Simulation::Content::Publish() noexcept {
   snapshot.iterations = tick.report.iterations;
   snapshot.gravity = tick.gravity;
   w.rigid.Publish(snapshot.objects);
+  snapshot.dents = w.touch.Neighbours().Dents();
   snapshot.events = judgement.events;
   snapshot.event_count = judgement.event_count;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "trocar/instrument/state_fields.h"
@@ -30,6 +31,35 @@ double CalcMotion(std::span<const Vec3> before, std::span<const Vec3> now) noexc
   return std::sqrt(largest2);
 }
 
+/// How a neighbour gives way: bowel and stomach are pushed aside, what lies behind the peritoneum gives way little, bone does not.
+/// The numbers are tunables without a source.
+surgery::NeighbourSurface MakeNeighbour(const anatomy::Neighbour& neighbour) {
+  using roles::NeighbourRole;
+  surgery::NeighbourSurface made{neighbour.mesh, 150.0, 0.010};
+  switch (neighbour.role) {
+    case NeighbourRole::kPancreas:
+    case NeighbourRole::kRightKidney:
+    case NeighbourRole::kVenaCava:
+    case NeighbourRole::kAorta:
+    case NeighbourRole::kPortalVein:
+      made.stiffness = 400.0, made.deepest = 0.004;
+      break;
+    case NeighbourRole::kRibs:
+    case NeighbourRole::kSpine:
+      made.stiffness = std::numeric_limits<double>::infinity(), made.deepest = 0.0;
+      break;
+    default:
+      break;
+  }
+  return made;
+}
+
+core::Result<surgery::NeighbourContact> MakeNeighbours(const anatomy::Patient& patient) {
+  std::vector<surgery::NeighbourSurface> surfaces;
+  for (const anatomy::Neighbour& neighbour : patient.neighbours) surfaces.push_back(MakeNeighbour(neighbour));
+  return surgery::NeighbourContact::Make(surfaces);
+}
+
 }  // namespace
 
 core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::TissueModel& model,
@@ -54,6 +84,10 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
   auto set = surgery::MakeTubeSet(model.rest, std::move(tubes));
   if (!set.ok()) return set.error();
   made.tubes_ = std::move(*set);
+
+  auto neighbours = MakeNeighbours(scene.patient);
+  if (!neighbours.ok()) return neighbours.error();
+  made.neighbours_ = std::move(*neighbours);
 
   made.MakePairs(scene, model, at_start);
   made.MakeCavity(scene, model, at_start);
@@ -162,6 +196,7 @@ void ToolContacts::Reset(const Scene& scene, const std::array<instrument::Trocar
   }
   contacts_.Clear();
   last_.Clear();
+  if (!neighbours_.IsEmpty()) neighbours_.Reset();
   has_followed_ = false;
   tools_ = {};
   std::copy(tissue.position.begin(), tissue.position.end(), positions_before_.begin());
@@ -197,6 +232,7 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
     limits_[hand].limits.clear();
   }
   tools_ = surgery::FindToolsContact(motions, limits_);
+  if (!neighbours_.IsEmpty()) neighbours_.Find(motions);
 
   for (surgery::OrganPair& pair : pairs_) std::fill(pair.is_bound.begin(), pair.is_bound.end(), 0);
   for (const Tie& tie : ties_) {
@@ -217,10 +253,13 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
 std::array<ToolTouch, kHandCount> ToolContacts::CalcTouch(const tissue::TissueState& tissue,
                                                           bool is_good) noexcept {
   std::array<ToolTouch, kHandCount> touch;
+  if (!neighbours_.IsEmpty()) neighbours_.Press(is_good);
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto reaction =
         surgery::CalcContactReaction(static_cast<std::uint8_t>(hand), tissue.position, contacts_);
-    if (is_good) touch[hand] = {reaction.force + tools_.force[hand], reaction.surface};
+    if (!is_good) continue;
+    touch[hand] = {reaction.force + tools_.force[hand], reaction.surface};
+    if (!neighbours_.IsEmpty()) touch[hand].force += neighbours_.ForceOn(hand);
   }
   for (surgery::OrganPair& pair : pairs_) {
     if (is_good) {
@@ -260,6 +299,7 @@ void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
   const surgery::ToolDrive drive{setup.p_world_port, now.joints[hand]};
   surgery::ProxyLimits& limits = limits_[hand];
   surgery::AddContactLimits(static_cast<std::uint8_t>(hand), contacts_, candidates.positions, limits);
+  if (!neighbours_.IsEmpty()) neighbours_.AddLimits(hand, limits);
   instrument::TrocarJoints proxy;
   X_world_proxy_before_[hand] = X_world_proxy_[hand];
   for (int round = 0;; ++round) {
@@ -268,6 +308,12 @@ void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
     overlap_[hand] =
         surgery::AddOverlapLimits(*now.tools[hand], X_world_proxy_[hand], X_world_device_[hand],
                                   now.joints[hand].jaw, candidates, now.grasped_surfaces[hand], limits);
+    if (!neighbours_.IsEmpty()) {
+      overlap_[hand] =
+          std::max(overlap_[hand],
+                   surgery::AddOverlapLimits(*now.tools[hand], X_world_proxy_[hand], X_world_device_[hand],
+                                             now.joints[hand].jaw, neighbours_.Candidates(), -1, limits));
+    }
     if (overlap_[hand] == 0.0 || round == kOverlapRounds) break;
   }
   offset_[hand] = {proxy.pan - drive.device.pan, proxy.tilt - drive.device.tilt, 0.0,
@@ -291,6 +337,7 @@ void ToolContacts::VisitState(core::StateArchive& archive) {
   archive.FixedField("cavity_contacts", cavity_contacts_);
   archive.FixedField("positions_before", positions_before_);
   archive.FixedField("surface_motion", surface_motion_);
+  if (!neighbours_.IsEmpty()) archive.Field("neighbours", neighbours_);
   for (surgery::OrganSurface& organ : organs_) archive.Field("travel", organ.travel);
   archive.Field("overlap", overlap_);
   archive.Field("are_tools_touching", tools_.is_touching);

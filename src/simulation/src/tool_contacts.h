@@ -10,6 +10,7 @@
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/snapshot.h"
 #include "trocar/surgery/cavity.h"
+#include "trocar/surgery/neighbour_contact.h"
 #include "trocar/surgery/organ_contact.h"
 #include "trocar/surgery/tools_contact.h"
 
@@ -68,6 +69,7 @@ class ToolContacts {
 
   std::span<const surgery::OrganSurface> Organs() const { return organs_; }
   const surgery::TubeSet& Tubes() const { return tubes_; }
+  const surgery::NeighbourContact& Neighbours() const { return neighbours_; }
   const surgery::ContactSet& Contacts() const { return contacts_; }
   const Pose& Proxy(int hand) const { return X_world_proxy_[hand]; }
   const Pose& Device(int hand) const { return X_world_device_[hand]; }
@@ -109,6 +111,7 @@ class ToolContacts {
   bool has_followed_ = false;  // a cut, in this tick
   std::vector<surgery::OrganPair> pairs_;
   std::vector<Vec3> positions_before_;  // (n) before the last solve
+  surgery::NeighbourContact neighbours_;
 
   // scratch
   std::vector<surgery::OrganSurface> organs_;

@@ -16,6 +16,7 @@
 #include "hand_tools.h"
 #include "liquids.h"
 #include "loose_ends.h"
+#include "neighbour_view.h"
 #include "object_view.h"
 #include "organ_shape.h"
 #include "stone_view.h"
@@ -89,6 +90,7 @@ struct LaparoscopeView::Content {
   std::optional<StrandField> strands;
   std::optional<Pool> pool;
   std::vector<render::SurfaceDraw> background;
+  std::vector<NeighbourView> neighbours;  // drawn as part of it
   /// Scenery on which liquid lies.
   struct Ground {
     render::SurfaceId surface;
@@ -134,7 +136,9 @@ struct LaparoscopeView::Content {
   }
 
   /// The abdomen round the organs, and how open every surface lies in it.
-  void AddSurroundings(std::span<const SurfaceInfo> surfaces, const Snapshot& start) {
+  /// \param own  what the patient brings of it; the rest is the usual one
+  void AddSurroundings(std::span<const SurfaceInfo> surfaces, const Snapshot& start,
+                       const std::vector<anatomy::Neighbour>& own) {
     std::vector<Vec3> inside;
     std::vector<TriangleMesh> meshes;
     const auto surround = [&](const auto& shape) {
@@ -145,7 +149,16 @@ struct LaparoscopeView::Content {
     };
     for (const OrganShape& organ : organs) surround(organ);
     for (const TubeShape& tube : tubes) surround(tube);
-    auto parts = render::MakeAbdomen(inside, simulation::FindOmentumBalls(surfaces, start.positions));
+    std::vector<roles::NeighbourRole> without;
+    for (const anatomy::Neighbour& neighbour : own) {
+      neighbours.emplace_back(neighbour, static_cast<std::int32_t>(neighbours.size()));
+      meshes.push_back(neighbour.mesh);
+      without.push_back(neighbour.role);
+      if (!IsInCavity(neighbour.role)) continue;
+      inside.insert(inside.end(), neighbour.mesh.positions.begin(), neighbour.mesh.positions.end());
+    }
+    auto parts =
+        render::MakeAbdomen(inside, simulation::FindOmentumBalls(surfaces, start.positions), without);
     FatBody ends = CoverEnds(surfaces, start);
     if (!ends.Mesh().triangles.empty())
       parts.insert(parts.begin(), {kCoverName, Material::kFat, ends.Mesh()});
@@ -164,6 +177,7 @@ struct LaparoscopeView::Content {
     for (TubeShape& tube : tubes) add(tube);
     memory_at_start = memory;
     std::vector<GroundPiece> ground;
+    AddNeighbours(occluders, ground);
     for (const auto& part : parts) {
       std::vector<Vec3> normals(part.mesh.positions.size());
       geometry::CalcVertexNormals(part.mesh.positions, part.mesh.triangles, normals);
@@ -180,6 +194,20 @@ struct LaparoscopeView::Content {
       ground.insert(ground.end(), pieces.begin(), pieces.end());
     }
     pool.emplace(std::move(ground));
+  }
+
+  /// \param[in,out] ground  on which liquid runs: bowel, and what fat covers
+  void AddNeighbours(std::span<const TriangleMesh* const> occluders, std::vector<GroundPiece>& ground) {
+    for (NeighbourView& neighbour : neighbours) {
+      const TriangleMesh& mesh = neighbour.Mesh();
+      neighbour.Add(renderer, render::CalcAmbientOcclusion(occluders, mesh.positions, neighbour.Normals(),
+                                                           kOcclusionReach));
+      background.push_back({neighbour.Surface(), {}, MakeLabel(FindLabelClass(neighbour.GetMaterial()))});
+      if (neighbour.GetMaterial() == Material::kPeritoneum) continue;
+      ground_shapes.push_back({neighbour.Surface(), neighbour.FinePositions(), {}});
+      const std::vector<GroundPiece> pieces = MakeGround(mesh);
+      ground.insert(ground.end(), pieces.begin(), pieces.end());
+    }
   }
 
   /// Fat round the ends of ducts and vessels that the patient's model does not follow.
@@ -325,7 +353,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
   content->objects.Add(content->renderer, scene, start);
   content->bands.Add(content->renderer, scene, strands, start.positions);
   if (scene.objects.empty() || scene.HasPatient()) {
-    content->AddSurroundings(surfaces, start);
+    content->AddSurroundings(surfaces, start, scene.patient.neighbours);
   } else {
     content->AddModel();
     content->light_scale = looks->trainer_light;
@@ -367,6 +395,7 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
   c.stones.AddTo(c.renderer, c.frame, snapshot.operation);
   if (c.pool) c.pool->AddTo(c.frame, snapshot);
   c.UpdateShapes(snapshot);
+  for (NeighbourView& neighbour : c.neighbours) neighbour.Update(c.renderer, snapshot);
   c.strands->AddTo(c.renderer, c.frame, snapshot);
   AddStreams(c.frame, snapshot);
   c.frame.smoke = snapshot.operation.smoke;

@@ -33,9 +33,23 @@ struct BuildOptions {
   std::stop_token stop;  ///< gives up before anything is written: kCancelled
 };
 
+/// One neighbour in the table of results.
+struct NeighbourReport {
+  std::string name;
+  bool is_seen = true;  ///< false: a template
+  std::size_t triangles = 0;
+  int parts = 0;           ///< that do not hang together
+  double volume_ml = 0;    ///< of the mesh
+  double voxels_ml = 0;    ///< of the voxels that it is made of; 0 for a template
+  double left_out_ml = 0;  ///< of voxels in parts too small for a mesh
+  double min_angle_deg = 0;
+  std::size_t self_intersections = 0;
+};
+
 struct BuildReport {
   Patient patient;
   std::vector<contours::OrganReport> organs;
+  std::vector<NeighbourReport> neighbours;  ///< as Patient::neighbours; none from control points
   std::vector<std::string> notes;  ///< sentences: what the images have and the patient has not
   std::size_t overlays = 0;        ///< pictures written
 };
@@ -49,5 +63,8 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const images
 
 /// The table of results as text, one line an organ.
 std::string FormatReport(const BuildReport& report);
+
+/// Neighbours as a table, ports and table with their reasons; empty where there is none of it.
+std::string FormatSurroundings(const BuildReport& report);
 
 }  // namespace trocar::anatomy

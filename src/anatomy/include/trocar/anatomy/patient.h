@@ -20,6 +20,7 @@ namespace trocar::anatomy {
 
 using math::Vec3;
 using roles::LandmarkRole;
+using roles::NeighbourRole;
 using roles::OrganRole;
 using roles::RegionRole;
 using roles::TubeRole;
@@ -98,6 +99,37 @@ struct Parameter {
   friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 
+/// What lies beside the operated organs: it is seen, keeps tools out and gives way a little, and is not simulated.
+struct Neighbour {
+  std::string name;             ///< "stomach"
+  geometry::TriangleMesh mesh;  ///< closed, manifold, outward, of one part or several; world frame [m]
+  bool is_seen = true;          ///< false: a template placed by landmarks because the images do not show it
+  NeighbourRole role = roles::ConventionalRole<NeighbourRole>(name);
+};
+
+/// Whose port it is.
+enum class PortUse : std::uint8_t { kLaparoscope, kLeftHand, kRightHand, kAssistant };
+inline constexpr std::size_t kPortUseCount = 4;
+/// "laparoscope", "left_hand", "right_hand", "assistant": as files write it.
+const char* NameOf(PortUse use) noexcept;
+
+/// Where an instrument passes this patient's insufflated wall, in place of what a scene says.
+struct Port {
+  PortUse use = PortUse::kLaparoscope;
+  Vec3 position;       ///< world frame [m]
+  std::string reason;  ///< a sentence: why there
+
+  friend bool operator==(const Port&, const Port&) = default;
+};
+
+/// How the table is tilted for this patient, in place of what a scene says.
+struct Table {
+  double head_up = 0, right_up = 0;  ///< -30 to 30 degrees [rad]
+  std::string reason;                ///< a sentence: why so
+
+  friend bool operator==(const Table&, const Table&) = default;
+};
+
 /// The first whose role one before it has, or null. The same name twice is another mistake, and no such one.
 template <class Thing>
 const Thing* FindSecondOfRole(const std::vector<Thing>& things) {
@@ -121,6 +153,9 @@ struct Patient {
   std::vector<Tube> tubes;
   std::vector<Landmark> landmarks;
   std::vector<Parameter> parameters;  ///< none for a patient built from photographs
+  std::vector<Neighbour> neighbours;  ///< none: a picture shows the usual abdomen, which nothing touches
+  std::vector<Port> ports;            ///< one of each use at most; a scene's own where there is none
+  std::optional<Table> table;         ///< a scene's own where there is none
 
   /// Index of the organ of that role, or -1.
   int OrganOf(OrganRole role) const;
@@ -144,6 +179,9 @@ struct Patient {
   /// The landmark of that name, else the one whose role is called so; null where there is none.
   const Landmark* FindLandmark(std::string_view landmark_name) const;
   const Parameter* FindParameter(std::string_view parameter_name) const;
+  /// The neighbour of that role, or null.
+  const Neighbour* NeighbourOf(NeighbourRole role) const;
+  const Port* PortOf(PortUse use) const;
 };
 
 /// Names of the paper's four boundary rules (section 3.2.2).
@@ -152,7 +190,7 @@ inline constexpr const char* kFalciform = roles::NameOf(RegionRole::kFalciform);
 inline constexpr const char* kCoronary = roles::NameOf(RegionRole::kCoronary);
 inline constexpr const char* kGallbladderBed = roles::NameOf(RegionRole::kGallbladderBed);
 
-/// Reads a patient folder: patient.json and one PLY file an organ, in LPS millimetres; converted here, once,
+/// Reads a patient folder: patient.json and one PLY file an organ or neighbour, in LPS millimetres; converted here, once,
 /// to the world frame.
 /// \return the file's error, or kPatientInvalid with what is inconsistent
 core::Result<Patient> ReadPatient(const std::filesystem::path& folder);
@@ -160,7 +198,7 @@ core::Result<Patient> ReadPatient(const std::filesystem::path& folder);
 /// A patient as its folder has it, right or wrong.
 struct UncheckedPatient {
   Patient patient;                       ///< an organ whose mesh cannot be read has none
-  std::vector<core::Error> mesh_errors;  ///< (organs) kNone where the mesh was read
+  std::vector<core::Error> mesh_errors;  ///< (organs, then neighbours) kNone where the mesh was read
 };
 
 /// Reads what ReadPatient reads without CheckPatient, for those who look for what is wrong.
@@ -170,8 +208,8 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const std::filesystem::path&
 /// Writes the folder that ReadPatient reads; nothing is left behind when it fails.
 core::Status WritePatient(const std::filesystem::path& folder, const Patient& patient);
 
-/// Closed, manifold, outward organs; at most one of each role, and so with landmarks and an organ's regions; regions
-/// and attachments in range; tubes finite with positive radii; names of parameters unique and their numbers finite.
+/// Closed, manifold, outward organs and neighbours; at most one of each role, and so with landmarks, ports and an organ's
+/// regions; regions and attachments in range; tubes finite with positive radii; names of parameters unique and their numbers finite.
 core::Status CheckPatient(const Patient& patient);
 
 }  // namespace trocar::anatomy

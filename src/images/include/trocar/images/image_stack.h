@@ -52,7 +52,7 @@ struct LabelVolume {
 /// up to 2^24, in a process of its own, with the names of labels that 3D Slicer and TotalSegmentator put into headers.
 ///
 /// \param path  label map, or a folder with masks named liver and gallbladder (.nii.gz, .nii, .nrrd or .mha), which
-///              become the labels 1 and 2
+///              become the labels 1 and 2; masks named as neighbours (roles.h), vertebrae_L3 and vertebrae_L4 come along
 /// \return kFileMissing; kImageUndecodable for what is no label map; kImageSpacingUnknown where the file does
 /// not
 ///         say how it lies in the body; kImageTooLarge for more than 2^28 voxels; and what docs/images.md

@@ -2,7 +2,7 @@
 /// \file background.h  The insufflated abdomen round the organs: wall, omentum, colon, stomach, duodenum.
 ///
 /// Decoration: it is generated, belongs to no patient, and nothing in the simulation touches it but stones that fell,
-/// which lie on the omentum (geometry/omentum.h).
+/// which lie on the omentum (geometry/omentum.h). A patient's own neighbours take the place of parts of it.
 #pragma once
 
 #include <span>
@@ -12,6 +12,7 @@
 #include "trocar/geometry/omentum.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/render/material.h"
+#include "trocar/roles/roles.h"
 
 namespace trocar::render {
 
@@ -28,7 +29,9 @@ struct BackgroundPart {
 ///
 /// \param inside  points that the wall encloses [m]: the organs
 /// \param above   what must stay visible above omentum and bowel: gallbladder, ducts, vessels
+/// \param without  what is left out because the patient brings its own
 /// \return  the same bits for the same arguments
-std::vector<BackgroundPart> MakeAbdomen(std::span<const math::Vec3> inside, std::span<const Obstacle> above);
+std::vector<BackgroundPart> MakeAbdomen(std::span<const math::Vec3> inside, std::span<const Obstacle> above,
+                                        std::span<const roles::NeighbourRole> without = {});
 
 }  // namespace trocar::render

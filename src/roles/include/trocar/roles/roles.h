@@ -53,6 +53,23 @@ enum class LandmarkRole : std::uint8_t {
   kHepatocysticTriangle
 };
 
+/// What lies beside the operated organs: not simulated, but seen and touched.
+enum class NeighbourRole : std::uint8_t {
+  kOther,
+  kStomach,
+  kDuodenum,
+  kColon,
+  kSmallBowel,
+  kPancreas,
+  kRightKidney,
+  kVenaCava,
+  kAorta,
+  kPortalVein,
+  kRibs,
+  kSpine
+};
+inline constexpr std::size_t kNeighbourRoleCount = 12;
+
 /// What a material is of.
 enum class TissueRole : std::uint8_t { kOther, kLiver, kGallbladder, kGallbladderBed, kDuct, kArtery };
 
@@ -86,6 +103,16 @@ struct RoleNames<LandmarkRole> {
   static constexpr const char* kNames[] = {
       "other",        "umbilicus",        "umbilical_fissure", "fundus",
       "infundibulum", "gallbladder_body", "liver_edge",        "hepatocystic_triangle"};
+};
+template <>
+struct RoleNames<NeighbourRole> {
+  static constexpr const char* kNames[] = {"other",        "stomach",
+                                           "duodenum",     "colon",
+                                           "small_bowel",  "pancreas",
+                                           "kidney_right", "inferior_vena_cava",
+                                           "aorta",        "portal_vein_and_splenic_vein",
+                                           "ribs",         "spine"};
+  static_assert(std::size(kNames) == kNeighbourRoleCount);
 };
 template <>
 struct RoleNames<TissueRole> {

@@ -15,6 +15,7 @@
 #include "trocar/scene/scene_object.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/operation_snapshot.h"
+#include "trocar/surgery/neighbour_contact.h"
 
 namespace trocar::simulation {
 
@@ -90,8 +91,9 @@ struct Snapshot {
   OperationSnapshot operation;
   std::vector<ObjectSnapshot> objects;  ///< (Scene::objects)
   TaskSnapshot task;
-  instrument::TrocarJoints laparoscope;  ///< after limits
-  Pose X_world_laparoscope;              ///< origin at the lens, looking along -z, +y up in the picture
+  std::array<surgery::Dent, surgery::kDentCount> dents;  ///< that tools have pressed into Patient::neighbours
+  instrument::TrocarJoints laparoscope;                  ///< after limits
+  Pose X_world_laparoscope;          ///< origin at the lens, looking along -z, +y up in the picture
   double residual = 0;               ///< largest node residual, relative: see tissue/solver_settings.h [-]
   int iterations = 0;                ///< of the solver in this tick
   std::size_t contacts = 0;          ///< contact springs of this tick
