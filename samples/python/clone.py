@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clones a surgeon from demonstrations that `trocar dataset` wrote: clone.py DIR [--epochs N] [--rounds N] [--seeds A:B] [--curve clone.svg]
 
-  trocar dataset --layout trocar --no-pictures --task lift_and_grasp --seeds 1:300 --every 0.1 -o sets/lift
+  trocar dataset --layout trocar --no-pictures --task lift_and_grasp --seeds 1:120 --every 0.1 -o sets/lift
   build/python/bin/python samples/python/clone.py sets/lift
 
 Behaviour cloning with chunks of actions (Zhao et al., "Learning fine-grained bimanual manipulation", RSS 2023): from what an
@@ -209,7 +209,7 @@ def finish(learnt, seed):
     return (np.array(states), np.array(actions, np.float32)) if info["is_success"] else None
 
 
-def clone(demonstrations, epochs, rounds=0, attempts=100, seeds=range(9_001, 9_021), show=lambda text: print(text, flush=True)):
+def clone(demonstrations, epochs, rounds=0, attempts=80, seeds=range(9_001, 9_021), show=lambda text: print(text, flush=True)):
     """A clone, and its learning curve: epochs, and the share of goals and of successes over a few seeds."""
     learnt = Clone(demonstrations)
     curve = ([], [], [])
@@ -241,8 +241,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", help="a set of the layout trocar")
     parser.add_argument("--epochs", type=int, default=20, help="of each round and before the first")
-    parser.add_argument("--rounds", type=int, default=3, help="in which the expert finishes what the clone began")
-    parser.add_argument("--attempts", type=int, default=100, help="of a round")
+    parser.add_argument("--rounds", type=int, default=1, help="in which the expert finishes what the clone began")
+    parser.add_argument("--attempts", type=int, default=80, help="of a round")
     parser.add_argument("--seeds", default="10001:10100", help="on which the clone is judged, both included")
     parser.add_argument("--curve", default="clone.svg", help="picture of the learning curve")
     arguments = parser.parse_args()
