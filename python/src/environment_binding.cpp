@@ -8,6 +8,7 @@
 
 #include "binding.h"
 #include "camera.h"
+#include "trocar/agent/taking_over.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/environment/pool.h"
 
@@ -84,6 +85,20 @@ py::dict DescribeFeatures(const environment::Features& features) {
   for (std::size_t i = 0; i < kFeatureCount; ++i)
     out[py::str(std::string(environment::NameOf(static_cast<Feature>(i))))] = features[i];
   return out;
+}
+
+py::tuple DescribeOutcome(const Outcome& outcome) {
+  return py::make_tuple(outcome.reward, outcome.is_terminated, outcome.is_truncated, outcome.is_success,
+                        DescribeFeatures(outcome.features));
+}
+
+/// Where an episode begins, or from what was done so far.
+std::unique_ptr<agent::Surgeon> MakeSurgeon(const Environment& environment, const std::string& name,
+                                            std::uint64_t seed) {
+  const scene::Scene& scene = environment.GetSimulation().GetScene();
+  return Take(environment.ActionCount() == 0
+                  ? agent::MakeSurgeon(name, std::make_shared<const scene::Scene>(scene), seed)
+                  : agent::MakeSurgeonTakingOver(name, scene, environment.LastInput(), seed));
 }
 
 /// A pool with what is drawn of it.
@@ -260,10 +275,26 @@ void BindEnvironment(py::module_& module) {
               py::gil_scoped_release release;
               outcome = Take(e.Step(View(action)));
             }
-            return py::make_tuple(outcome.reward, outcome.is_terminated, outcome.is_truncated,
-                                  outcome.is_success, DescribeFeatures(outcome.features));
+            return DescribeOutcome(outcome);
           },
           py::arg("action"))
+      .def("surgeon", &MakeSurgeon, py::arg("name"), py::arg("seed") = 1)
+      .def(
+          "step_by",
+          [](Environment& e, agent::Surgeon& surgeon, py::array_t<double, py::array::c_style> action) {
+            if (static_cast<std::size_t>(action.size()) != e.ActionSize())
+              throw Failure(
+                  {core::ErrorCode::kUsage, "an action has " + std::to_string(e.ActionSize()) + " numbers"});
+            const std::span<double> written(action.mutable_data(), e.ActionSize());
+            Outcome outcome;
+            {
+              py::gil_scoped_release release;
+              outcome = Take(
+                  e.StepBy([&](const simulation::Snapshot& seen) { return surgeon.Act(seen); }, written));
+            }
+            return DescribeOutcome(outcome);
+          },
+          py::arg("surgeon"), py::arg("action").noconvert())
       .def(
           "observe",
           [](const Environment& e, py::array_t<float, py::array::c_style> state) {

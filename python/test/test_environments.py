@@ -180,6 +180,36 @@ class Meaning(unittest.TestCase):
         self.assertEqual(code_of(lambda: apart.step({"left": parts["left"]})), "E-ENV-001")
 
 
+class PlayedBySurgeons(unittest.TestCase):
+    def test_an_expert_finishes_what_chance_began(self):
+        with trocar.make("lift_and_grasp", seed=3, actions="tip", most_seconds=90) as env:
+            env.reset(seed=3)
+            env.action_space.seed(3)
+            for _ in range(20):
+                env.step(0.3 * env.action_space.sample())
+            surgeon = env.surgeon("expert", seed=3)
+            is_over = False
+            while not is_over:
+                state, reward, terminated, truncated, info = env.step_by(surgeon)
+                self.assertTrue(env.action_space.contains(info["action"].astype(np.float32)))
+                is_over = terminated or truncated
+            self.assertTrue(info["is_success"], surgeon.doing)
+            self.assertEqual(code_of(lambda: env.step_by(surgeon)), "E-ENV-002")
+
+    def test_is_refused(self):
+        with trocar.make("clip_and_cut") as env:
+            env.reset(seed=1)
+            surgeon = env.surgeon("expert")  # before anything was done
+            self.assertEqual(code_of(lambda: env.surgeon("nobody")), "E-SCN-003")
+            env.step_by(surgeon)
+            self.assertEqual(code_of(lambda: env.surgeon("expert")), "E-CLI-001")
+        with trocar.make("lift_and_grasp", actions="discrete") as env:
+            env.reset(seed=1)
+            surgeon = env.surgeon()
+            self.assertEqual(code_of(lambda: env.step_by(surgeon)), "E-CLI-001")
+        self.assertEqual(code_of(lambda: env.surgeon()), "E-ENV-002")
+
+
 class Geometry(unittest.TestCase):
     def test_observations_of_geometry_lie_in_their_spaces(self):
         for observation in ("depth", "masks", "normals", ("state", "picture", "depth", "masks", "normals")):

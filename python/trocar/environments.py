@@ -148,6 +148,16 @@ class Environment(_Env):
         reward, terminated, truncated, success, features = self._open().step(action)
         return self._observe(), reward, terminated, truncated, {"is_success": success, "features": features}
 
+    def surgeon(self, name: str = "expert", seed: int = 1) -> _trocar.Surgeon:
+        """A scripted surgeon who goes on from here, for :meth:`step_by`. Where tissue is worked on, only before the first step."""
+        return self._open().surgeon(name, seed)
+
+    def step_by(self, surgeon: _trocar.Surgeon):
+        """As ``step``, done by a scripted surgeon. ``info["action"]`` (n,) float64 is what the hands' way amounts to, cut to -1 to 1."""
+        action = np.zeros(self.model.action_size)
+        reward, terminated, truncated, success, features = self._open().step_by(surgeon, action)
+        return self._observe(), reward, terminated, truncated, {"is_success": success, "features": features, "action": action}
+
     def render(self) -> Optional[np.ndarray]:
         return self._draw() if self.render_mode == "rgb_array" else None
 

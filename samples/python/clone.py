@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Clones a surgeon from demonstrations that `trocar dataset` wrote: clone.py DIR [--epochs N] [--seeds A:B] [--curve clone.svg]
+"""Clones a surgeon from demonstrations that `trocar dataset` wrote: clone.py DIR [--epochs N] [--rounds N] [--seeds A:B] [--curve clone.svg]
 
   trocar dataset --layout trocar --no-pictures --task lift_and_grasp --seeds 1:300 --every 0.1 -o sets/lift
   build/python/bin/python samples/python/clone.py sets/lift
 
 Behaviour cloning with chunks of actions (Zhao et al., "Learning fine-grained bimanual manipulation", RSS 2023): from what an
-environment observes, a network foretells where both tips will be during the next second, and how spin and jaws turn. Some of it is
-done, then it looks again. Needs python3-torch and python3-h5py.
+environment observes, a network foretells where both tips will be during the next second, and how they are turned and opened. Some of it is
+done, then it looks again. Between rounds of learning the clone plays, and somewhere the expert takes over and finishes: what was
+done from there on is demonstrated, too (after Ross et al., "A reduction of imitation learning to no-regret online learning",
+AISTATS 2011). Needs python3-torch and python3-h5py.
 """
 import argparse
 import json
 import pathlib
+from concurrent.futures import ThreadPoolExecutor
 
 import learning  # first: it says how many threads torch gets
 
@@ -18,12 +21,17 @@ import h5py
 import numpy as np
 import torch
 
+import trocar
+
 CHUNK = 8    # actions that are foretold
-DONE = 3     # of them are done before the next look
-STRAY = 0.001  # by which tips are moved away while learning, so that the policy finds back [m]
+DONE = 7     # of them are done before the next look: before jaws open or close, hands rest for longer than the rest says
+# by which tips, spins and jaws are moved away while learning, so that the policy finds back [m], [rad]
+STRAY, STRAY_SPIN, STRAY_JAW = 0.001, 0.2, 0.02
+NEAR = 0.002  # differences of places are seen in detail below this [m]
 HANDS = ("left", "right")
-TIP_SPEED = 0.12  # of an action of 1 [m/s]
+TIP_SPEED, SPIN_RATE, JAW_RATE = 0.12, 3.0, 2.5  # of an action of 1 [m/s], [rad/s]
 TREMBLE = 0.05  # of an action, when it is judged
+ROUND_SEEDS = 20_001  # and on: of what the clone begins and the expert finishes
 
 
 class Demonstrations:
@@ -47,20 +55,72 @@ class Demonstrations:
         self.longest = max(len(states) for states in self.states) * self.every
 
     def rows(self):
-        """(n, state), and for each the chunk (n, CHUNK, 2, 5): tips from where they are [m], spin and jaw as shares."""
-        tips = learning.columns(self.fields["state"], [f"{hand}.tip" for hand in HANDS])
-        turns = learning.columns(self.fields["action_tip"], [f"{hand}.{what}" for hand in HANDS for what in ("spin", "jaw")])
+        """(n, state), and for each the chunk (n, CHUNK, 2, 5): how far each tip will be from here [m], its spin and commanded jaw [rad].
+
+        Not rates: those add up whatever error is made. Jaws that hold a thing are seen open and commanded shut.
+        """
+        at = {field["name"]: np.arange(field["first"], field["first"] + field["count"]) for field in self.fields["state"]}
+        tips = [at[f"{hand}.tip"] for hand in HANDS]
+        spins, jaws = ([at[f"{hand}.joints"][joint] for hand in HANDS] for joint in (2, 4))
+        jaw_actions = learning.columns(self.fields["action_tip"], [f"{hand}.jaw" for hand in HANDS])
+        holds = np.concatenate([at[f"{hand}.is_grasping"] for hand in HANDS])
         states, chunks = [], []
         for seen, done in zip(self.states, self.actions):
             last = len(seen) - 1
             ahead = np.minimum(np.arange(last)[:, None] + 1 + np.arange(CHUNK), last)
-            places = seen[:, tips].reshape(-1, 2, 3)
-            way = places[ahead] - places[:last, None]
-            turn = np.where((ahead - np.arange(last)[:, None] == 1 + np.arange(CHUNK))[..., None, None],
-                            done[ahead - 1][..., turns].reshape(last, CHUNK, 2, 2), 0)
+            places = np.stack([seen[:, tip] for tip in tips], axis=1)
+            commanded = np.empty((len(seen), 2))
+            commanded[0] = np.where(seen[0, holds] > 0, 0, seen[0, jaws])
+            for step in range(last):
+                commanded[step + 1] = np.maximum(commanded[step] + self.every * JAW_RATE * done[step, jaw_actions], 0)
             states.append(seen[:last])
-            chunks.append(np.concatenate([way, turn], axis=-1))
+            chunks.append(np.concatenate([places[ahead] - places[:last, None], seen[:, spins][ahead][..., None],
+                                          commanded[ahead][..., None]], axis=-1))
         return np.concatenate(states), np.concatenate(chunks)
+
+
+class Sight:
+    """What a network sees of a state: tips, spins, jaws, things and goals, and how far each tip is from each thing and region.
+
+    The clock would be learnt by heart. Trocar joints and shafts say again where a tip is: who sees both learns to trust the wrong one
+    while tips are moved aside.
+    """
+
+    def __init__(self, fields):
+        at = {field["name"]: np.arange(field["first"], field["first"] + field["count"]) for field in fields}
+        self.tips = np.concatenate([at[f"{hand}.tip"] for hand in HANDS])
+        self.held = [at[name] for name in at if name.endswith(".held")]
+        self.things = [at[name.removesuffix("held") + "position"] for name in at if name.endswith(".held")]
+        whole = [name for name in at if name.split(".")[-1] in ("tip", "is_grasping", "is_touching", "held", "done", "is_open", "is_whole")]
+        whole += [name.removesuffix("held") + what for name in at if name.endswith(".held") for what in ("position", "rotation")]
+        self.turns = np.concatenate([at[f"{hand}.joints"][[2, 4]] for hand in HANDS])  # spin and jaw
+        self.sees = np.concatenate([*(at[name] for name in whole), self.turns])
+        regions = [at[name] for name in at if name.startswith("region.")]
+        tips = [at[f"{hand}.tip"] for hand in HANDS]
+        self.pairs = [(a, b) for a in tips for b in self.things + regions] + [(a, b) for a in self.things for b in regions]
+        self.mean = self.spread = None
+
+    def raw(self, states):
+        ways = [np.arcsinh((states[:, a] - states[:, b]) / NEAR) for a, b in self.pairs]
+        return np.concatenate([states[:, self.sees], *ways], axis=1)
+
+    def measure(self, states):
+        raw = self.raw(states)
+        self.mean, self.spread = raw.mean(0), np.maximum(raw.std(0), 0.01)  # what hardly changed is not blown up
+
+    def look(self, states):
+        return torch.as_tensor(np.clip((self.raw(states) - self.mean) / self.spread, -10, 10), dtype=torch.float32)
+
+    def stray(self, states, random):
+        """Copies with tips moved aside, and what they hold with them, spins and jaws, too; by how much tips were, (n, 2, 3) [m]."""
+        states = states.copy()
+        states[:, self.turns] += random.normal(0, 1, (len(states), 4)) * ([STRAY_SPIN, STRAY_JAW] * 2)
+        stray = random.normal(0, STRAY, (len(states), 2, 3))
+        states[:, self.tips] += stray.reshape(-1, 6)
+        for held, place in zip(self.held, self.things):
+            holds = states[:, held]
+            states[:, place] += (holds[..., None] * stray).sum(1) / np.maximum(holds.sum(1), 1)[:, None]
+        return states, stray
 
 
 class Clone:
@@ -68,89 +128,121 @@ class Clone:
 
     def __init__(self, demonstrations, seed=1):
         torch.manual_seed(seed)
-        self.every, self.fields = demonstrations.every, demonstrations.fields
-        states, self.chunks = demonstrations.rows()
-        # what never changed says nothing, and the clock would be learnt by heart
-        names = [f["name"] for f in self.fields["state"] if f["name"] != "time" and not f["name"].endswith(".force")]
-        self.sees = [c for c in learning.columns(self.fields["state"], names) if states[:, c].std() > 1e-5]
-        self.tips = learning.columns(self.fields["state"], [f"{hand}.tip" for hand in HANDS])
-        self.seen_tips = [self.sees.index(c) for c in self.tips if c in self.sees]
-        self.moved_tips = [i for i, c in enumerate(self.tips) if c in self.sees]
-        self.states = states[:, self.sees]
-        self.mean, self.spread = self.states.mean(0), self.states.std(0) + 1e-6
-        self.scale = np.abs(self.chunks).reshape(-1, 2, 5).max((0, 1)) + 1e-6
-        self.net = learning.network([len(self.sees), 256, 256, 256, CHUNK * 10], torch.nn.ReLU)
+        self.demonstrations, self.every, self.epochs = demonstrations, demonstrations.every, 0
+        states, chunks = demonstrations.rows()
+        self.sight = Sight(demonstrations.fields["state"])
+        self.sight.measure(states)
+        self.centre = chunks.reshape(-1, 2, 5).mean(0)
+        self.scale = np.abs(chunks - self.centre).reshape(-1, 2, 5).max((0, 1)) + 1e-6
+        self.net = learning.network([self.sight.look(states[:1]).shape[1], 256, 256, 256, CHUNK * 10], torch.nn.ReLU)
 
     def foretell(self, state):
         with torch.no_grad():
-            seen = torch.as_tensor((state[self.sees] - self.mean) / self.spread, dtype=torch.float32)
-            return self.net(seen).numpy().reshape(CHUNK, 2, 5) * self.scale
+            return self.net(self.sight.look(state[None])).numpy().reshape(CHUNK, 2, 5) * self.scale + self.centre
 
     def learn(self, epochs, show=lambda epoch: None):
-        random = np.random.default_rng(1)
+        """Goes on learning, from all that was demonstrated so far."""
+        random = np.random.default_rng(1 + self.epochs)
+        all_states, all_chunks = self.demonstrations.rows()
         optimiser = torch.optim.Adam(self.net.parameters(), lr=1e-3)
         rate = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, epochs, 1e-5)
-        for epoch in range(1, epochs + 1):
-            for part in np.array_split(random.permutation(len(self.states)), max(1, len(self.states) // 256)):
-                states, chunks = self.states[part].copy(), self.chunks[part].copy()
-                stray = random.normal(0, STRAY, (len(part), 6))
-                states[:, self.seen_tips] += stray[:, self.moved_tips]
-                chunks[..., :3] -= stray.reshape(-1, 1, 2, 3)
-                foretold = self.net(torch.as_tensor((states - self.mean) / self.spread, dtype=torch.float32))
-                wanted = torch.as_tensor((chunks / self.scale).reshape(len(part), -1), dtype=torch.float32)
+        for _ in range(epochs):
+            for part in np.array_split(random.permutation(len(all_states)), max(1, len(all_states) // 256)):
+                states, stray = self.sight.stray(all_states[part], random)
+                chunks = all_chunks[part].copy()
+                chunks[..., :3] -= stray[:, None]
+                foretold = self.net(self.sight.look(states))
+                wanted = torch.as_tensor(((chunks - self.centre) / self.scale).reshape(len(part), -1), dtype=torch.float32)
                 loss = torch.nn.functional.smooth_l1_loss(foretold, wanted, beta=0.02)
                 optimiser.zero_grad()
                 loss.backward()
                 optimiser.step()
             rate.step()
-            show(epoch)
+            self.epochs += 1
+            show(self.epochs)
 
     def make_policy(self, environment, seed):
         fields = environment.action_fields
         moves = [learning.columns(fields, [f"{hand}.{what}" for what in ("x", "y", "z", "spin", "jaw")]) for hand in HANDS]
-        plan, aims = [], None
+        plan = []
 
         def act(state):
-            nonlocal plan, aims
-            tips = state[self.tips].reshape(2, 3)
+            nonlocal plan
+            now = np.concatenate([state[self.sight.tips].reshape(2, 3), state[self.sight.turns].reshape(2, 2)], axis=1)
             if not plan:
-                plan = list(self.foretell(state)[:DONE])
-                aims = tips
-            step = plan.pop(0)
+                plan = list(self.foretell(state)[:DONE] + now * [1, 1, 1, 0, 0])
+            shares = (plan.pop(0) - now) / (self.every * np.array([TIP_SPEED] * 3 + [SPIN_RATE, JAW_RATE]))
             action = np.zeros(environment.action_space.shape)
-            for hand in range(2):
-                action[moves[hand][:3]] = (aims[hand] + step[hand, :3] - tips[hand]) / (self.every * TIP_SPEED)
-                action[moves[hand][3:]] = step[hand, 3:]
-            return np.clip(action, -1, 1)
+            action[moves] = np.clip(shares, -1, 1)
+            return action
         return act
 
 
-def clone(demonstrations, epochs, looks=8, seeds=range(9_001, 9_021), show=lambda text: print(text, flush=True)):
+def settings(demonstrations, slack=3):
+    return {"level": demonstrations.level, "actions": "tip", "actions_per_second": 1 / demonstrations.every,
+            "most_seconds": slack * demonstrations.longest, "tremble": TREMBLE}
+
+
+def finish(learnt, seed):
+    """(states, actions) of an expert who takes over from the clone at a time that the seed draws; None where that fails."""
+    shown = learnt.demonstrations
+    random = np.random.default_rng(seed)
+    options = settings(shown, slack=6)
+    tremble = options.pop("tremble") * random.choice([1, 4])
+    with trocar.make(shown.task, seed=seed, **options) as environment:
+        policy = learnt.make_policy(environment, seed)
+        state, _ = environment.reset(seed=seed)
+        for _ in range(random.integers(1, int(1.2 * shown.longest / shown.every))):
+            action = policy(state)
+            following, _, terminated, truncated, info = environment.step(
+                np.clip(action + tremble * random.standard_normal(action.shape), -1, 1))
+            if terminated or truncated:
+                break
+            state = following
+        if terminated or truncated:
+            return None
+        surgeon, states, actions = environment.surgeon("expert", seed=seed), [state], []
+        while not (terminated or truncated or surgeon.has_finished):
+            state, _, terminated, truncated, info = environment.step_by(surgeon)
+            states.append(state)
+            actions.append(info["action"])
+    return (np.array(states), np.array(actions, np.float32)) if info["is_success"] else None
+
+
+def clone(demonstrations, epochs, rounds=0, attempts=100, seeds=range(9_001, 9_021), show=lambda text: print(text, flush=True)):
     """A clone, and its learning curve: epochs, and the share of goals and of successes over a few seeds."""
     learnt = Clone(demonstrations)
     curve = ([], [], [])
 
-    def look(epoch):
-        if epoch % max(1, epochs // looks) and epoch != epochs:
-            return
+    def judge():
         success, goals = learning.judge(demonstrations.task, seeds, learnt.make_policy, **settings(demonstrations))
-        for row, value in zip(curve, (epoch, success, goals)):
+        for row, value in zip(curve, (learnt.epochs, success, goals)):
             row.append(value)
-        show(f"epoch {epoch}: {100 * success:.0f} % of {len(seeds)} attempts succeed, {100 * goals:.0f} % of the goals are done")
+        show(f"epoch {learnt.epochs}: {100 * success:.0f} % of {len(seeds)} attempts succeed, {100 * goals:.0f} % of the goals are done")
+
+    def look(epoch):
+        if epoch % max(1, epochs // 2) == 0:
+            judge()
 
     learnt.learn(epochs, look)
+    for number in range(rounds):
+        first = ROUND_SEEDS + number * attempts
+        with ThreadPoolExecutor(2) as pool:
+            finished = [one for one in pool.map(lambda seed: finish(learnt, seed), range(first, first + attempts)) if one]
+        for states, actions in finished:
+            demonstrations.states.append(states)
+            demonstrations.actions.append(actions)
+        show(f"round {number + 1}: the expert took over and finished {len(finished)} of {attempts} attempts")
+        learnt.learn(epochs, look)
     return learnt, curve
-
-
-def settings(demonstrations, slack=1.5):
-    return {"level": demonstrations.level, "actions": "tip", "actions_per_second": 1 / demonstrations.every,
-            "most_seconds": slack * demonstrations.longest, "tremble": TREMBLE}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", help="a set of the layout trocar")
-    parser.add_argument("--epochs", type=int, default=40)
+    parser.add_argument("--epochs", type=int, default=20, help="of each round and before the first")
+    parser.add_argument("--rounds", type=int, default=3, help="in which the expert finishes what the clone began")
+    parser.add_argument("--attempts", type=int, default=100, help="of a round")
     parser.add_argument("--seeds", default="10001:10100", help="on which the clone is judged, both included")
     parser.add_argument("--curve", default="clone.svg", help="picture of the learning curve")
     arguments = parser.parse_args()
@@ -158,10 +250,10 @@ def main():
     first, last = map(int, arguments.seeds.split(":"))
     unseen = range(first, last + 1)
     demonstrations = Demonstrations(arguments.folder)
-    print(f"{len(demonstrations.states)} demonstrations of {demonstrations.task}, the longest of {demonstrations.longest:.0f} s",
-          flush=True)
-    learnt, curve = clone(demonstrations, arguments.epochs)
-    learning.write_curve(arguments.curve, f"{demonstrations.task}, cloned from {len(demonstrations.states)} demonstrations",
+    shown = len(demonstrations.states)
+    print(f"{shown} demonstrations of {demonstrations.task}, the longest of {demonstrations.longest:.0f} s", flush=True)
+    learnt, curve = clone(demonstrations, arguments.epochs, arguments.rounds, arguments.attempts)
+    learning.write_curve(arguments.curve, f"{demonstrations.task}, cloned from {shown} demonstrations",
                          "epochs", curve[0], {"success": curve[1], "goals done": curve[2]})
     judge = lambda make_policy: learning.judge(demonstrations.task, unseen, make_policy, **settings(demonstrations))
     learning.print_results({"cloned": judge(learnt.make_policy), "random": judge(learning.random_policy),

@@ -4,12 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <set>
 #include <string>
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include "published.h"
+#include "scripted_hands.h"
 #include "task_play.h"
 #include "trocar/math/random.h"
 
@@ -24,14 +27,16 @@ namespace trocar::agent {
 
 /// A scene, and who acts in it.
 struct Course {
-  std::string name;               ///< of a delivered task, or of a scene file
-  std::string surgeon;            ///< "" for the scene's script, "fumbler" for a Fumbler
-  int ticks = 0;                  ///< at most
-  int points = 0;                 ///< random ticks at which it is saved
-  int events = 12;                ///< after which it is saved as well, at most
+  std::string name;     ///< of a delivered task, or of a scene file
+  std::string surgeon;  ///< "" for the scene's script, "fumbler" for a Fumbler, or of MakeScriptedHands()
+  int ticks = 0;        ///< at most
+  int points = 0;       ///< random ticks at which it is saved
+  int events = 12;      ///< after which it is saved as well, at most
   bool changes_settings = false;  ///< as ChangeSettings() does
   int from = 0;                   ///< no point before this tick
   bool has_equal_trays = false;   ///< the left hand is offered the right one's tools, too
+  bool is_dissected = false;      ///< there is no fat, and all fibres of the gallbladder's bed part at once
+  bool looks_before = false;      ///< a tick before what happens and after it, as CountMoments() counts
 };
 
 inline void PrintTo(const Course& course, std::ostream* out) {
@@ -41,7 +46,8 @@ inline void PrintTo(const Course& course, std::ostream* out) {
 inline std::string NameOf(const testing::TestParamInfo<Course>& info) {
   return info.param.name + (info.param.surgeon.empty() ? "" : "_" + info.param.surgeon) +
          (info.param.changes_settings ? "_changes_settings" : "") +
-         (info.param.has_equal_trays ? "_equal_trays" : "") + (info.param.from > 0 ? "_late" : "");
+         (info.param.has_equal_trays ? "_equal_trays" : "") + (info.param.is_dissected ? "_dissected" : "") +
+         (info.param.looks_before ? "_moments" : "") + (info.param.from > 0 ? "_late" : "");
 }
 
 inline constexpr int kGoesOn = 240;  // ticks after a point
@@ -55,6 +61,12 @@ inline std::shared_ptr<const Scene> ReadCourse(const Course& course) {
     auto& left = read->instruments[scene::kLeft];
     const auto& right = read->instruments[scene::kRight];
     left.tool = right.tool, left.tray = right.tray;
+  }
+  if (course.is_dissected) {
+    read->operation->fat_spacing = 0;
+    for (scene::OrganMaterial& material : read->materials) {
+      if (std::isfinite(material.failure_strain)) material.failure_strain = -1;
+    }
   }
   return std::make_shared<const Scene>(std::move(*read));
 }
@@ -144,6 +156,13 @@ inline std::uint64_t CountEvents(const Snapshot& snapshot) {
   return count;
 }
 
+/// Finer: also what jaws take and let go, and every fibre that parts.
+inline std::uint64_t CountMoments(const Snapshot& snapshot) {
+  std::uint64_t count = CountEvents(snapshot) + snapshot.event_count;
+  for (const std::uint8_t is_intact : snapshot.operation.strand_is_intact) count += is_intact == 0 ? 1 : 0;
+  return count;
+}
+
 /// An instructor who tilts the table, stiffens the tissue for a while, again and again, and leaves the camera to its holder.
 inline void ChangeSettings(std::size_t tick, scene::LiveSettings& settings) {
   settings.holds_camera = true;
@@ -158,6 +177,7 @@ struct Point {
   std::vector<std::byte> bytes;
   std::uint64_t hash = 0, hash_after = 0;            ///< of the state, now and kGoesOn ticks later
   std::uint64_t published = 0, published_after = 0;  ///< of what others see
+  std::uint64_t patches = 0;                         ///< of what the haptic loop gets
 };
 
 /// One course with its inputs, and the states on its way.
@@ -175,8 +195,9 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
   Simulation simulation = std::move(*Simulation::Make(recording.model, 1));
   const std::uint64_t seed = std::hash<std::string>()(course.name);
   Fumbler fumbler(seed);
+  std::optional<ScriptedHands> script = MakeScriptedHands(course.surgeon, scene);
   std::unique_ptr<Surgeon> surgeon;
-  if (!course.surgeon.empty() && course.surgeon != "fumbler")
+  if (!course.surgeon.empty() && course.surgeon != "fumbler" && !script)
     surgeon = std::move(*MakeSurgeon(course.surgeon, scene, 1));
   math::Random random(seed);
   std::set<std::size_t> chosen;
@@ -186,28 +207,37 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
   std::uint64_t events = 0;
   int events_saved = 0;
   std::map<std::size_t, std::size_t> ends;  // tick to point
+  Point before;                             // of the tick before
+  const auto take = [&](Point& point, std::size_t tick) {
+    point.tick = tick;
+    simulation.Save(point.bytes);
+    point.hash = simulation.Hash();
+    point.published = CalcPublishedHash(simulation);
+    point.patches = CalcPatchHash(simulation);
+  };
+  const auto add = [&](Point point) {
+    if (!ends.emplace(point.tick + kGoesOn, recording.points.size()).second) return;
+    recording.points.push_back(std::move(point));
+  };
   for (std::size_t tick = 0; tick < static_cast<std::size_t>(course.ticks + kGoesOn); ++tick) {
     if (const auto end = ends.find(tick); end != ends.end()) {
       recording.points[end->second].hash_after = simulation.Hash();
       recording.points[end->second].published_after = CalcPublishedHash(simulation);
     }
     const Snapshot& seen = simulation.GetSnapshot();
-    const bool is_event = CountEvents(seen) != events && events_saved < course.events &&
-                          tick >= static_cast<std::size_t>(course.from);
-    events = CountEvents(seen);
+    const std::uint64_t now = course.looks_before ? CountMoments(seen) : CountEvents(seen);
+    const bool is_event =
+        now != events && events_saved < course.events && tick >= static_cast<std::size_t>(course.from);
+    events = now;
     if (is_event) ++events_saved;
     const bool is_over = surgeon != nullptr && surgeon->HasFinished();
     if (is_over && (ends.empty() || tick > ends.rbegin()->first)) break;
-    const bool has_time = tick < static_cast<std::size_t>(course.ticks);
-    if ((chosen.count(tick) != 0 || is_event) && has_time && !is_over) {
-      ends[tick + kGoesOn] = recording.points.size();
-      Point& point = recording.points.emplace_back();
-      point.tick = tick;
-      simulation.Save(point.bytes);
-      point.hash = simulation.Hash();
-      point.published = CalcPublishedHash(simulation);
-    }
+    const bool has_time = tick < static_cast<std::size_t>(course.ticks) && !is_over;
+    if (is_event && course.looks_before && has_time && tick > 0) add(std::move(before));
+    if ((chosen.count(tick) != 0 || is_event) && has_time) take(before, tick), add(before);
+    if (course.looks_before && has_time) take(before, tick);
     Input input = surgeon != nullptr            ? surgeon->Act(seen)
+                  : script.has_value()          ? (*script)(seen)
                   : course.surgeon == "fumbler" ? fumbler.Act(*scene, seen)
                                                 : scene::CalcScriptInput(simulation.GetScene(), seen.time);
     if (course.changes_settings) ChangeSettings(tick, input.settings);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "trocar/core/state_archive.h"
@@ -87,6 +88,37 @@ inline std::uint64_t CalcPublishedHash(const simulation::Simulation& simulation)
              object.touches);
   AddSurgery(hash, seen.operation);
   if (const auto result = simulation.GetOperationResult()) AddResult(hash, *result);
+  return hash.Value();
+}
+
+/// Of one cut for the haptic loop, as far as its kind fills it.
+inline void AddPatch(PublishedHash& hash, const haptics::LocalPatch& patch) {
+  hash.Add(patch.kind, patch.is_healthy, patch.tick, patch.X_world_tool, patch.force, patch.has_pivot);
+  if (patch.kind == haptics::LocalPatch::Kind::kLinear) {
+    hash.Add(patch.jacobian);
+    for (const auto& press : std::span(patch.presses).first(patch.press_count))
+      hash.Add(press.normal, press.force, press.stiffness);
+  }
+  if (patch.kind != haptics::LocalPatch::Kind::kSegment) return;
+  hash.Add(patch.free_count, patch.held_count);
+  for (std::size_t i = 0; i < patch.node_count; ++i)
+    hash.Add(patch.node[i], patch.position[i], patch.own_stiffness[i]);
+  const std::size_t links = patch.link_starts[std::size_t{patch.free_count} + patch.held_count];
+  for (const auto& link : std::span(patch.links).first(links))
+    hash.Add(link.other, link.is_strand, link.stiffness, link.rest_length);
+  for (const auto& contact : std::span(patch.contacts).first(patch.contact_count))
+    hash.Add(contact.nodes, contact.weights, contact.normal, contact.tip_normal, contact.lever, contact.depth,
+             contact.stiffness);
+}
+
+/// Of the tissue around both tools, as the haptic loop gets it between two ticks.
+inline std::uint64_t CalcPatchHash(simulation::Simulation& simulation) {
+  PublishedHash hash;
+  const auto patch = std::make_unique<haptics::LocalPatch>();
+  for (const scene::Hand hand : {scene::kLeft, scene::kRight}) {
+    simulation.CutPatch(hand, *patch);
+    AddPatch(hash, *patch);
+  }
   return hash.Value();
 }
 

@@ -54,6 +54,7 @@ void CheckCourse(const Course& whole) {
                                 (simulation == &fresh ? ", in a fresh simulation" : "");
       ASSERT_EQ(simulation->Hash(), point.hash) << where;
       ASSERT_EQ(CalcPublishedHash(*simulation), point.published) << where;
+      ASSERT_EQ(CalcPatchHash(*simulation), point.patches) << where << ", for the haptic loop";
       GoOn(recording, point, *simulation);
       ASSERT_EQ(simulation->Hash(), point.hash_after) << where << ", " << kGoesOn << " ticks later";
       ASSERT_EQ(CalcPublishedHash(*simulation), point.published_after)
@@ -122,6 +123,15 @@ TEST(SimulationStateGuard, TakesABadTickBackAfterRestoringAsBefore) {
   EXPECT_EQ(seen.events[(seen.event_count - 1) % seen.events.size()].kind, scene::EventKind::kStateRestored);
   EXPECT_EQ(fresh.Hash(), simulation.Hash());
   EXPECT_EQ(CalcPublishedHash(fresh), CalcPublishedHash(simulation));
+
+  // and after it the haptic loop knows of it
+  simulation.Save(bytes);
+  ASSERT_TRUE(fresh.Restore(bytes).ok());
+  const auto patch = std::make_unique<haptics::LocalPatch>();
+  for (Simulation* each : {&simulation, &fresh}) {
+    each->CutPatch(scene::kRight, *patch);
+    EXPECT_FALSE(patch->is_healthy) << (each == &fresh ? "restored" : "as it was");
+  }
 }
 
 // Judging, publishing and task rules change nothing of the world.

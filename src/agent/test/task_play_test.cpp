@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "trocar/agent/hand_motion.h"
+#include "trocar/agent/taking_over.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::agent {
@@ -95,6 +96,36 @@ TEST_P(EveryTask, GivesTheSameHashAgainAndAnotherForAnotherSeed) {
   EXPECT_NE(play(5), hash);
 }
 
+// Whoever takes over has never seen what was done before: a thing in a jaw, a tool on its way, a picture that was turned.
+TEST_P(EveryTask, IsFinishedByWhoeverTakesOver) {
+  const auto scene = ReadDelivered(GetParam());
+  if (GetParam() == "peg_transfer")
+    std::erase_if(scene->task->goals,
+                  [](const Goal& goal) { return goal.name.find("Ring 4") == std::string::npos; });
+  for (const double after : {1.5, 4.0, 7.5}) {
+    auto simulation = Simulation::Make(scene, 1);
+    auto first = MakeSurgeon("expert", scene, 1);
+    ASSERT_TRUE(simulation.ok() && first.ok());
+    Input input;
+    while (simulation->GetSnapshot().time < after) {
+      input = (*first)->Act(simulation->GetSnapshot());
+      simulation->Step(input);
+    }
+    const Vec3 tip = simulation->GetSnapshot().instruments[kLeft].X_world_device.translation;
+    auto second = MakeSurgeonTakingOver("expert", *scene, input, 2);
+    ASSERT_TRUE(second.ok()) << second.error().Text();
+    simulation->Step((*second)->Act(simulation->GetSnapshot()));
+    EXPECT_LT(math::Distance(simulation->GetSnapshot().instruments[kLeft].X_world_device.translation, tip),
+              5e-4)
+        << "a hand does not jump";
+    while (!(*second)->HasFinished() && simulation->GetSnapshot().time < 400)
+      simulation->Step((*second)->Act(simulation->GetSnapshot()));
+    EXPECT_EQ(simulation->GetSnapshot().task.phase, TaskPhase::kCompleted)
+        << "taken over after " << after << " s, stopped at " << (*second)->Doing();
+    EXPECT_EQ(simulation->GetSnapshot().task.error_count, 0u);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Tasks, EveryTask, testing::ValuesIn(TasksWithoutPatient()),
                          [](const auto& one) { return one.param; });
 
@@ -131,6 +162,13 @@ TEST(Surgeons, AreRefusedWhereTheyDoNotSuit) {
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.error().code, core::ErrorCode::kUnknownName);
   EXPECT_NE(made.error().Text().find("smears_lens"), std::string::npos) << made.error().Text();
+}
+
+TEST(Surgeons, DoNotTakeOverWhereTissueIsWorkedOn) {
+  const auto scene = ReadDelivered("clip_and_cut");
+  const auto made = MakeSurgeonTakingOver("expert", *scene, CalcScriptInput(*scene, 0), 1);
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, core::ErrorCode::kUsage);
 }
 
 /// The left hand takes the first bar of the transport, by hand-made inputs.

@@ -190,7 +190,10 @@ bool ReplayWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
 }
 
 void ReplayWindow::Show(const presenter::ReplayPage& page) {
-  if (get_title().raw() != page.title) set_title(page.title);
+  if (get_title().raw() != page.title) {
+    set_title(page.title);
+    bar_.SetHeading(page.title);
+  }
   bar_.Show([this](const presenter::ReplayCommand& command) { return presenter_->FindButton(command); });
   for (std::size_t side = 0; side < sides_.size(); ++side) {
     if (sides_[side].picture.GetOptions() != page.view) sides_[side].picture.SetOptions(page.view);

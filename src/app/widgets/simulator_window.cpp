@@ -227,7 +227,10 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
 }
 
 void SimulatorWindow::Show(const presenter::SimulatorPage& page) {
-  if (get_title().raw() != page.title) set_title(page.title);
+  if (get_title().raw() != page.title) {
+    set_title(page.title);
+    bar_.SetHeading(page.title);
+  }
   bar_.Show([this](const presenter::SimulatorCommand& command) { return presenter_->FindButton(command); });
   if (picture_.GetOptions() != page.view) picture_.SetOptions(page.view);
   hands_->SetBindings(presenter_->Bindings());

@@ -2,6 +2,7 @@
 #include "trocar/environment/environment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -173,13 +174,16 @@ core::Status Environment::Reset(std::optional<std::uint64_t> seed) {
   return {};
 }
 
+core::Status Environment::CheckIsRunning() const {
+  if (content_->is_begun && !content_->is_over) return {};
+  return core::Error{core::ErrorCode::kEnvironmentState,
+                     content_->is_begun ? "the episode is over; call reset before the next step"
+                                        : "no episode has begun; call reset before the first step"};
+}
+
 core::Result<Outcome> Environment::Step(std::span<const double> action) {
   Content& now = *content_;
-  if (!now.is_begun || now.is_over) {
-    return core::Error{core::ErrorCode::kEnvironmentState,
-                       now.is_begun ? "the episode is over; call reset before the next step"
-                                    : "no episode has begun; call reset before the first step"};
-  }
+  if (const auto checked = CheckIsRunning(); !checked) return checked.error();
   const ActionLayout& layout = *now.model->content_->action;
   if (const auto checked = layout.Check(action); !checked) return checked.error();
   const scene::Scene& scene = now.simulation.GetScene();
@@ -191,8 +195,38 @@ core::Result<Outcome> Environment::Step(std::span<const double> action) {
     now.meter.AfterTick(now.simulation);
     if (now.simulation.GetSnapshot().task.IsOver()) break;
   }
-  ++now.actions;
+  return EndStep();
+}
 
+core::Result<Outcome> Environment::StepBy(
+    const std::function<scene::Input(const simulation::Snapshot&)>& command, std::span<double> action) {
+  Content& now = *content_;
+  if (const auto checked = CheckIsRunning(); !checked) return checked.error();
+  const EnvironmentSettings& settings = now.model->Settings();
+  if (settings.actions == ActionKind::kDiscrete)
+    return Unusable("what a surgeon does is no discrete action; choose joints or tip");
+  const ActionLayout& layout = *now.model->content_->action;
+  TROCAR_ASSERT(action.size() == now.model->ActionSize());
+  const scene::Scene& scene = now.simulation.GetScene();
+  const scene::Input before = now.input;
+  now.meter.Begin(now.simulation);
+  for (int tick = 0; tick < now.model->TicksPerAction(); ++tick) {
+    now.input = command(now.simulation.GetSnapshot());
+    now.input.settings = before.settings;
+    if (!settings.moves_camera) now.input.laparoscope = before.laparoscope;
+    now.simulation.Step(now.input);
+    now.meter.AfterTick(now.simulation);
+    if (now.simulation.GetSnapshot().task.IsOver()) break;
+  }
+  const std::array<math::Vec3, kHandCount> ports = {scene.instruments[0].p_world_port,
+                                                    scene.instruments[1].p_world_port};
+  layout.Write(ports, before, now.input, now.model->TicksPerAction() * scene.tick_seconds, action);
+  return EndStep();
+}
+
+Outcome Environment::EndStep() {
+  Content& now = *content_;
+  ++now.actions;
   Outcome outcome;
   outcome.features = now.meter.End(now.simulation);
   const EnvironmentSettings& settings = now.model->Settings();
@@ -201,8 +235,8 @@ core::Result<Outcome> Environment::Step(std::span<const double> action) {
   outcome.is_success = seen.task.phase == scene::TaskPhase::kCompleted || seen.operation.is_completed;
   outcome.is_terminated = seen.task.IsOver() || seen.operation.is_completed;
   // half a tick: the last action may end a rounding error before the time
-  outcome.is_truncated =
-      !outcome.is_terminated && seen.time + 0.5 * scene.tick_seconds >= settings.most_seconds;
+  outcome.is_truncated = !outcome.is_terminated &&
+                         seen.time + 0.5 * now.simulation.GetScene().tick_seconds >= settings.most_seconds;
   now.is_over = outcome.is_terminated || outcome.is_truncated;
   return outcome;
 }
@@ -215,6 +249,9 @@ void Environment::Observe(std::span<float> state) const {
 
 std::size_t Environment::StateSize() const {
   return content_->model->StateSize();
+}
+std::size_t Environment::ActionSize() const {
+  return content_->model->ActionSize();
 }
 const simulation::Simulation& Environment::GetSimulation() const {
   return content_->simulation;

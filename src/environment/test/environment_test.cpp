@@ -113,6 +113,48 @@ TEST(Environment, RefusesWrongActions) {
   EXPECT_EQ(environment.ActionCount(), 1u);
 }
 
+// A surgeon's step changes no bit of what the surgeon does, and the action that it is said to amount to does the same.
+TEST(Environment, IsPlayedByASurgeon) {
+  const auto model = MakeModel({.task = "lift_and_grasp", .actions = ActionKind::kTip});
+  Environment played = std::move(*Environment::Make(model)), repeated = std::move(*Environment::Make(model));
+  ASSERT_TRUE(played.Reset(1).ok() && repeated.Reset(1).ok());
+  const auto scene = std::make_shared<const scene::Scene>(played.GetSimulation().GetScene());
+  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto surgeon = agent::MakeSurgeon("expert", scene, 1), other = agent::MakeSurgeon("expert", scene, 1);
+  ASSERT_TRUE(simulation.ok() && surgeon.ok() && other.ok());
+  std::vector<double> action(model->ActionSize());
+  Outcome outcome;
+  for (int i = 0; !played.IsOver(); ++i) {
+    const auto step =
+        played.StepBy([&](const simulation::Snapshot& seen) { return (*surgeon)->Act(seen); }, action);
+    ASSERT_TRUE(step.ok()) << step.error().Text();
+    outcome = *step;
+    ASSERT_TRUE(model->CheckAction(action).ok());
+    for (int tick = 0; tick < model->TicksPerAction() && !simulation->GetSnapshot().task.IsOver(); ++tick)
+      simulation->Step((*other)->Act(simulation->GetSnapshot()));
+    ASSERT_EQ(played.GetSimulation().Hash(), simulation->Hash()) << "after action " << i;
+    if (i >= 30) continue;
+    ASSERT_TRUE(repeated.Step(action).ok());
+    for (const int hand : {scene::kLeft, scene::kRight}) {
+      const auto tip = [hand](const Environment& of) {
+        return of.GetSimulation().GetSnapshot().instruments[hand].X_world_tool.translation;
+      };
+      ASSERT_LT(math::Distance(tip(played), tip(repeated)), 5e-4) << "after action " << i;
+    }
+  }
+  EXPECT_TRUE(outcome.is_success);
+}
+
+TEST(Environment, IsPlayedByASurgeonOnlyWhileAnEpisodeRuns) {
+  const auto rest = [](const simulation::Snapshot&) { return scene::Input{}; };
+  std::vector<double> action(10);
+  Environment environment = MakeEnvironment({.task = "peg_transfer"});
+  EXPECT_EQ(environment.StepBy(rest, action).error().code, core::ErrorCode::kEnvironmentState);
+  Environment discrete = MakeEnvironment({.task = "peg_transfer", .actions = ActionKind::kDiscrete});
+  ASSERT_TRUE(discrete.Reset().ok());
+  EXPECT_EQ(discrete.StepBy(rest, action).error().code, core::ErrorCode::kUsage);
+}
+
 TEST(Environment, RefusesWrongSettings) {
   const auto code = [](const EnvironmentSettings& settings) {
     const auto made = EnvironmentModel::Make(settings);

@@ -203,11 +203,7 @@ std::vector<Trail> MakeGuides(const scene::Scene& scene, std::span<const scene::
 
 std::string DescribeJaws(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand) {
   const simulation::InstrumentSnapshot& now = snapshot.instruments[hand];
-  if (now.object >= 0) {
-    std::string name = scene.objects[static_cast<std::size_t>(now.object)].name;
-    std::replace(name.begin(), name.end(), '_', ' ');
-    return core::TranslateWith("holds {1}", {core::TranslateComposed(name)});
-  }
+  if (now.object >= 0) return core::TranslateWith("holds {1}", {ObjectLabel(scene, now.object)});
   if (now.is_grasping) return core::TranslateWith("holds the {1}", {OrganLabel(scene.patient, now.organ)});
   const scene::InstrumentSetup& setup = scene.instruments[hand];
   const std::size_t place = snapshot.operation.tools[hand];

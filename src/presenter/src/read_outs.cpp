@@ -106,6 +106,10 @@ std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ) {
                                       : core::Translate("tissue");
 }
 
+std::string ObjectLabel(const scene::Scene& scene, std::int32_t object) {
+  return core::TranslateComposed(WithSpaces(scene.objects.at(static_cast<std::size_t>(object)).name));
+}
+
 std::string HandLabel(const scene::Scene& scene, std::int32_t hand) {
   if (hand < 0 || hand >= scene::kHandCount) return core::Translate("instrument");
   const scene::InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
@@ -185,8 +189,12 @@ std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) 
   const std::string force = event.force < 0.05 ? "" : ", " + FormatForce(event.force);
   switch (event.kind) {
     case scene::EventKind::kGrasp:
+      if (event.object >= 0)
+        return core::TranslateWith("{1}: grasped {2}", {hand, ObjectLabel(scene, event.object)}) + force;
       return core::TranslateWith("{1}: grasped the {2}", {hand, organ}) + force;
     case scene::EventKind::kRelease:
+      if (event.object >= 0)
+        return core::TranslateWith("{1}: let {2} go", {hand, ObjectLabel(scene, event.object)});
       return core::TranslateWith("{1}: let the {2} go", {hand, organ});
     case scene::EventKind::kSlip:
       return core::TranslateWith("{1}: the {2} slipped", {hand, organ}) + force;

@@ -74,6 +74,13 @@ TEST(ReadOuts, EventsAreSaidInWords) {
             "Liver: was not finite, last good state restored (E-SIM-001)");
   EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, scene::kLeft, 0, 0.01}, scene),
             "Left grasper: grasped the liver");
+  scene::Scene rings = TwoOrgans();
+  rings.objects.resize(2);
+  rings.objects[1].name = "ring_2";
+  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, scene::kLeft, -1, 1.2, 1}, rings),
+            "Left grasper: grasped ring 2, 1.2 N");
+  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, scene::kRight, -1, 0, 1}, rings),
+            "Right grasper: let ring 2 go");
   EXPECT_TRUE(IsWarning(EventKind::kSlip));
   EXPECT_FALSE(IsWarning(EventKind::kGrasp));
 }

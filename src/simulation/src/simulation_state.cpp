@@ -144,9 +144,10 @@ core::Status Simulation::Content::Restore(core::StateArchive& archive) {
                responses.shape_scale,
                world.touch.Contacts().springs,
                {}};
+  // nor is a patch for a haptic device healthy where the last tick was bad
+  tick.verdict = world.guard->LastVerdict();
   // the rest of a tick's scratch is made in the next one
   tick.changes = {};
-  tick.verdict = tissue::GuardVerdict::kGood;
   tick.torn_count = tick.torn_spring_count = 0;
   tick.has_cut = false;
   tick.solved_condition = world.tissue.condition;

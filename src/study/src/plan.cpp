@@ -38,6 +38,21 @@ constexpr Parameter kParameters[] = {
      [](scene::Scene& s, double v) { s.laparoscope.field_of_view = v; }},
 };
 
+constexpr std::pair<std::string_view, Until> kMoments[] = {{"critical_view", Until::kCriticalView},
+                                                           {"free", Until::kFree}};
+
+Until ReadUntil(const core::JsonView& view) {
+  if (!view.Has("until")) return Until::kEnd;
+  const std::string text = view.Text("until");
+  std::string known;
+  for (const auto& [name, moment] : kMoments) {
+    if (name == text) return moment;
+    known += " " + std::string(name);
+  }
+  view.Complain("a run does not end at \"" + text + "\"; there are" + known, core::ErrorCode::kStudyInvalid);
+  return Until::kEnd;
+}
+
 /// Of all files of a folder, by their names.
 core::Result<std::string> FingerprintFolder(const std::filesystem::path& folder) {
   std::error_code failure;
@@ -114,7 +129,7 @@ core::Result<StudyPlan> ReadPlan(const std::filesystem::path& path) {
   if (!document) return document.error();
   const core::JsonView root = document->Root();
   root.AllowOnly({"format", "version", "name", "about", "task", "level", "surgeons", "patients", "seeds",
-                  "parameters", "most_seconds"});
+                  "parameters", "most_seconds", "until"});
   StudyPlan plan;
   if (root.Text("format") != "trocar-study-plan")
     root.Complain("format is not \"trocar-study-plan\"", core::ErrorCode::kStudyInvalid);
@@ -133,6 +148,7 @@ core::Result<StudyPlan> ReadPlan(const std::filesystem::path& path) {
   }
   if (root.Has("parameters")) ReadParameters(root.Object("parameters"), plan);
   plan.most_seconds = root.NumberOr("most_seconds", plan.most_seconds, {0.01, 1e5});
+  plan.until = ReadUntil(root);
   const std::vector<std::string> patients = ReadTexts(root, "patients", {""});
   if (const auto status = document->Check(); !status) return status.error();
   plan.patients.clear();
@@ -181,6 +197,8 @@ std::vector<Run> ListRuns(const StudyPlan& plan) {
                                    {"seed", seed},
                                    {"most_seconds", plan.most_seconds},
                                    {"parameters", nlohmann::json::object()}};
+          for (const auto& [name, moment] : kMoments)
+            if (plan.until == moment) inputs["until"] = name;
           for (std::size_t i = 0; i < values.size(); ++i)
             inputs["parameters"][plan.parameters[i].name] = values[i];
           runs.push_back({runs.size(), Fingerprint(inputs.dump()), surgeon, plan.patients[p], seed, values});

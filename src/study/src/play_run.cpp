@@ -59,7 +59,20 @@ struct Sums {
   }
 };
 
-std::string NameOutcome(const simulation::Snapshot& last, bool has_finished) {
+bool HasCome(Until moment, const simulation::Snapshot& now) {
+  switch (moment) {
+    case Until::kEnd:
+      break;
+    case Until::kCriticalView:
+      return now.operation.critical_view.IsAchieved();
+    case Until::kFree:
+      return now.operation.is_gallbladder_free;
+  }
+  return false;
+}
+
+std::string NameOutcome(const simulation::Snapshot& last, Until until, bool has_finished) {
+  if (HasCome(until, last)) return "completed";
   if (last.operation.is_completed || last.task.phase == scene::TaskPhase::kCompleted) return "completed";
   if (last.task.phase == scene::TaskPhase::kTimeOver) return "time over";
   if (last.task.phase == scene::TaskPhase::kEnded) return "ended by an error";
@@ -75,6 +88,9 @@ core::Result<RunResult> PlayRun(const StudyPlan& plan, const Run& run) {
     for (const Parameter& parameter : Parameters())
       if (parameter.name == plan.parameters[i].name) parameter.apply(*read, run.values[i]);
   }
+  if (plan.until != Until::kEnd && !read->operation)
+    return core::Error{core::ErrorCode::kStudyInvalid,
+                       "\"until\" names a moment of an operation; " + plan.task + " is none: leave it out"};
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
   auto simulation = simulation::Simulation::Make(scene, 1);
   if (!simulation) return simulation.error();
@@ -83,7 +99,7 @@ core::Result<RunResult> PlayRun(const StudyPlan& plan, const Run& run) {
   const simulation::Snapshot& now = simulation->GetSnapshot();
   Sums sums;
   sums.Begin(now);
-  while (!(*surgeon)->HasFinished() && now.time < plan.most_seconds &&
+  while (!(*surgeon)->HasFinished() && now.time < plan.most_seconds && !HasCome(plan.until, now) &&
          now.task.phase != scene::TaskPhase::kTimeOver && now.task.phase != scene::TaskPhase::kEnded) {
     simulation->Step((*surgeon)->Act(now));
     sums.Add(now, scene->tick_seconds);
@@ -94,7 +110,7 @@ core::Result<RunResult> PlayRun(const StudyPlan& plan, const Run& run) {
   std::uint64_t task_errors = 0;
   for (const std::uint32_t count : now.task.errors) task_errors += count;
   RunResult result;
-  result.outcome = NameOutcome(now, (*surgeon)->HasFinished());
+  result.outcome = NameOutcome(now, plan.until, (*surgeon)->HasFinished());
   result.state_hash = core::HashText(simulation->Hash());
   result.numbers = {{"completed", result.outcome == "completed" ? 1.0 : 0.0},
                     {"seconds", now.time},

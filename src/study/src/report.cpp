@@ -22,10 +22,11 @@ constexpr const char* kStyle =
     "auto;max-width:60rem;padding:1.5rem}"
     "table{border-collapse:collapse;font-size:.9rem}th,td{text-align:left;padding:.3rem "
     ".6rem;border-bottom:1px solid #dcdcde}"
-    "svg{width:100%;height:auto;background:#fafafa;border:1px solid #dcdcde}"
+    "svg{width:100%;height:auto;background:#fafafa;border:1px solid "
+    "#dcdcde}.bad{color:#a4161a;font-weight:600}";
+constexpr const char* kPlotStyle =
     "svg text{font:12px system-ui,\"DejaVu Sans\",sans-serif;fill:#1d2327}svg "
-    ".title{font-size:14px;font-weight:600}"
-    "svg .grid{stroke:#dcdcde}svg .line{fill:none;stroke-width:1.8}.bad{color:#a4161a;font-weight:600}";
+    ".title{font-size:14px;font-weight:600}svg .grid{stroke:#dcdcde}svg .line{fill:none;stroke-width:1.8}";
 constexpr std::size_t kMostFailuresShown = 50;
 
 double FindNumber(const Row& row, const std::string& name) {
@@ -47,25 +48,49 @@ std::vector<std::string> ListVarying(std::span<const Row> rows) {
   return names;
 }
 
-/// Middle, and where the middle eight of ten lie, over the values of one parameter.
-std::string PlotNumber(const StudyPlan& plan, std::span<const Row> rows, std::size_t parameter,
-                       const std::string& number) {
+/// What runs are compared by: a parameter, or the patients by their places in the plan.
+struct PlotAxis {
+  std::string name;
+  bool is_log = false;
+  std::function<double(const Row&)> value_of;
+};
+
+PlotAxis AxisOf(const StudyPlan& plan, std::size_t parameter) {
+  const auto& values = plan.parameters[parameter].values;
+  const double least = *std::min_element(values.begin(), values.end()),
+               most = *std::max_element(values.begin(), values.end());
+  return {plan.parameters[parameter].name, least > 0 && most >= 20 * least,
+          [parameter](const Row& row) { return row.run.values[parameter]; }};
+}
+
+PlotAxis AxisOfPatients(const StudyPlan& plan) {
+  return {"patient", false, [&plan](const Row& row) {
+            const auto at = std::find(plan.patients.begin(), plan.patients.end(), row.run.patient);
+            return static_cast<double>(at - plan.patients.begin() + 1);
+          }};
+}
+
+/// Middle, and where the middle eight of ten lie.
+std::string PlotNumber(std::span<const Row> rows, const PlotAxis& axis, const std::string& number) {
   std::map<double, std::vector<double>> groups;
-  for (const Row& row : rows) groups[row.run.values[parameter]].push_back(FindNumber(row, number));
+  for (const Row& row : rows) groups[axis.value_of(row)].push_back(FindNumber(row, number));
   bench::PlotLine low{"10 %", {}}, middle{"median", {}}, high{"90 %", {}};
   for (auto& [value, numbers] : groups) {
     low.points.push_back({value, core::CalcPercentile(numbers, 0.1)});
     middle.points.push_back({value, core::CalcPercentile(numbers, 0.5)});
     high.points.push_back({value, core::CalcPercentile(numbers, 0.9)});
   }
-  const auto& values = plan.parameters[parameter].values;
-  const double least = *std::min_element(values.begin(), values.end()),
-               most = *std::max_element(values.begin(), values.end());
-  return bench::FormatSvgPlot({.title = number,
-                               .x_label = plan.parameters[parameter].name,
-                               .y_label = "",
-                               .is_log_x = least > 0 && most >= 20 * least},
+  return bench::FormatSvgPlot({.title = number, .x_label = axis.name, .y_label = "", .is_log_x = axis.is_log},
                               {middle, low, high});
+}
+
+/// A plot that needs no page around it.
+core::Status WritePlot(const std::filesystem::path& path, std::string plot) {
+  const std::string root = "<svg ";
+  plot.replace(plot.find(root), root.size(), root + "xmlns=\"http://www.w3.org/2000/svg\" ");
+  plot.insert(plot.find('>') + 1, "<style>" + std::string(kPlotStyle) +
+                                      "</style><rect width=\"100%\" height=\"100%\" fill=\"#fafafa\"/>");
+  return core::WriteFile(path, plot);
 }
 
 std::string FormatGroups(std::span<const Row> rows, const std::vector<std::string>& names,
@@ -93,7 +118,7 @@ std::string FormatGroups(std::span<const Row> rows, const std::vector<std::strin
 core::Status WriteReport(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows,
                          const StudySummary& summary) {
   std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +
-                     core::EscapeMarkup(plan.name) + "</title><style>" + kStyle +
+                     core::EscapeMarkup(plan.name) + "</title><style>" + kStyle + kPlotStyle +
                      "</style></head><body>\n<h1>" + core::EscapeMarkup(plan.name) + "</h1>\n<p>" +
                      core::EscapeMarkup(plan.about) + "</p>\n<p>" + std::to_string(summary.done) + " of " +
                      std::to_string(summary.runs) + " runs are done";
@@ -115,10 +140,18 @@ core::Status WriteReport(const std::filesystem::path& path, const StudyPlan& pla
       page += FormatGroups(
           rows, names, [](const Row& row) { return row.run.patient.filename().string(); }, "patient");
   }
-  for (std::size_t parameter = 0; parameter < plan.parameters.size() && !rows.empty(); ++parameter) {
-    if (plan.parameters[parameter].values.size() < 2) continue;
-    page += "<h2>" + core::EscapeMarkup(plan.parameters[parameter].name) + "</h2>\n";
-    for (const std::string& name : names) page += PlotNumber(plan, rows, parameter, name) + "\n";
+  std::vector<PlotAxis> axes;
+  for (std::size_t i = 0; i < plan.parameters.size() && !rows.empty(); ++i)
+    if (plan.parameters[i].values.size() > 1) axes.push_back(AxisOf(plan, i));
+  if (plan.patients.size() > 1 && !rows.empty()) axes.push_back(AxisOfPatients(plan));
+  for (const PlotAxis& axis : axes) {
+    page += "<h2>" + core::EscapeMarkup(axis.name) + "</h2>\n";
+    for (const std::string& name : names) {
+      const std::string plot = PlotNumber(rows, axis, name);
+      page += plot + "\n";
+      const auto file = path.parent_path() / "plots" / (name + "-by-" + axis.name + ".svg");
+      if (auto status = WritePlot(file, plot); !status) return status;
+    }
   }
   return core::WriteFile(path, page + "</body></html>\n");
 }

@@ -21,6 +21,7 @@ struct Row {
 core::Status WriteCsv(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows);
 /// Table `runs`, one row a run; made anew.
 core::Status WriteSqlite(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows);
+/// The page, and each of its plots as a picture in plots/ beside it.
 core::Status WriteReport(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows,
                          const StudySummary& summary);
 

@@ -44,6 +44,14 @@ TEST_F(PlanTest, KnowsARunByItsInputsAlone) {
   EXPECT_NE(ListRuns(*one)[0].key, ListRuns(*other)[0].key);
 }
 
+TEST_F(PlanTest, KnowsUntilWhenARunGoes) {
+  const auto whole = Read(Make("")), part = Read(Make(R"(, "until": "critical_view")"));
+  ASSERT_TRUE(whole.ok() && part.ok());
+  EXPECT_EQ(whole->until, Until::kEnd);
+  EXPECT_EQ(part->until, Until::kCriticalView);
+  EXPECT_NE(ListRuns(*whole)[0].key, ListRuns(*part)[0].key);
+}
+
 TEST_F(PlanTest, RefusesWhatCannotBeRun) {
   const auto code_of = [&](const std::string& text) {
     const auto plan = Read(text);
@@ -53,6 +61,7 @@ TEST_F(PlanTest, RefusesWhatCannotBeRun) {
   EXPECT_EQ(code_of(Make(R"(, "parameters": {"gravity": []})")), core::ErrorCode::kStudyInvalid);
   EXPECT_EQ(code_of(Make(R"(, "parameters": {"gravity": [-1]})")), core::ErrorCode::kJsonField);
   EXPECT_EQ(code_of(Make(R"(, "surgeons": [])")), core::ErrorCode::kStudyInvalid);
+  EXPECT_EQ(code_of(Make(R"(, "until": "lunch")")), core::ErrorCode::kStudyInvalid);
   EXPECT_EQ(code_of(Make(R"(, "sedes": [1, 2])")), core::ErrorCode::kJsonField);
   EXPECT_EQ(code_of(Make(R"(, "patients": ["no_such_folder"])")), core::ErrorCode::kFileMissing);
   EXPECT_EQ(

@@ -77,7 +77,12 @@ TEST_F(StudyTest, RunsEachOnceAndCollectsThem) {
   EXPECT_EQ(summary->failed, 0U);
   EXPECT_EQ(Lines().size(), 9U);
   EXPECT_EQ(CountInDatabase(), 8);
-  EXPECT_TRUE(fs::exists(options_.folder / "report.html"));
+  const auto report = core::ReadFile(options_.folder / "report.html");
+  const auto plot = core::ReadFile(options_.folder / "plots/path_left_m-by-gravity.svg");
+  ASSERT_TRUE(report.ok() && plot.ok());
+  EXPECT_NE(report->find("path_left_m"), std::string::npos);
+  EXPECT_EQ(plot->find("<svg xmlns="), 0U);
+  EXPECT_NE(plot->find("class=\"line\""), std::string::npos);
   // again: nothing is played, and the table is the same
   const auto before = Lines();
   const auto stamp = fs::last_write_time(options_.folder / "results");
@@ -93,6 +98,16 @@ TEST_F(StudyTest, DoesNotDependOnTheNumberOfWorkers) {
   options_.workers = 3;
   ASSERT_TRUE(Start().ok());
   EXPECT_EQ(Lines(), two);
+}
+
+TEST_F(StudyTest, KnowsMomentsOfOperationsOnly) {
+  const auto plan = ReadPlan(options_.plan_file);
+  ASSERT_TRUE(plan.ok());
+  StudyPlan wrong = *plan;
+  wrong.until = Until::kCriticalView;
+  const auto result = PlayRun(wrong, ListRuns(wrong).front());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, core::ErrorCode::kStudyInvalid);
 }
 
 TEST_F(StudyTest, GoesOnWhereItWasStopped) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "trocar/anatomy/build_patient.h"
+#include "trocar/core/translate.h"
 #include "trocar/editor/contour_commands.h"
 #include "trocar/editor/contour_editor.h"
 #include "trocar/editor/contour_options.h"
@@ -23,7 +24,7 @@ namespace trocar::editor {
 
 /// All that the window says, besides canvas, slice bar and panel, which read the editor.
 struct ContourPage {
-  std::string title = "Trocar: contours";
+  std::string title = core::Translate("Trocar: contours");
   std::string hint, series, state;
   bool is_hint_warning = false;
   bool is_busy = false;      ///< a bar shows how far it is

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "trocar/anatomy/patient_lint.h"
+#include "trocar/core/translate.h"
 #include "trocar/editor/patient_commands.h"
 #include "trocar/editor/patient_editor.h"
 #include "trocar/editor/patient_editor_options.h"
@@ -21,7 +22,7 @@ namespace trocar::editor {
 
 /// All that the window says, besides view and panel.
 struct PatientPage {
-  std::string title = "Trocar: patient";
+  std::string title = core::Translate("Trocar: patient");
   std::string hint, status;
   bool is_status_warning = false;
 };

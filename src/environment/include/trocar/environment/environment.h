@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -66,9 +67,17 @@ class Environment {
   /// \param action  (ActionSize()), that CheckAction accepts
   /// \return kActionInvalid; kEnvironmentState before a Reset or after the episode's end
   core::Result<Outcome> Step(std::span<const double> action);
+  /// The same for one who commands every tick, as scripted surgeons do: plays the ticks of one action.
+  /// \param command  what the next tick is given, from what the last one published. Settings, and a laparoscope that is no part
+  ///     of the action, stay as the environment has them
+  /// \param[out] action  (ActionSize()) what that amounts to, from -1 to 1; pedals and tools as they are at its end
+  /// \return kUsage for discrete actions; kEnvironmentState as Step
+  core::Result<Outcome> StepBy(const std::function<scene::Input(const simulation::Snapshot&)>& command,
+                               std::span<double> action);
   /// \param[out] state  (StateSize()) as StateFields() says
   void Observe(std::span<float> state) const;
-  std::size_t StateSize() const;  ///< of the model
+  std::size_t StateSize() const;   ///< of the model
+  std::size_t ActionSize() const;  ///< of the model
 
   const simulation::Simulation& GetSimulation() const;
   /// What the last tick of the last action was given.
@@ -78,6 +87,8 @@ class Environment {
   bool IsOver() const;
 
  private:
+  core::Status CheckIsRunning() const;
+  Outcome EndStep();
   struct Content;
   explicit Environment(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "trocar/core/translate.h"
@@ -45,6 +46,18 @@ class CommandBar : public Gtk::HeaderBar {
       if (row->button.side == ButtonSide::kEnd) pack_end(Make(*row));
     }
     set_show_title_buttons(true);
+    heading_.add_css_class("title");
+    heading_.set_ellipsize(Pango::EllipsizeMode::END);
+    set_title_widget(heading_);
+  }
+
+  /// The window's title between the buttons, without the program's name that stands before it for the desktop: where buttons are
+  /// wide little room is left.
+  /// \param title  "Trocar: peg transfer"
+  void SetHeading(const std::string& title) {
+    const std::size_t end = title.find(": ");
+    heading_.set_text(end == std::string::npos ? title : title.substr(end + 2));
+    tips_.Set(heading_, title);
   }
 
   /// \param state_of  how a command's button looks now
@@ -85,6 +98,7 @@ class CommandBar : public Gtk::HeaderBar {
   }
 
   Tips& tips_;
+  Gtk::Label heading_;
   std::function<void(const Row&)> act_;
   std::vector<Entry> entries_;
   bool is_showing_ = false;  // buttons are being set by us

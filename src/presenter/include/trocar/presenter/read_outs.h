@@ -43,6 +43,8 @@ std::string FormatResidual(double residual);
 
 /// "gallbladder", "cystic duct": an organ's name with spaces; "tissue" where the index names none.
 std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ);
+/// "ring 1": the name of a scene's loose thing with spaces. \param object  index into Scene::objects
+std::string ObjectLabel(const scene::Scene& scene, std::int32_t object);
 /// "left grasper"; "left hand" where it has several tools
 std::string HandLabel(const scene::Scene& scene, std::int32_t hand);
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/background_job.h"
 #include "trocar/presenter/branch.h"
 #include "trocar/presenter/options.h"
@@ -36,7 +37,7 @@ std::string FormatClock(double seconds);
 
 /// All that the window says and shows, besides pictures and list.
 struct ReplayPage {
-  std::string title = "Trocar: replay";
+  std::string title = core::Translate("Trocar: replay");
   std::string clock, state, message;
   std::array<std::string, 2> about;  ///< of each side; empty: there is none
   bool is_warning = false;

@@ -31,6 +31,13 @@ struct ParameterValues {
   std::vector<double> values;
 };
 
+/// A moment of an operation at which a run may end.
+enum class Until : std::uint8_t {
+  kEnd,           ///< none: it goes on to its end
+  kCriticalView,  ///< "critical_view": achieved, and seen from both sides
+  kFree           ///< "free": the gallbladder hangs on nothing
+};
+
 struct StudyPlan {
   std::string name, about;
   std::string task = "cholecystectomy", level = "normal";
@@ -40,6 +47,7 @@ struct StudyPlan {
   std::uint64_t first_seed = 1, last_seed = 1;      ///< both included
   std::vector<ParameterValues> parameters;          ///< every combination of their values
   double most_seconds = 1800;                       ///< of a run, simulated
+  Until until = Until::kEnd;
 };
 
 /// \return kStudyInvalid with the field, or the file's error
