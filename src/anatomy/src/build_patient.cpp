@@ -141,6 +141,7 @@ std::string FormatSurroundings(const BuildReport& report) {
       text += "\n";
     }
   }
+  for (const std::string& sentence : report.sinking) text += sentence + "\n";
   for (const Port& port : report.patient.ports) {
     std::snprintf(line, sizeof line, "Port for %s at %.0f, %.0f, %.0f mm (left, cranial, anterior). ",
                   roles::SpokenName(NameOf(port.use)).c_str(), 1000 * port.position.x, 1000 * port.position.y,

@@ -208,7 +208,7 @@ void AddSurroundings(const images::LabelVolume& volume, const OrganLabels& organ
     patient.neighbours.push_back(std::move(one));
   }
   PlacePorts(body, patient);
-  for (std::string& note : SinkUnderGas(patient)) report.notes.push_back(std::move(note));
+  report.sinking = SinkUnderGas(patient);
   for (std::size_t i = 0; i < report.neighbours.size(); ++i) {
     NeighbourReport& one = report.neighbours[i];
     const auto inspected = geometry::InspectMesh(patient.neighbours[i].mesh);

@@ -394,8 +394,8 @@ TEST_F(NeighboursFromLabels, BowelInTheWaySinksUnderTheGas) {
   const Neighbour* colon = report.patient.NeighbourOf(NeighbourRole::kColon);
   ASSERT_NE(colon, nullptr);
   bool is_said = false;
-  for (const std::string& note : report.notes)
-    is_said = is_said || note.find("the colon sinks by up to") != std::string::npos;
+  for (const std::string& sentence : report.sinking)
+    is_said = is_said || sentence.find("the colon sinks by up to") != std::string::npos;
   EXPECT_TRUE(is_said);
   const meshing::NearestSurface surface(colon->mesh);
   const Vec3 neck = report.patient.LandmarkOf(LandmarkRole::kInfundibulum)->position;
@@ -409,6 +409,26 @@ TEST_F(NeighboursFromLabels, BowelInTheWaySinksUnderTheGas) {
   const auto inspected = geometry::InspectMesh(colon->mesh);
   EXPECT_NEAR(1e6 * inspected.volume / body.VolumeOf(kTotalColon), 1.0, 0.02);
   EXPECT_GE(inspected.min_angle * 180 / M_PI, 5.0);
+}
+
+// The one neighbour that the Visible Human's reference labels have: a branched tube of 8 mL, which becomes one mesh beside the others' templates.
+TEST_F(NeighboursFromLabels, OfTheVisibleHumanHaveTheirVolume) {
+  LabelOptions options;
+  options.labels = fs::path(TROCAR_SHARED_DIR) / "data/visible-human-male/reference/labels.nii.gz";
+  if (!fs::exists(options.labels)) GTEST_SKIP() << options.labels.parent_path() << " is not there";
+  options.names = folder_ / "names.json";
+  options.spacing_mm = 2.0;
+  ASSERT_TRUE(core::WriteFile(options.names, R"({"liver": 1, "gallbladder": 2, "portal vein": 5})").ok());
+  const auto report = BuildPatientFromLabels(options);
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  const Neighbour* vein = report->patient.NeighbourOf(NeighbourRole::kPortalVein);
+  ASSERT_NE(vein, nullptr);
+  EXPECT_TRUE(vein->is_seen);
+  const NeighbourReport& told = report->neighbours.front();
+  EXPECT_EQ(told.name, vein->name);
+  EXPECT_NEAR(told.volume_ml / told.voxels_ml, 1.0, 0.02);
+  EXPECT_LT(told.left_out_ml, 0.1 * told.voxels_ml);
+  for (const auto& finding : LintPatient(report->patient).findings) ADD_FAILURE() << finding.code;
 }
 
 TEST(PatientSurroundings, AreLeftOutOfAFileThatHasNone) {

@@ -50,8 +50,9 @@ struct BuildReport {
   Patient patient;
   std::vector<contours::OrganReport> organs;
   std::vector<NeighbourReport> neighbours;  ///< as Patient::neighbours; none from control points
-  std::vector<std::string> notes;  ///< sentences: what the images have and the patient has not
-  std::size_t overlays = 0;        ///< pictures written
+  std::vector<std::string> sinking;         ///< sentences: which neighbours sink under the gas, and how far
+  std::vector<std::string> notes;           ///< sentences: what the images have and the patient has not
+  std::size_t overlays = 0;                 ///< pictures written
 };
 
 /// Reads control points and the slices they name, adapts, fills, builds volumes, meshes and the patient,

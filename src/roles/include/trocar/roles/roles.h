@@ -106,12 +106,10 @@ struct RoleNames<LandmarkRole> {
 };
 template <>
 struct RoleNames<NeighbourRole> {
-  static constexpr const char* kNames[] = {"other",        "stomach",
-                                           "duodenum",     "colon",
-                                           "small_bowel",  "pancreas",
-                                           "kidney_right", "inferior_vena_cava",
-                                           "aorta",        "portal_vein_and_splenic_vein",
-                                           "ribs",         "spine"};
+  static constexpr const char* kNames[] = {
+      "other",    "stomach",      "duodenum",           "colon", "small_bowel",
+      "pancreas", "kidney_right", "inferior_vena_cava", "aorta", "portal_vein_and_splenic_vein",
+      "ribs",     "spine"};
   static_assert(std::size(kNames) == kNeighbourRoleCount);
 };
 template <>
