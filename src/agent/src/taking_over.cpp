@@ -7,7 +7,7 @@ namespace trocar::agent {
 
 core::Result<std::unique_ptr<Surgeon>> MakeSurgeonTakingOver(std::string_view name, const Scene& scene,
                                                              const Input& now, std::uint64_t seed) {
-  if (!scene.patient.organs.empty()) {
+  if (!scene.patient.organs.empty() || !scene.patient.tubes.empty()) {
     return core::Error{core::ErrorCode::kUsage,
                        "nobody takes over where tissue is worked on; let the surgeon begin with the episode"};
   }

@@ -99,6 +99,11 @@ TEST_P(EveryTask, GivesTheSameHashAgainAndAnotherForAnotherSeed) {
 // Whoever takes over has never seen what was done before: a thing in a jaw, a tool on its way, a picture that was turned.
 TEST_P(EveryTask, IsFinishedByWhoeverTakesOver) {
   const auto scene = ReadDelivered(GetParam());
+  if (!scene->patient.organs.empty() || !scene->patient.tubes.empty()) {
+    EXPECT_FALSE(MakeSurgeonTakingOver("expert", *scene, Input{}, 2).ok())
+        << "tissue remembers what was done to it";
+    return;
+  }
   if (GetParam() == "peg_transfer")
     std::erase_if(scene->task->goals,
                   [](const Goal& goal) { return goal.name.find("Ring 4") == std::string::npos; });
