@@ -380,6 +380,8 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnPatientsAndDevices) {
   fs::copy(patient, folder_.Path() / "patient", fs::copy_options::recursive);
   Json json = Load(patient / "patient.json");
   json["parameters"] = {{{"name", "volume"}, {"value", 1}, {"unit", "ml"}, {"source", "a test"}}};
+  json["ports"] = {{{"for", "laparoscope"}, {"position", {0.0, 0.0, 0.1}}, {"reason", "a test"}}};
+  json["table"] = {{"head_up_deg", 12.0}, {"right_up_deg", 8.0}, {"reason", "a test"}};
   ExpectAgreement("patient", {json}, [&](const Json& one) {
     Written("patient/patient.json", one);
     return ErrorOf(anatomy::ReadPatient(folder_.Path() / "patient"));
