@@ -77,9 +77,10 @@ void SetSliceLayout(const NodeGraph& graph, SliceLayout& layout) {
     for (std::uint32_t lane = 0; lane < kSliceNodes; ++lane) {
       const std::uint32_t i = first + lane, from = i < n ? graph.starts[i] : 0,
                           count = i < n ? graph.starts[i + 1] - from : 0;
-      std::uint32_t* const to = layout.others.data() + begin + lane;
-      for (std::uint32_t step = 0; step < longest; ++step)
-        to[std::size_t{step} * kSliceNodes] = step < count ? graph.others[from + step] : i;
+      for (std::uint32_t step = 0; step < longest; ++step) {
+        layout.others[begin + std::size_t{step} * kSliceNodes + lane] =
+            step < count ? graph.others[from + step] : i;
+      }
     }
     layout.starts.push_back(layout.starts.back() + longest);
   }
