@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the engine with sanitizers and runs tests.
 #   check_sanitized.sh memory|threads ROOT FOLDER   FOLDER: where it is built; kept, so that the next time is quick
-# memory: addresses and undefined behaviour, all tests of the modules that know no window, no OpenGL and no image library; .ci/run
-# does the same for fewer modules. threads: the tests in which our own threads meet; oneTBB is not built for that sanitizer, which
+# memory: addresses and undefined behaviour, all tests of the modules that know no window, no OpenGL and no image library.
+# threads: the tests in which our own threads meet; oneTBB is not built for that sanitizer, which
 # then sees races inside it, so tests that share loops out are left out.
 set -euo pipefail
 kind=$1 root=$2 folder=$3
