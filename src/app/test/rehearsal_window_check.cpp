@@ -46,6 +46,7 @@ bool WaitForNext(const Screen& screen) {
 void GoOn(const Screen& screen) {
   const auto next = FindNext(screen.Look());
   if (next) screen.Click(next->x, next->y);
+  screen.MovePointer(20, 400);  // under the pointer the button has another colour
   std::this_thread::sleep_for(seconds(1));
 }
 

@@ -201,7 +201,12 @@ void ContourPane::UseEditor(ContourEditor* editor) {
   slices_.SetEditor(editor);
   panel_.SetEditor(editor);
   // once the presenter has done what it is at
-  if (editor != nullptr && host_.opened) Glib::signal_idle().connect_once(host_.opened);
+  told_.disconnect();
+  if (editor == nullptr || !host_.opened) return;
+  told_ = Glib::signal_idle().connect([this] {
+    host_.opened();
+    return false;
+  });
 }
 
 void ContourPane::ChooseFile(FileQuestion what, std::function<void(std::filesystem::path)> act) {

@@ -54,10 +54,8 @@ view::PatientColours ReadColours() {
 
 }  // namespace
 
-RehearsalView::RehearsalView(const std::filesystem::path& folder, const std::filesystem::path& patients,
-                             gui::Tips& tips)
+RehearsalView::RehearsalView(const std::filesystem::path& folder, const std::filesystem::path& patients)
     : Gtk::Box(Gtk::Orientation::VERTICAL),
-      tips_(tips),
       colours_(ReadColours()),
       presenter_(folder, patients, static_cast<RehearsalScreen&>(*this), [this] { news_.emit(); }) {
   add_css_class("rehearsal");
@@ -75,7 +73,7 @@ RehearsalView::RehearsalView(const std::filesystem::path& folder, const std::fil
 
 RehearsalView::~RehearsalView() {
   pulse_.disconnect();
-  pane_.reset();
+  ClosePane();
 }
 
 void RehearsalView::MakeSteps() {
@@ -326,10 +324,15 @@ void RehearsalView::FocusStep() {
 }
 
 void RehearsalView::ShowSlices(const std::optional<ContourOptions>& slices) {
+  ClosePane();
+  if (slices) MakePane(*slices);
+}
+
+void RehearsalView::ClosePane() {
+  while (Gtk::Widget* child = slices_.get_first_child()) slices_.remove(*child);
   pane_.reset();
   pane_bar_.reset();
-  while (Gtk::Widget* child = slices_.get_first_child()) slices_.remove(*child);
-  if (slices) MakePane(*slices);
+  pane_tips_.reset();
 }
 
 void RehearsalView::MakePane(const ContourOptions& slices) {
@@ -347,9 +350,10 @@ void RehearsalView::MakePane(const ContourOptions& slices) {
     presenter_.SlicesOpened(workspace.Series(), workspace.Options().series);
     CountContours();
   };
-  pane_ = std::make_unique<ContourPane>(slices, tips_, std::move(host));
+  pane_tips_ = std::make_unique<gui::Tips>();
+  pane_ = std::make_unique<ContourPane>(slices, *pane_tips_, std::move(host));
   pane_bar_ = std::make_unique<gui::CommandBar<ContourAction, ContourNeeds>>(
-      PaneCommands(), tips_,
+      PaneCommands(), *pane_tips_,
       [this](const ContourCommand& command) { pane_->Presenter().Do(command.action); });
   pane_bar_->set_show_title_buttons(false);
   pane_->SetReadOnly(!IsDrawing());

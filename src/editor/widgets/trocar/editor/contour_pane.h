@@ -94,6 +94,7 @@ class ContourPane : public Gtk::Box, private ContourScreen {
   gui::FileDialog file_dialog_;
   bool is_read_only_ = false;
   std::array<sigc::connection, static_cast<std::size_t>(ContourTimer::kCount)> timers_;
+  sigc::connection told_;  // that a series is there
   Glib::Dispatcher loaded_, built_, progressed_, surfaces_changed_;
   std::unique_ptr<ContourPresenter> presenter_;
 };

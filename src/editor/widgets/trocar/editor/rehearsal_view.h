@@ -21,7 +21,7 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
  public:
   /// \param folder    of what is under way
   /// \param patients  where a patient goes that is operated on
-  RehearsalView(const std::filesystem::path& folder, const std::filesystem::path& patients, gui::Tips& tips);
+  RehearsalView(const std::filesystem::path& folder, const std::filesystem::path& patients);
   ~RehearsalView() override;
 
   /// Goes on where it was left, and takes the keyboard.
@@ -41,6 +41,7 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
   void MakeFoot();
   void MakePorts();
   void MakePane(const ContourOptions& slices);
+  void ClosePane();
   bool IsDrawing() const;
   bool IsOnSlice() const;
   void CountContours();
@@ -56,7 +57,6 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
   void ShowPorts(const anatomy::Patient& patient, std::optional<std::size_t> chosen) override;
   void Operate(const std::filesystem::path& patient) override { signal_operate_.emit(patient); }
 
-  gui::Tips& tips_;
   view::PatientColours colours_;
   std::array<Gtk::Button, kRehearsalSteps> steps_;
   Gtk::Stack left_;
@@ -70,6 +70,7 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
   Gtk::Button cancel_{core::Translate("Cancel")}, back_{core::Translate("Back")}, next_,
       build_{core::Translate("Build again")}, map_{core::Translate("Take a label map")},
       forget_{core::Translate("Start anew")};
+  std::unique_ptr<gui::Tips> pane_tips_;  // of the pane that is open; they end after its widgets
   std::unique_ptr<gui::CommandBar<ContourAction, ContourNeeds>> pane_bar_;
   std::unique_ptr<ContourPane> pane_;
   bool wants_map_ = false;  // while contours are drawn, the card with maps was asked for
