@@ -281,7 +281,8 @@ void RehearsalView::Show(const RehearsalPage& page) {
   build_.set_sensitive(page.doing.empty());
   ports_card_.set_visible(page.step == RehearsalStep::kPorts);
   origin_card_.set_visible(page.step == RehearsalStep::kOperate);
-  scroller_.set_visible(!is_drawing);
+  // the question for sizes needs the whole width
+  scroller_.set_visible(!is_drawing && (pane_ == nullptr || !pane_->Sizes().get_visible()));
   images_card_.Show(page);
   organs_card_.Show(page);
   check_card_.Show(page.check);
@@ -356,6 +357,7 @@ void RehearsalView::MakePane(const ContourOptions& slices) {
       PaneCommands(), *pane_tips_,
       [this](const ContourCommand& command) { pane_->Presenter().Do(command.action); });
   pane_bar_->set_show_title_buttons(false);
+  pane_->Sizes().property_visible().signal_changed().connect([this] { Show(presenter_.Page()); });
   pane_->SetReadOnly(!IsDrawing());
   pane_bar_->set_visible(IsDrawing());
   slices_.append(*pane_bar_);
