@@ -54,6 +54,19 @@ RehearsalSeries Describe(const images::ListedSeries& listed) {
   return shown;
 }
 
+/// From the navel, where the patient's frame begins. Directions are the patient's.
+std::string SpokenPlace(const Vec3& p) {
+  const std::string across = Number("%.0f", std::fabs(1000 * p.x)),
+                    along = Number("%.0f", std::fabs(1000 * p.y));
+  const auto say = [&](const char* text) { return core::TranslateWith(text, {across, along}); };
+  const bool is_left = p.x >= 0, is_up = p.y >= 0;
+  if (is_up)
+    return is_left ? say(core::Mark("{1} mm left, {2} mm up from the navel"))
+                   : say(core::Mark("{1} mm right, {2} mm up from the navel"));
+  return is_left ? say(core::Mark("{1} mm left, {2} mm down from the navel"))
+                 : say(core::Mark("{1} mm right, {2} mm down from the navel"));
+}
+
 }  // namespace
 
 RehearsalPresenter::RehearsalPresenter(fs::path folder, fs::path patients, RehearsalScreen& screen,
@@ -689,11 +702,7 @@ void RehearsalPresenter::RefreshPorts() {
   if (!IsBuilt()) return;
   const anatomy::Patient& patient = built_->patient;
   for (const anatomy::Port& port : patient.ports) {
-    page_.ports.push_back({SpokenUse(port.use),
-                           core::TranslateWith("{1} mm left, {2} mm up from the navel",
-                                               {Number("%.0f", 1000 * port.position.x),
-                                                Number("%.0f", 1000 * port.position.y)}),
-                           SpokenReason(port.reason)});
+    page_.ports.push_back({SpokenUse(port.use), SpokenPlace(port.position), SpokenReason(port.reason)});
   }
   const anatomy::Table table = patient.table.value_or(anatomy::Table{});
   page_.head_up_deg = table.head_up / kDegree, page_.right_up_deg = table.right_up / kDegree;
