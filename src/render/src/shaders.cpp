@@ -261,11 +261,13 @@ void main() {
   float metal = is_metal ? 1.0 : 0.0;
   vec4 clouds = texture(u_pattern, 45.0 * v_rest.xyz);
   vec4 streaks = texture(u_pattern, (is_metal ? vec3(9.0, 9.0, 760.0) : vec3(170.0, 170.0, 7.0)) * v_rest.xyz);
-  float scratch = smoothstep(0.90, 0.99, streaks.b) * smoothstep(0.40, 0.65, clouds.r);
   float brushed = 1.0 + metal * (0.5 * (streaks.r - 0.5) + 0.5 * (clouds.r - 0.5));
   // grooves too fine for the picture become an even grey
-  float groove = v_rest.z * kGroovesPerMetre, width = fwidth(groove), grooves = 1.0;
-  if (is_metal) grooves -= u_grooves * (0.5 + 0.5 * sin(groove) * clamp(1.6 - 0.7 * width, 0.0, 1.0));
+  float grooves = 1.0;
+  if (is_metal) {
+    float groove = v_rest.z * kGroovesPerMetre;
+    grooves -= u_grooves * (0.5 + 0.5 * sin(groove) * clamp(1.6 - 0.7 * fwidth(groove), 0.0, 1.0));
+  }
 
   // what it mirrors: tissue or box all round, the dark middle of the lens; only metal gives it the colour of tissue
   vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
@@ -279,7 +281,10 @@ void main() {
   float point = exp2(4.0 * u_gloss.y * (max(dot(n, h), 0.0) - 1.0));
   float rim = 1.0 - facing;
   vec3 base = mix(u_low, u_high, cosine * cosine) * brushed;
-  base += u_wear * (0.033 * scratch + 0.015 * smoothstep(0.45, 0.8, clouds.r)) * kWorn;
+  if (u_wear > 0.0) {
+    float scratch = clamp(11.0 * streaks.b - 9.9, 0.0, 1.0) * clamp(4.0 * clouds.r - 1.6, 0.0, 1.0);
+    base += u_wear * (0.033 * scratch + 0.015 * clamp(2.9 * clouds.r - 1.3, 0.0, 1.0)) * kWorn;
+  }
   vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
   colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * brushed * (0.25 + 0.75 * min(light, 1.5));
   colour += u_gloss.x * (0.30 * streak * brushed + 0.8 * point) * min(light, 2.0) * kMetalHighlight;

@@ -316,7 +316,7 @@ struct LaparoscopeView::Content {
       tube.Upload(renderer, memory);
       frame.surfaces.push_back({tube.Lumens(), {}, tube_labels[i]});
       frame.surfaces.push_back({tube.Surface(), {}, tube_labels[i]});
-      tube.AddRemnants(frame);
+      if (options.quality == render::Quality::kHigh) tube.AddRemnants(frame);
     }
     std::vector<std::size_t> order(organs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

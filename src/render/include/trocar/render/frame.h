@@ -67,7 +67,7 @@ struct OverheadLight {
 
 /// What a picture may cost. The lowest leaves out what is dear where the processor draws.
 enum class Quality {
-  kLow,  ///< no glow of highlights, no filtering of their edges
+  kLow,  ///< no glow of highlights, no filtering of their edges, no grain in them
   kHigh
 };
 
