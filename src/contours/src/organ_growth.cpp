@@ -21,6 +21,7 @@ using Flags = std::vector<std::uint8_t>;
 constexpr float kNowhere = 1e12f;           // square of a distance to nothing [mm^2]
 constexpr double kToDeviation = 1.4826;     // of a median deviation, for normal noise
 constexpr double kReachDeviations = 3.0;    // a grey this far from the median may be the organ's
+constexpr double kMostOthers = 0.3;         // share of a neighbourhood that may be something else
 constexpr double kLeastReach = 6.0;         // [grey levels]
 constexpr double kEdgeDeviations = 3.0;     // steps above this much of the noise are edges
 constexpr int kSmoothings = 6;              // steps of diffusion
@@ -296,6 +297,13 @@ class Growth {
           "organ");
     }
     greys_.reach = std::max(kLeastReach, kReachDeviations * deviation);
+    const auto others = std::count_if(away.begin(), away.end(), [&](float a) { return a > greys_.reach; });
+    if (settings_.uses_prior &&
+        static_cast<double>(others) > kMostOthers * static_cast<double>(away.size())) {
+      return Refused(
+          "the click lies on a border, or the organ is too thin there; click into the middle, where it is "
+          "thick");
+    }
     return {};
   }
 

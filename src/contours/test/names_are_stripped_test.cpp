@@ -221,7 +221,11 @@ TEST(NamesAreStripped, SearchFindsWhatLeaks) {
   std::ofstream(temporary.Path() / "b.bin", std::ios::binary) << "xx" << wide;
   std::ofstream(temporary.Path() / "of_zephyrine.log") << "nothing";
   const auto leaks = FindLeaks(temporary.Path());
-  ASSERT_EQ(leaks.size(), 3u);
+  for (const char* file : {"a.json", "b.bin", "of_zephyrine.log"}) {
+    EXPECT_TRUE(std::any_of(leaks.begin(), leaks.end(), [file](const std::string& leak) {
+      return leak.starts_with(file);
+    })) << file;
+  }
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ TEST(GrowRegion, SaysWhatIsWrongWithAClick) {
   EXPECT_TRUE(says(refusal(Draw({{Ball(centre, 20), 255}}, 0), centre, settings), "in bone"));
   const GreyVolume volume = Draw({{Ball(centre, 20), kOrgan}}, 4);
   EXPECT_TRUE(says(refusal(volume, centre + Vec3{20, 0, 0}, settings), "border"));
-  EXPECT_TRUE(says(refusal(Draw({{Ball(centre, 3.5), kOrgan}}, 0), centre, settings), "thin"));
+  EXPECT_TRUE(says(refusal(Draw({{Ball(centre, 3.9), kOrgan}}, 0), centre, settings), "thin"));
   settings.prior.most_ml = 20;
   EXPECT_TRUE(says(refusal(volume, centre, settings), "too much"));
   settings.prior.most_ml = 1e9, settings.prior.least_ml = 100;
