@@ -26,10 +26,11 @@ Error Refused(std::string why) {
   return {ErrorCode::kEditRefused, std::move(why)};
 }
 
-/// Contours for a series that nobody has worked on.
-ControlPoints BeginPoints(const images::ImageSeriesInfo& info, const std::filesystem::path& images) {
+/// Contours for a series that nobody has worked on. They do not say where its files lie: such a folder often
+/// carries a person's name, and what is written here goes on into the patient.
+ControlPoints BeginPoints(const images::ImageSeriesInfo& info) {
   ControlPoints points;
-  points.name = images.filename().empty() ? images.parent_path().filename().string() : images.stem().string();
+  points.name = "Patient from contours";
   points.provenance = "Contours placed in Trocar's contour window";
   points.image_pattern = info.pattern;
   points.first_slice = info.slice_numbers.front(), points.last_slice = info.slice_numbers.back();
@@ -95,8 +96,7 @@ core::Result<ContourWorkspace> ContourWorkspace::Open(const WorkspaceOptions& op
                      " pixels, these have " + std::to_string(info.width) + " x " +
                      std::to_string(info.height) + "; name its own pictures"};
   }
-  workspace.document_ =
-      std::make_unique<ContourDocument>(points ? std::move(*points) : BeginPoints(info, options.images));
+  workspace.document_ = std::make_unique<ContourDocument>(points ? std::move(*points) : BeginPoints(info));
   workspace.store_ = std::make_shared<SliceStore>([source = *workspace.series_](int slice) {
     return source.ReadSlice(slice, source.Info().suggested_window);
   });
@@ -156,6 +156,10 @@ MeshRequest ContourWorkspace::MakeMeshRequest(int structure) const {
   MeshRequest request{structure, points.structures[structure], points.pixel_mm, points.slice_mm};
   for (SliceContours& slice : request.content.slices) slice.open.clear();
   return request;
+}
+
+GrowthRequest ContourWorkspace::MakeGrowthRequest(int structure, int slice, const Vec2& click) const {
+  return contours::MakeGrowthRequest(*series_, document_->Points(), structure, slice, click);
 }
 
 core::Result<Propagation> ContourWorkspace::Propagate(int structure, int from, int to, bool is_replacing) {

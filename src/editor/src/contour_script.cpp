@@ -225,6 +225,17 @@ core::Status Propagate(Run& run) {
   });
 }
 
+core::Status Grow(Run& run) {
+  const Vec2 click = run.words.Place(0);
+  return run.Do([&]() -> core::Status {
+    if (run.Document().Points().structures.empty())
+      return Error{ErrorCode::kEditRefused, "there is no organ yet"};
+    const auto grown = contours::GrowOrgan(
+        run.Workspace().MakeGrowthRequest(run.editor.Structure(), run.editor.Slice(), click));
+    return grown.ok() ? contours::ApplyGrowth(run.Document(), *grown) : grown.error();
+  });
+}
+
 core::Status Undo(Run& run) {
   if (!run.Document().CanUndo()) return run.Refuse(ErrorCode::kEditRefused, "there is nothing to undo");
   run.editor.Do(ContourAction::kUndo);
@@ -308,6 +319,7 @@ constexpr Verb kVerbs[] = {
     {"choose", 1, 2, "C [I]", "choose a contour and a point of it", Choose},
     {"clear", 0, 0, "", "clear the slice", ClearSlice},
     {"propagate", 1, 1, "N", "carry the slice's contours to slice N and go there", Propagate},
+    {"grow", 2, 2, "X Y", "grow the organ from a click into it, in all slices", Grow},
     {"undo", 0, 0, "", "undo", Undo},
     {"redo", 0, 0, "", "redo", Redo},
     {"reach", 1, 1, "PX", "how far points may move to an edge", SetReach},

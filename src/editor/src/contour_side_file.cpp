@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/editor/contour_side_file.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/core/sha256.h"
 
 namespace trocar::editor {
 
 std::filesystem::path FindSideFile(const contours::WorkspaceOptions& options,
                                    const std::filesystem::path& user_folder) {
   if (!options.points.empty()) return contours::AutosavePath(options.points);
-  std::string name = std::filesystem::absolute(options.images).lexically_normal().string();
-  std::replace(name.begin(), name.end(), '/', '_');
-  constexpr std::size_t kLongestName = 120;
-  if (name.size() > kLongestName) name.erase(0, name.size() - kLongestName);
+  // a sum of the pictures' path finds the file again and does not repeat a person's name that is part of it
+  const std::string path = std::filesystem::absolute(options.images).lexically_normal().string();
+  const std::string name = core::CalcSha256(path).substr(0, 32);
   return contours::AutosavePath(user_folder / "trocar" / "contours" / (name + ".json"));
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trocar/contours/contour_document.h"
+#include "trocar/contours/grow_contours.h"
 #include "trocar/contours/intelligent_scissors.h"
 #include "trocar/contours/mesh_job.h"
 #include "trocar/contours/slice_fits.h"
@@ -79,6 +80,10 @@ class ContourWorkspace {
                                                     FitEffort effort = FitEffort::kWhole);
   /// A copy of what the organ's surface depends on.
   MeshRequest MakeMeshRequest(int structure) const;
+
+  /// What GrowOrgan needs for a click into an organ; a copy, for a thread.
+  /// \pre the structure is there (TROCAR_ASSERT)
+  GrowthRequest MakeGrowthRequest(int structure, int slice, const Vec2& click) const;
 
   /// Carries the contours of a slice into another one, through the slices between them.
   /// \param is_replacing  contours that stand there already go; else they are left and the command refused
