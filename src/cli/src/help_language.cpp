@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "help_language.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <array>
+
+#include "trocar/core/translate.h"
+
+namespace trocar::cli {
+namespace {
+
+using core::Mark;
+
+// CLI11's words of its help, and its complaints as ParseAndRun completes them, which Fail translates
+constexpr std::array kWords = {Mark("Usage"),       Mark("OPTIONS"),  Mark("Positionals"), Mark("SUBCOMMAND"),
+                               Mark("SUBCOMMANDS"), Mark("REQUIRED"), Mark("Needs"),       Mark("Excludes")};
+[[maybe_unused]] constexpr std::array kComplaints = {Mark("{1}; see {2} --help"),
+                                                     Mark("there is no subcommand \"{1}\""),
+                                                     Mark("{1} is required"),
+                                                     Mark("A subcommand"),
+                                                     Mark("The following argument was not expected: {1}"),
+                                                     Mark("The following arguments were not expected: {1}"),
+                                                     Mark("Could not convert: {1} = {2}"),
+                                                     Mark("{1}: Value {2} not in range {3} to {4}"),
+                                                     Mark("{1}: {2} not in {3}"),
+                                                     Mark("{1}: {2} required {3} missing"),
+                                                     Mark("{1}: At least {2} required but received {3}"),
+                                                     Mark("{1}: At Most {2} required but received {3}"),
+                                                     Mark("Expected exactly {1} arguments to {2}, got {3}"),
+                                                     Mark("{1} requires {2}"),
+                                                     Mark("{1} excludes {2}")};
+
+/// What limits the option's values, or null. CLI11 throws where there is none.
+CLI::Validator* FindCheck(CLI::Option& option) {
+  try {
+    return option.get_validator();
+  } catch (const CLI::OptionNotFound&) {
+    return nullptr;
+  }
+}
+
+/// The placeholder ("T" of "T:INT in [1 - 256]") and the range behind it; the values of a list are what is typed, and stay.
+void VisitType(CLI::Option& option, const TextVisitor& visit) {
+  std::string type = option.get_type_name();
+  CLI::Validator* check = FindCheck(option);
+  if (check != nullptr && !check->get_description().empty()) {
+    const std::string range = check->get_description();
+    type.resize(type.size() - range.size() - 1);
+    // "INT in [1 - 256]": the numbers are typed with a point in every language
+    if (const std::size_t numbers = range.find(" ["); numbers != std::string::npos)
+      check->description(visit(range.substr(0, numbers)) + range.substr(numbers));
+  }
+  option.type_name(visit(type));
+}
+
+}  // namespace
+
+void VisitHelpTexts(CLI::App& app, const TextVisitor& visit) {
+  app.description(visit(app.get_description()));
+  app.footer(visit(app.get_footer()));
+  if (app.get_parent() != nullptr) app.group(visit(app.get_group()));
+  for (CLI::Option* option : app.get_options({})) {
+    option->description(visit(option->get_description()));
+    option->group(visit(option->get_group()));
+    if (option->get_type_size() != 0) VisitType(*option, visit);
+  }
+  for (CLI::App* command : app.get_subcommands({})) VisitHelpTexts(*command, visit);
+}
+
+void TranslateHelp(CLI::App& app) {
+  if (core::Translate("en") == "en") return;
+  for (const char* word : kWords) app.get_formatter()->label(word, core::Translate(word));
+  VisitHelpTexts(app, core::Translate);
+}
+
+}  // namespace trocar::cli
