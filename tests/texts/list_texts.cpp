@@ -16,7 +16,7 @@
 #include "trocar/assessment/learning.h"
 #include "trocar/assessment/milestone.h"
 #include "trocar/centre/centre_commands.h"
-#include "trocar/cli/help_texts.h"
+#include "trocar/cli/run_command.h"
 #include "trocar/contours/contour_fit.h"
 #include "trocar/core/error_codes.h"
 #include "trocar/editor/contour_commands.h"
@@ -210,6 +210,15 @@ void PrintHelpOfCommands() {
     if (has_word) Print(text);
     return text;
   });
+  // CLI11's complaints about a command line, and how the command completes them
+  for (const char* complaint :
+       {"{1}; see {2} --help", "there is no subcommand \"{1}\"", "{1} is required", "A subcommand",
+        "The following argument was not expected: {1}", "The following arguments were not expected: {1}",
+        "Could not convert: {1} = {2}", "{1}: Value {2} not in range {3} to {4}", "{1}: {2} not in {3}",
+        "{1}: {2} required {3} missing", "{1}: At least {2} required but received {3}",
+        "{1}: At Most {2} required but received {3}", "Expected exactly {1} arguments to {2}, got {3}",
+        "{1} requires {2}", "{1} excludes {2}"})
+    Print(complaint);
 }
 
 }  // namespace

@@ -13,24 +13,9 @@ namespace {
 
 using core::Mark;
 
-// CLI11's words of its help, and its complaints as ParseAndRun completes them, which Fail translates
+// CLI11's words of its help; its complaints stand in tests/texts/list_texts.cpp
 constexpr std::array kWords = {Mark("Usage"),       Mark("OPTIONS"),  Mark("Positionals"), Mark("SUBCOMMAND"),
                                Mark("SUBCOMMANDS"), Mark("REQUIRED"), Mark("Needs"),       Mark("Excludes")};
-[[maybe_unused]] constexpr std::array kComplaints = {Mark("{1}; see {2} --help"),
-                                                     Mark("there is no subcommand \"{1}\""),
-                                                     Mark("{1} is required"),
-                                                     Mark("A subcommand"),
-                                                     Mark("The following argument was not expected: {1}"),
-                                                     Mark("The following arguments were not expected: {1}"),
-                                                     Mark("Could not convert: {1} = {2}"),
-                                                     Mark("{1}: Value {2} not in range {3} to {4}"),
-                                                     Mark("{1}: {2} not in {3}"),
-                                                     Mark("{1}: {2} required {3} missing"),
-                                                     Mark("{1}: At least {2} required but received {3}"),
-                                                     Mark("{1}: At Most {2} required but received {3}"),
-                                                     Mark("Expected exactly {1} arguments to {2}, got {3}"),
-                                                     Mark("{1} requires {2}"),
-                                                     Mark("{1} excludes {2}")};
 
 /// What limits the option's values, or null. CLI11 throws where there is none.
 CLI::Validator* FindCheck(CLI::Option& option) {

@@ -2,7 +2,7 @@
 /// \file help_language.h  Puts the help of all commands into the person's language.
 #pragma once
 
-#include "trocar/cli/help_texts.h"
+#include "trocar/cli/run_command.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls it so
 class App;
