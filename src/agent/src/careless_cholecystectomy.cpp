@@ -169,6 +169,7 @@ void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scen
     case OperationErrorScenario::kBleeds:
       scissors();
       CutTube(artery, 0.65);
+      LookAt(Place::OnTube(artery, 0.65), 0.0, 0.080);
       Wait(60.0);
       break;
     case OperationErrorScenario::kSlipsClip:

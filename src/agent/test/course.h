@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -36,6 +37,7 @@ struct Course {
   int from = 0;                   ///< no point before this tick
   bool has_equal_trays = false;   ///< the left hand is offered the right one's tools, too
   bool is_dissected = false;      ///< there is no fat, and all fibres of the gallbladder's bed part at once
+  bool swaps_hands = false;       ///< each hand does through the other's trocar what the other one would do
   bool looks_before = false;      ///< a tick before what happens and after it, as CountMoments() counts
 };
 
@@ -47,7 +49,8 @@ inline std::string NameOf(const testing::TestParamInfo<Course>& info) {
   return info.param.name + (info.param.surgeon.empty() ? "" : "_" + info.param.surgeon) +
          (info.param.changes_settings ? "_changes_settings" : "") +
          (info.param.has_equal_trays ? "_equal_trays" : "") + (info.param.is_dissected ? "_dissected" : "") +
-         (info.param.looks_before ? "_moments" : "") + (info.param.from > 0 ? "_late" : "");
+         (info.param.swaps_hands ? "_swapped" : "") + (info.param.looks_before ? "_moments" : "") +
+         (info.param.from > 0 ? "_late" : "");
 }
 
 inline constexpr int kGoesOn = 240;  // ticks after a point
@@ -180,6 +183,57 @@ struct Point {
   std::uint64_t patches = 0;                         ///< of what the haptic loop gets
 };
 
+/// \param in_own_trocars  what is done there
+inline Input SwapHands(Input in_own_trocars) {
+  std::swap(in_own_trocars.hands[scene::kLeft], in_own_trocars.hands[scene::kRight]);
+  std::swap(in_own_trocars.controls[scene::kLeft], in_own_trocars.controls[scene::kRight]);
+  return in_own_trocars;
+}
+
+/// The same scene with everything of one hand in the other.
+inline std::shared_ptr<const Scene> SwapHands(const Scene& scene) {
+  auto swapped = std::make_shared<Scene>(scene);
+  std::swap(swapped->instruments[scene::kLeft], swapped->instruments[scene::kRight]);
+  return swapped;
+}
+
+/// Whoever acts in a course.
+class Actor {
+ public:
+  Actor(const Course& course, std::shared_ptr<const Scene> scene, std::uint64_t seed)
+      : scene_(scene), fumbler_(seed), script_(MakeScriptedHands(course.surgeon, scene)), course_(course) {
+    if (course.surgeon.empty() || course.surgeon == "fumbler" || script_) return;
+    surgeon_ = std::move(*MakeSurgeon(course.surgeon, scene, 1));
+  }
+
+  Input Act(const Snapshot& seen) {
+    if (surgeon_ != nullptr) return surgeon_->Act(seen);
+    if (script_) return (*script_)(seen);
+    if (course_.surgeon == "fumbler") return fumbler_.Act(*scene_, seen);
+    return scene::CalcScriptInput(*scene_, seen.time);
+  }
+  bool HasFinished() const { return surgeon_ != nullptr && surgeon_->HasFinished(); }
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  Fumbler fumbler_;
+  std::optional<ScriptedHands> script_;
+  std::unique_ptr<Surgeon> surgeon_;
+  const Course& course_;
+};
+
+/// What is done in a course, tick by tick.
+inline std::vector<Input> RecordInputs(const Course& course, std::shared_ptr<const Scene> scene) {
+  Simulation simulation = std::move(*Simulation::Make(std::move(*simulation::MakeSimulationModel(scene)), 1));
+  Actor actor(course, std::move(scene), std::hash<std::string>()(course.name));
+  std::vector<Input> inputs;
+  for (int tick = 0; tick < course.ticks + kGoesOn && !actor.HasFinished(); ++tick) {
+    inputs.push_back(actor.Act(simulation.GetSnapshot()));
+    simulation.Step(inputs.back());
+  }
+  return inputs;
+}
+
 /// One course with its inputs, and the states on its way.
 struct Recording {
   std::shared_ptr<const simulation::SimulationModel> model;
@@ -189,16 +243,14 @@ struct Recording {
 
 inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene) {
   Recording recording;
+  std::vector<Input> swapped;  // what the hands would do unswapped
+  if (course.swaps_hands) swapped = RecordInputs(course, scene), scene = SwapHands(*scene);
   auto model = simulation::MakeSimulationModel(scene);
   EXPECT_TRUE(model.ok()) << model.error().Text();
   recording.model = *model;
   Simulation simulation = std::move(*Simulation::Make(recording.model, 1));
   const std::uint64_t seed = std::hash<std::string>()(course.name);
-  Fumbler fumbler(seed);
-  std::optional<ScriptedHands> script = MakeScriptedHands(course.surgeon, scene);
-  std::unique_ptr<Surgeon> surgeon;
-  if (!course.surgeon.empty() && course.surgeon != "fumbler" && !script)
-    surgeon = std::move(*MakeSurgeon(course.surgeon, scene, 1));
+  Actor actor(course, scene, seed);
   math::Random random(seed);
   std::set<std::size_t> chosen;
   for (int i = 0; i < course.points; ++i)
@@ -230,16 +282,14 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
         now != events && events_saved < course.events && tick >= static_cast<std::size_t>(course.from);
     events = now;
     if (is_event) ++events_saved;
-    const bool is_over = surgeon != nullptr && surgeon->HasFinished();
+    const bool is_over = course.swaps_hands ? tick >= swapped.size() : actor.HasFinished();
     if (is_over && (ends.empty() || tick > ends.rbegin()->first)) break;
     const bool has_time = tick < static_cast<std::size_t>(course.ticks) && !is_over;
     if (is_event && course.looks_before && has_time && tick > 0) add(std::move(before));
     if ((chosen.count(tick) != 0 || is_event) && has_time) take(before, tick), add(before);
     if (course.looks_before && has_time) take(before, tick);
-    Input input = surgeon != nullptr            ? surgeon->Act(seen)
-                  : script.has_value()          ? (*script)(seen)
-                  : course.surgeon == "fumbler" ? fumbler.Act(*scene, seen)
-                                                : scene::CalcScriptInput(simulation.GetScene(), seen.time);
+    Input input =
+        course.swaps_hands ? SwapHands(swapped[std::min(tick, swapped.size() - 1)]) : actor.Act(seen);
     if (course.changes_settings) ChangeSettings(tick, input.settings);
     recording.inputs.push_back(input);
     simulation.Step(input);

@@ -453,6 +453,15 @@ Course Moments(Course course) {
   return course;
 }
 
+Course Swapped(Course course) {
+  course.swaps_hands = true;
+  return course;
+}
+Course Dissected(Course course) {
+  course.is_dissected = true;
+  return course;
+}
+
 class StateFieldsSlow : public testing::TestWithParam<Course> {};
 TEST_P(StateFieldsSlow, AreMissed) {
   CheckCourse(GetParam(), NameOf({GetParam(), 0}));
@@ -479,7 +488,12 @@ INSTANTIATE_TEST_SUITE_P(
         Course{"pattern_cut", "fumbler", 4000, 8, 16, false, 200, true},
         Moments({"pattern_cut", "lifts_piece", 2950, 2, 30, false, 2300}),
         Moments({"clip_and_cut", "divides_left", 800, 2, 4, false, 0, true}),
-        Moments({"peg_transfer", "expert", 1500, 0, 8})),
+        Moments({"peg_transfer", "expert", 1500, 0, 8}), Moments({"tearing", "", 600, 2, 4}),
+        Moments({"cholecystectomy", "perforates", 1800, 4, 12}),
+        Moments({"cholecystectomy", "lets_assistant_hold", 500, 8, 8}),
+        Moments({"cholecystectomy", "takes_stones", 900, 4, 12, false, 300}),
+        Swapped({"pattern_cut", "expert", 1600, 4, 8}),
+        Dissected({"cholecystectomy", "leaves_stones", 12'000, 16, 16, false, 1400})),
     NameOf);
 
 class StateFieldsWhole : public testing::TestWithParam<Course> {};

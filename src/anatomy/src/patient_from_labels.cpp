@@ -40,6 +40,10 @@ Error Mismatch(const std::string& why) {
   return {ErrorCode::kLabelsMismatch, why};
 }
 
+Error GivenUp() {
+  return {ErrorCode::kCancelled, "the patient was given up; nothing was written"};
+}
+
 /// How many voxels each label has that occurs.
 using LabelCounts = std::map<std::int32_t, std::size_t>;
 
@@ -143,6 +147,7 @@ core::Result<std::vector<meshing::StructureMesh>> MeshOrgans(
        measured.gallbladder.cuts}};
   std::vector<meshing::ScalarVolume> volumes;
   for (const Part& part : parts) {
+    if (options.stop.stop_requested()) return GivenUp();
     progress(std::string("filling ") + part.name, 0.1);
     std::vector<double> parts_ml;
     for (const std::size_t voxels : meshing::KeepLargestPart(volume, part.label))
@@ -169,6 +174,7 @@ core::Result<std::vector<meshing::StructureMesh>> MeshOrgans(
 
   std::vector<meshing::StructureMesh> meshes;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
+    if (options.stop.stop_requested()) return GivenUp();
     progress(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
     meshing::MeshingSettings settings;
     settings.triangle_budget = parts[i].triangles;
@@ -290,6 +296,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
     return Error{frame.error().code, core::Printable(options.labels.string()) + ": " + frame.error().message};
   const auto labels = FindLabels(*volume, options);
   if (!labels.ok()) return labels.error();
+  if (options.stop.stop_requested()) return GivenUp();
   report_progress("looking at the labels", 0.05);
   const MeasuredLabels measured = MeasureOrgans(*volume, *labels, *frame);
   if (const auto status = CheckBody(measured, options.is_mirrored); !status.ok()) return status.error();
@@ -298,6 +305,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   auto meshes = MeshOrgans(*volume, measured, *frame, options, report_progress, report);
   if (!meshes.ok()) return meshes.error();
 
+  if (options.stop.stop_requested()) return GivenUp();
   report_progress("assembling the patient", 0.9);
   auto usual = DrawParameters(0, MakeUsualSettings());
   if (!usual.ok()) return usual.error();
@@ -314,6 +322,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   const Vec3 shift =
       report.patient.organs[liver].mesh.positions.front() - 0.001 * (*meshes)[0].mesh.positions.front();
   AddSurroundings(*volume, *labels, *frame, shift, report_progress, report);
+  if (options.stop.stop_requested()) return GivenUp();
   if (!options.output.empty()) {
     if (const auto status = WritePatient(options.output, report.patient); !status.ok()) return status.error();
   }

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "trocar/anatomy/move_port.h"
 #include "trocar/core/assert.h"
 #include "trocar/meshing/nearest_surface.h"
 
@@ -279,7 +280,67 @@ Table PlaceTable(const Patient& patient) {
       bowel != nullptr ? "As usual: no bowel lies on the gallbladder." : "As usual: the map shows no bowel."};
 }
 
+/// By how much a place breaks each rule [m]; 0: not at all. `why` says the first that is broken.
+struct Breach {
+  double worst = 0;
+  std::string why;
+  void Add(double amount, const std::string& reason) {
+    if (amount <= worst) return;
+    worst = amount;
+    why = reason;
+  }
+};
+
+Breach FindBreach(const Patient& patient, const Wall& wall, PortUse use, const Vec3& place) {
+  Breach breach;
+  const double distance = math::Distance(place, PlaceOf(patient, LandmarkRole::kInfundibulum));
+  const bool is_laparoscope = use == PortUse::kLaparoscope;
+  const double least = is_laparoscope ? kNearest : kLeastReach,
+               most = is_laparoscope ? kFarthest : kMostReach;
+  breach.Add(distance - most,
+             "the neck of the gallbladder would lie " + Mm(distance) + " away, more than " + Mm(most));
+  breach.Add(least - distance,
+             "the neck of the gallbladder would lie " + Mm(distance) + " away, less than " + Mm(least));
+  for (const Port& other : patient.ports) {
+    if (other.use == use) continue;
+    const double apart = math::Distance(other.position, place);
+    breach.Add(kPortGap - apart, "another port would lie " + Mm(apart) + " away, less than " + Mm(kPortGap));
+  }
+  std::string ignored;
+  breach.Add(place.y - wall.MostCranial(place, ignored), "it would lie on the ribs or over the liver's edge");
+  return breach;
+}
+
 }  // namespace
+
+core::Result<Port> MovePort(const Patient& patient, PortUse use, double x, double y) {
+  const Port* now = patient.PortOf(use);
+  if (now == nullptr || patient.LandmarkOf(LandmarkRole::kInfundibulum) == nullptr)
+    return core::Error{core::ErrorCode::kEditRefused,
+                       "the patient has no such port, or no neck of the gallbladder"};
+  const Wall wall({}, patient);
+  Port port{use, wall.PlaceAt(x, y), {}};
+  const Breach breach = FindBreach(patient, wall, use, port.position);
+  // a proposal that had to break a rule may be made better
+  constexpr double kRounding = 1e-9;
+  if (breach.worst > FindBreach(patient, wall, use, now->position).worst + kRounding)
+    return core::Error{core::ErrorCode::kEditRefused, "The port stays: " + breach.why + "."};
+  char text[96];
+  std::snprintf(text, sizeof text, "Placed by hand; the neck of the gallbladder lies %.0f mm away.",
+                1000 * math::Distance(port.position, PlaceOf(patient, LandmarkRole::kInfundibulum)));
+  port.reason = text;
+  return port;
+}
+
+void PlaceUsualPorts(Patient& patient) {
+  patient.ports.clear();
+  for (std::size_t use = 0; use < kPortUseCount; ++use) {
+    patient.ports.push_back({static_cast<PortUse>(use), kUsualPorts[use],
+                             "At its usual place: contours say nothing of this body's wall."});
+  }
+  patient.table =
+      Table{kUsualHeadUp * kDegree, kUsualRightUp * kDegree, "As usual: contours say nothing of the bowel."};
+}
 
 double FindMidline(const Patient& patient, const BodyShape& body) {
   return body.midline.value_or(PlaceOf(patient, LandmarkRole::kFundus).x - kUsualFundus.x);

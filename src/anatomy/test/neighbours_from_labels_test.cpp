@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/anatomy/move_port.h"
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/core/json.h"
@@ -314,6 +315,50 @@ TEST_F(NeighboursFromLabels, PortsFollowTheBodyAndSayWhy) {
   EXPECT_THAT(FormatSurroundings(report), HasSubstr("Port for right hand"));
   ASSERT_TRUE(patient.table.has_value());
   EXPECT_FALSE(patient.table->reason.empty());
+}
+
+TEST_F(NeighboursFromLabels, APortMovesOnTheWallAsFarAsTheRulesAllow) {
+  BuildReport report = Build(TrunkMap());
+  Patient& patient = report.patient;
+  const Port& hand = *patient.PortOf(PortUse::kLeftHand);
+  const auto moved = MovePort(patient, PortUse::kLeftHand, hand.position.x, hand.position.y - 0.005);
+  ASSERT_TRUE(moved.ok()) << moved.error().Text();
+  EXPECT_NEAR(moved->position.y, hand.position.y - 0.005, 1e-12);
+  EXPECT_GT(std::fabs(moved->position.z - hand.position.z), 1e-6) << "it follows the wall";
+  EXPECT_THAT(moved->reason, HasSubstr("by hand"));
+  // each rule refuses with its reason
+  const Port& camera = *patient.PortOf(PortUse::kLaparoscope);
+  const auto close = MovePort(patient, PortUse::kLeftHand, camera.position.x - 0.01, camera.position.y);
+  ASSERT_FALSE(close.ok());
+  EXPECT_EQ(close.error().code, core::ErrorCode::kEditRefused);
+  EXPECT_THAT(close.error().message, HasSubstr("another port"));
+  const auto far = MovePort(patient, PortUse::kLeftHand, hand.position.x, hand.position.y - 0.3);
+  ASSERT_FALSE(far.ok());
+  EXPECT_THAT(far.error().message, HasSubstr("more than 220 mm"));
+  EXPECT_FALSE(MovePort(patient, PortUse::kLeftHand, hand.position.x, hand.position.y + 0.08).ok())
+      << "over the ribs or the liver";
+  // where the present place breaks a rule, a better one is taken though it breaks it, too
+  for (Port& port : patient.ports) {
+    if (port.use == PortUse::kLeftHand) port.position.y -= 0.4;
+  }
+  EXPECT_TRUE(MovePort(patient, PortUse::kLeftHand, hand.position.x, hand.position.y + 0.05).ok());
+  EXPECT_FALSE(MovePort(patient, PortUse::kLeftHand, hand.position.x, hand.position.y - 0.05).ok());
+}
+
+TEST_F(NeighboursFromLabels, ABuildThatIsStoppedWritesNothing) {
+  LabelOptions options;
+  options.labels = folder_ / "map.nii";
+  options.output = folder_ / "patient";
+  options.spacing_mm = 2.0;
+  ASSERT_TRUE(core::WriteFile(options.labels, TrunkMap().Nifti()).ok());
+  std::stop_source stop;
+  options.stop = stop.get_token();
+  const auto report = BuildPatientFromLabels(options, [&](std::string_view what, double) {
+    if (what.starts_with("meshing")) stop.request_stop();
+  });
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().code, core::ErrorCode::kCancelled);
+  EXPECT_FALSE(fs::exists(options.output));
 }
 
 TEST_F(NeighboursFromLabels, WithoutABodyPortsAreTheUsualOnesAndSayThat) {

@@ -139,6 +139,11 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
   if ((state & (ModifierType::ALT_MASK | ModifierType::SUPER_MASK)) != ModifierType{}) return false;
   const bool has_control = (state & ModifierType::CONTROL_MASK) != ModifierType{};
   const presenter::KeyMeaning meaning = FindMeaning(keyval, has_control);
+  if (is_resting_) {
+    const bool is_windows =
+        meaning.action == presenter::Action::kQuit || meaning.action == presenter::Action::kToggleFullscreen;
+    if (!is_windows) return use_key_ && use_key_(keyval, state, true);
+  }
   if (meaning.action == presenter::Action::kNone) return false;
   if (!has_control && IsFocusInPanel() && !presenter::WorksInPanel(meaning.action)) return false;
   const bool is_letter = !has_control && gdk_keyval_to_unicode(keyval) > ' ';
@@ -166,8 +171,12 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
   return true;
 }
 
-void HandEvents::OnKeyReleased(guint keyval, guint, Gdk::ModifierType) {
+void HandEvents::OnKeyReleased(guint keyval, guint, Gdk::ModifierType state) {
   std::erase(held_, keyval);
+  if (is_resting_) {
+    if (use_key_) use_key_(keyval, state, false);
+    return;
+  }
   const presenter::KeyMeaning meaning = FindMeaning(keyval, false);
   if (control_ == nullptr) return;
   if (const std::optional<presenter::Pedal> pedal = FindPedal(meaning.action))

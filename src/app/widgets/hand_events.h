@@ -37,6 +37,12 @@ class HandEvents {
   bool IsPointerTaken() const { return is_taken_; }
   /// Whether a pointer that is taken stays over the picture.
   bool CanHoldPointer() const { return lock_.CanHold(); }
+  /// Keys go to somebody else, who has the whole window: only Ctrl+Q and full screen stay.
+  void SetResting(bool is_resting) { is_resting_ = is_resting; }
+  /// \param use  what a key means while the hands rest; it returns whether it was used
+  void SignalKey(std::function<bool(guint, Gdk::ModifierType, bool is_down)> use) {
+    use_key_ = std::move(use);
+  }
   void ReleasePointer();
   /// The pointer is free while the simulation is paused, and held again when it goes on. Once a frame.
   void FollowPause();
@@ -63,6 +69,8 @@ class HandEvents {
   presenter::KeyBindings bindings_;
   std::function<void(std::uint32_t)> asked_;  // waits for a key; may be empty
   PointerLock lock_;
+  bool is_resting_ = false;
+  std::function<bool(guint, Gdk::ModifierType, bool)> use_key_;
   bool is_taken_ = false, is_held_wanted_ = false;
   std::vector<guint> held_;  // key symbols, so that repeats toggle nothing
   std::map<guint, presenter::Action> own_keys_;

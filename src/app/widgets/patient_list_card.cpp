@@ -61,7 +61,11 @@ void PatientListCard::MakeFoot() {
     Begin();
   });
   import_.signal_clicked().connect(sigc::mem_fun(*this, &PatientListCard::AskForLabels));
-  AddFoot({label, &seed_, &generate_, &import_});
+  images_.set_tooltip_text(core::Translate(
+      "Step by step from a CT or other images: choose a series, mark liver and gallbladder, check, place "
+      "ports, operate"));
+  images_.signal_clicked().connect([this] { signal_images_.emit(); });
+  AddFoot({label, &seed_, &generate_, &import_, &images_});
 }
 
 void PatientListCard::AskForLabels() {
@@ -110,6 +114,7 @@ void PatientListCard::ShowProgress() {
   under_way_.set_visible(is_busy);
   generate_.set_sensitive(!is_busy);
   import_.set_sensitive(!is_busy);
+  images_.set_sensitive(!is_busy);
   cancel_.set_visible(page.can_cancel);
   gui::SetText(doing_, page.doing);
   page.fraction < 0 ? progress_.pulse() : progress_.set_fraction(page.fraction);

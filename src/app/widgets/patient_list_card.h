@@ -22,6 +22,8 @@ class PatientListCard : public gui::ListCard {
   void Load(const std::filesystem::path& chosen);
   /// The folder; empty: the built-in one.
   sigc::signal<void(std::filesystem::path)>& SignalChosen() { return signal_chosen_; }
+  /// A patient is to be made from images.
+  sigc::signal<void()>& SignalImages() { return signal_images_; }
 
  private:
   void MakeFoot();
@@ -35,13 +37,14 @@ class PatientListCard : public gui::ListCard {
   Gtk::Label problem_, doing_;
   Gtk::ProgressBar progress_;
   Gtk::Button cancel_{core::Translate("Cancel")}, generate_{core::Translate("Make it")},
-      import_{core::Translate("From a label map…")};
+      import_{core::Translate("From a label map…")}, images_{core::Translate("From images…")};
   Gtk::SpinButton seed_;
   Gtk::Box under_way_;
   gui::FileDialog file_dialog_;
   sigc::connection pulse_;
   Glib::Dispatcher news_;
   sigc::signal<void(std::filesystem::path)> signal_chosen_;
+  sigc::signal<void()> signal_images_;
   presenter::PatientDesk desk_;  // ends before what it uses
 };
 

@@ -55,6 +55,7 @@ SimulatorWindow::SimulatorWindow(const presenter::Options& options, const core::
 
 SimulatorWindow::~SimulatorWindow() {
   replay_.reset();
+  if (rehearsal_ != nullptr) overlay_.remove_overlay(*rehearsal_);
   UseControl(nullptr);
 }
 
@@ -169,6 +170,7 @@ void SimulatorWindow::MakeRoutes() {
   signal_close_request().connect(
       [this] {
         presenter_->Close();
+        if (rehearsal_ != nullptr) rehearsal_->Leave();
         return false;
       },
       false);
@@ -178,6 +180,7 @@ void SimulatorWindow::MakeRoutes() {
   chooser_.SignalPatients().connect([this] { presenter_->OpenPatientList(); });
   patients_.SignalChosen().connect(
       [this](const std::filesystem::path& folder) { presenter_->ChoosePatient(folder); });
+  patients_.SignalImages().connect([this] { presenter_->OpenRehearsal(); });
   patients_.SignalClosed().connect([this] { presenter_->ClosePatientList(); });
   keys_.SignalClosed().connect([this] {
     hands_->AskKey(nullptr);
@@ -241,19 +244,21 @@ void SimulatorWindow::Show(const presenter::SimulatorPage& page) {
   if (page.is_key_list_open) keys_.Show(presenter_->Bindings(), presenter_->CanUndoKeys());
   keys_.set_visible(page.is_key_list_open);
   patients_.set_visible(page.is_patient_list_open);
+  ShowRehearsal(page.is_rehearsal_open);
   opening_.Show(page.opening);
   if (page.is_home_open) home_.Show(page.home);
   home_.set_visible(page.is_home_open);
-  panel_.set_visible(page.is_panel_open);
+  panel_.set_visible(page.is_panel_open && !page.is_rehearsal_open);
   asked_.set_text(page.question);
   question_.set_visible(!page.question.empty());
   mode_.set_text(page.mode);
+  mode_.set_visible(!page.is_rehearsal_open);  // it speaks of hands
   gui::SetTextOrHide(progress_, page.progress);
   gui::SetTextOrHide(tutorial_, page.tutorial);
   chooser_.set_visible(page.is_task_list_open);
   recordings_.set_visible(page.is_recording_list_open);
   result_card_.set_visible(page.is_result_open);
-  gui::SetTextOrHide(hint_, page.hint);
+  gui::SetTextOrHide(hint_, page.is_rehearsal_open ? "" : page.hint);
   gui::SetTextOrHide(badge_, page.badge);
   gui::SetTextOrHide(event_, page.event);
   gui::SetTextOrHide(state_, page.state);
@@ -262,6 +267,29 @@ void SimulatorWindow::Show(const presenter::SimulatorPage& page) {
   if (!page.failure) return;
   failure_card_.Show(*page.failure);
   panel_.set_sensitive(false);
+}
+
+/// The way from images to an operation lies over the picture, and has the keyboard to itself.
+void SimulatorWindow::ShowRehearsal(bool is_open) {
+  if (rehearsal_ == nullptr && !is_open) return;
+  if (rehearsal_ == nullptr) {
+    rehearsal_ = std::make_unique<editor::RehearsalView>(core::FindUserDataFolder() / "rehearsal",
+                                                         presenter::FindPatientsFolder());
+    rehearsal_->set_visible(false);
+    overlay_.add_overlay(*rehearsal_);
+    rehearsal_->SignalClosed().connect([this] { presenter_->CloseRehearsal(); });
+    rehearsal_->SignalOperate().connect(
+        [this](const std::filesystem::path& patient) { presenter_->OperateOn(patient); });
+    hands_->SignalKey([this](guint key, Gdk::ModifierType state, bool is_down) {
+      if (is_down) return rehearsal_->OnKey(key, state);
+      rehearsal_->OnKeyReleased(key);
+      return false;
+    });
+  }
+  hands_->SetResting(is_open);
+  if (rehearsal_->get_visible() == is_open) return;
+  rehearsal_->set_visible(is_open);
+  is_open ? rehearsal_->Open() : rehearsal_->Leave();
 }
 
 /// Whoever has only a keyboard gets into a card that opens.
@@ -274,7 +302,7 @@ void SimulatorWindow::FocusCard(const presenter::SimulatorPage& page) {
   if (card == focused_card_) return;
   focused_card_ = card;
   if (card == nullptr) {
-    picture_.grab_focus();
+    if (!page.is_rehearsal_open) picture_.grab_focus();
     return;
   }
   // once it is there to be focused

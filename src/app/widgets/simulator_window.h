@@ -26,6 +26,7 @@
 #include "sound_card.h"
 #include "task_chooser.h"
 #include "trocar/core/translate.h"
+#include "trocar/editor/rehearsal_view.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
@@ -79,6 +80,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   bool ChangeSound(presenter::Action action);
   void ShowHelp();
   void FocusCard(const presenter::SimulatorPage& page);
+  void ShowRehearsal(bool is_open);
   KeyCardServices MakeKeyCardServices();
 
   // SimulatorScreen
@@ -125,8 +127,9 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   gui::FileDialog file_dialog_;
   std::unique_ptr<presenter::SimulatorPresenter> presenter_;
   FilmBar film_bar_{[this](const std::string& text, bool is_warning) { presenter_->Tell(text, is_warning); }};
-  std::unique_ptr<presenter::WindowSound> sound_;  // null where nobody is there to hear
-  std::unique_ptr<DevicePage> device_page_;        // of the presenter's control
+  std::unique_ptr<presenter::WindowSound> sound_;     // null where nobody is there to hear
+  std::unique_ptr<DevicePage> device_page_;           // of the presenter's control
+  std::unique_ptr<editor::RehearsalView> rehearsal_;  // once it has been opened
   std::unique_ptr<ReplayWindow> replay_;
 };
 

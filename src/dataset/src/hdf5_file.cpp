@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hdf5_file.h"
+#include "trocar/dataset/hdf5_file.h"
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <mutex>
 #include <utility>
 
@@ -118,6 +119,31 @@ template core::Status Hdf5File::Append(const std::string&, const std::vector<std
                                        std::span<const float>);
 template core::Status Hdf5File::Append(const std::string&, const std::vector<std::size_t>&,
                                        std::span<const double>);
+
+core::Status Hdf5File::SetTexts(const std::string& name, const std::vector<std::string>& texts) {
+  const std::scoped_lock lock(Library());
+  std::size_t longest = 1;
+  for (const std::string& text : texts) longest = std::max(longest, text.size());
+  std::string padded;
+  for (const std::string& text : texts) padded += text + std::string(longest - text.size(), '\0');
+  const hsize_t count = texts.size();
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, longest);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(how, false);
+  const hid_t dataset = H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, how, H5P_DEFAULT);
+  const bool is_good = dataset >= 0 && (texts.empty() || H5Dwrite(dataset, type, H5S_ALL, H5S_ALL,
+                                                                  H5P_DEFAULT, padded.data()) >= 0);
+  if (dataset >= 0) H5Dclose(dataset);
+  H5Pclose(how);
+  H5Sclose(space);
+  H5Tclose(type);
+  if (!is_good) return Failed(name + " cannot be written");
+  return {};
+}
 
 core::Status Hdf5File::SetText(const std::string& name, const std::string& text) {
   const std::scoped_lock lock(Library());

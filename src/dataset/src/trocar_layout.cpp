@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "hdf5_file.h"
 #include "layout_set.h"
+#include "trocar/dataset/hdf5_file.h"
 #include "trocar/environment/demonstration.h"
 #include "trocar/roles/roles.h"
 #include "trocar/view/labels.h"

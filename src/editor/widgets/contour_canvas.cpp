@@ -39,8 +39,13 @@ void ContourCanvas::HoldSpace(bool is_held) {
   UpdateCursor();
 }
 
+void ContourCanvas::SetReadOnly(bool is_read_only) {
+  is_read_only_ = is_read_only;
+  UpdateCursor();
+}
+
 void ContourCanvas::UpdateCursor() {
-  set_cursor(is_space_held_ || is_panning_ ? "grab" : "crosshair");
+  set_cursor(is_space_held_ || is_read_only_ || is_panning_ ? "grab" : "crosshair");
 }
 
 void ContourCanvas::Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width, int height) {
@@ -99,7 +104,7 @@ void ContourCanvas::AddClicks() {
   click->set_button(kLeftButton);
   click->signal_pressed().connect([this](int count, double x, double y) {
     grab_focus();
-    if (editor_ == nullptr || is_space_held_) return;
+    if (editor_ == nullptr || is_space_held_ || is_read_only_) return;
     editor_->Press({x, y}, count == 2);
     signal_edited_.emit();
   });
@@ -118,7 +123,7 @@ void ContourCanvas::AddDrags() {
   const auto left = Gtk::GestureDrag::create();
   left->set_button(kLeftButton);
   left->signal_drag_begin().connect([this](double, double) {
-    if (is_space_held_) BeginPan();
+    if (is_space_held_ || is_read_only_) BeginPan();
   });
   left->signal_drag_update().connect([this, gesture = left.get()](double dx, double dy) {
     if (is_panning_) return Pan(dx, dy);
@@ -165,7 +170,7 @@ void ContourCanvas::AddWindowing() {
     queue_draw();
   });
   right->signal_drag_end().connect([this, gesture = right.get()](double dx, double dy) {
-    if (editor_ == nullptr || is_windowing_ || std::hypot(dx, dy) >= kClickSlop) return;
+    if (editor_ == nullptr || is_read_only_ || is_windowing_ || std::hypot(dx, dy) >= kClickSlop) return;
     double x = 0, y = 0;
     gesture->get_start_point(x, y);
     editor_->SecondaryPress({x, y});

@@ -230,6 +230,11 @@ void ReadHeader(const Job& job, ImageHeader& header) {
   header.series_hash = Hash(FindText(data, Tag(0x0020, 0x000E)));
   header.frame_hash = Hash(FindText(data, Tag(0x0020, 0x0052)));
   header.patient_hash = Hash(FindText(data, Tag(0x0010, 0x0020)), Hash(FindText(data, Tag(0x0010, 0x0010))));
+  const std::string_view modality = FindText(data, Tag(0x0008, 0x0060));
+  std::string description(modality);
+  if (const auto name = FindText(data, Tag(0x0008, 0x103E)); !name.empty())
+    description += (description.empty() ? "" : ", ") + std::string(name);
+  description.copy(header.description, sizeof(header.description) - 1);
   const auto instance = FindNumbers(data, Tag(0x0020, 0x0013), "Instance Number");
   if (!instance.empty() && std::fabs(instance[0]) < 1e6)
     header.instance_number = static_cast<std::int32_t>(instance[0]);

@@ -42,11 +42,28 @@ core::Status OpenVolume(const fs::path& path, const ImageSeriesOptions& options,
   return {};
 }
 
-/// Sorts a folder's names into what could be a slice.
-struct FolderContent {
-  std::vector<std::string> files, dicom;
-  std::string volume;  ///< a file that is a series by itself
-};
+core::Status OpenFolder(const fs::path& folder, const ImageSeriesOptions& options, const Progress& progress,
+                        Content& content) {
+  auto found = LookInto(folder);
+  if (!found) return found.error();
+  if (found->files.empty())
+    return Error{ErrorCode::kImageSliceMissing,
+                 "the folder holds no files; name the one that the slices lie in"};
+  if (options.pattern.empty() && !found->dicom.empty()) {
+    content.info.ignored_files = found->files.size() - found->dicom.size();
+    return OpenDicom(folder, found->dicom, Links::kRefuse, options, progress, content);
+  }
+  auto status = OpenStack(folder, found->files, options, progress, content);
+  if (!status && status.error().code == ErrorCode::kImageSliceMissing && !found->volumes.empty() &&
+      options.pattern.empty()) {
+    return Error{ErrorCode::kImageSliceMissing, "the folder holds no slices, but the volume " +
+                                                    core::Printable(found->volumes.front()) +
+                                                    "; name that file itself"};
+  }
+  return status;
+}
+
+}  // namespace
 
 core::Result<FolderContent> LookInto(const fs::path& folder) {
   auto names = ListFolder(folder);
@@ -62,35 +79,12 @@ core::Result<FolderContent> LookInto(const fs::path& folder) {
       const FileKind kind = file ? SniffKind(file->ReadBegin(348)) : FileKind::kUnknown;
       if (kind == FileKind::kDicom) content.dicom.push_back(name);
       const bool is_volume = kind >= FileKind::kNifti || name.ends_with(".nii.gz");
-      if (is_volume && content.volume.empty()) content.volume = name;
+      if (is_volume) content.volumes.push_back(name);
     }
     content.files.push_back(std::move(name));
   }
   return content;
 }
-
-core::Status OpenFolder(const fs::path& folder, const ImageSeriesOptions& options, const Progress& progress,
-                        Content& content) {
-  auto found = LookInto(folder);
-  if (!found) return found.error();
-  if (found->files.empty())
-    return Error{ErrorCode::kImageSliceMissing,
-                 "the folder holds no files; name the one that the slices lie in"};
-  if (options.pattern.empty() && !found->dicom.empty()) {
-    content.info.ignored_files = found->files.size() - found->dicom.size();
-    return OpenDicom(folder, found->dicom, Links::kRefuse, options, progress, content);
-  }
-  auto status = OpenStack(folder, found->files, options, progress, content);
-  if (!status && status.error().code == ErrorCode::kImageSliceMissing && !found->volume.empty() &&
-      options.pattern.empty()) {
-    return Error{ErrorCode::kImageSliceMissing, "the folder holds no slices, but the volume " +
-                                                    core::Printable(found->volume) +
-                                                    "; name that file itself"};
-  }
-  return status;
-}
-
-}  // namespace
 
 ImageSeries::ImageSeries(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
 

@@ -54,6 +54,7 @@ bool IsSane(const ImageHeader& header, const ImportLimits& limits) {
       data_file.find('/') == std::string_view::npos && data_file != "." && data_file != "..";
   return bytes <= limits.most_bytes && is_finite && is_plain && header.segments <= kMostSegments &&
          IsTerminated(header.data_file, sizeof(header.data_file)) &&
+         IsTerminated(header.description, sizeof(header.description)) &&
          std::all_of(std::begin(header.spacing), std::end(header.spacing),
                      [](double spacing) { return spacing >= 0 && spacing <= 200; });
 }

@@ -14,7 +14,7 @@
 
 namespace trocar::images {
 
-inline constexpr std::uint32_t kImportVersion = 3;
+inline constexpr std::uint32_t kImportVersion = 4;
 inline constexpr int kImportSocket = 3;             // descriptor in the reader
 inline constexpr int kExitOutOfMemory = 40;         // exit status of the reader
 inline constexpr std::size_t kMostDescriptors = 3;  // of one request
@@ -78,7 +78,8 @@ struct ImageHeader {
   std::int32_t instance_number = 0;
   std::uint32_t has_position = 0;  ///< of a single slice: position and orientation were given
   std::uint32_t segments = 0;
-  char data_file[256] = {};  ///< name of the file with the samples; empty: they follow the header
+  char description[80] = {};  ///< DICOM: kind of images and what the scanner calls the series
+  char data_file[256] = {};   ///< name of the file with the samples; empty: they follow the header
 
   std::uint64_t SampleCount() const {
     return std::uint64_t{width} * height * depth * channels;  // checked to fit by both sides

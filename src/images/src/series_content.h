@@ -93,6 +93,14 @@ core::Status ForEach(std::size_t count, const Progress& progress, const char* wh
   return {};
 }
 
+/// Names in a folder, sorted into what could be slices.
+struct FolderContent {
+  std::vector<std::string> files, dicom;
+  std::vector<std::string> volumes;  ///< files that are a series each
+};
+/// \return kImagePathUnsafe for a link or a pipe among them
+core::Result<FolderContent> LookInto(const std::filesystem::path& folder);
+
 /// Numbered pictures in a folder: headers now, samples when asked for.
 core::Status OpenStack(const std::filesystem::path& folder, std::span<const std::string> names,
                        const ImageSeriesOptions& options, const Progress& progress,

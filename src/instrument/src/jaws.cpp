@@ -47,7 +47,7 @@ geometry::TriangleMesh MakeGrasperJaw(const Tool& tool, int side) {
     const double taper = 0.62 + 0.38 * std::min(1.0, z / (0.45 * length));
     const double outer = half * taper * across;
     const double window_z = length * (0.46 - 0.30 * square(c, 0.6)), inner = 0.42 * half * square(s, 0.6);
-    const auto low = [&](double at) { return Tooth(at, 0.0011, 0.16 * thick); };
+    const auto low = [&](double at) { return Tooth(at, 0.0009, 0.07 * thick); };
     const auto high = [&](double at) { return thick * (0.55 + 0.55 * std::min(1.0, at / (0.7 * length))); };
     const double cx = 0.12 * (inner - outer), cz = 0.12 * (window_z - z), cy = 0.15 * thick;
     rings.push_back({{outer - 0.0 * cx, Side(side, low(z) + cy), z},
@@ -73,7 +73,7 @@ geometry::TriangleMesh MakeMarylandJaw(const Tool& tool, int side) {
     const double half = 0.5 * tool.jaw_width * nose * (0.36 + 0.64 * along);
     const double thick = tool.jaw_thickness * nose * (0.50 + 0.62 * along);
     const double middle = -kMarylandBow * Bow(along);
-    const double inner = Tooth(z, 0.0008, 0.10 * thick), outer = thick;
+    const double inner = Tooth(z, 0.0008, 0.06 * thick), outer = thick;
     const double low = side > 0 ? middle + inner : middle - outer;
     const double high = side > 0 ? middle + outer : middle - inner;
     rings.push_back(MakeBlockRing(z, -half, half, low, high));

@@ -209,8 +209,11 @@ TriangleMesh MakePouch() {
     Ring ring;
     for (int i = 0; i < kAround; ++i) {
       const double angle = 2 * M_PI * i / kAround;
+      // folds hang down from the ring, and cross folds where the film is crumpled
+      const double folded = std::sqrt(down);
       const double crease =
-          1.0 + down * (0.045 * std::cos(5 * angle + 4 * down) + 0.025 * std::cos(11 * angle - 3 * down));
+          1.0 + folded * (0.085 * std::cos(5 * angle + 4 * down) + 0.050 * std::cos(9 * angle - 7 * down) +
+                          0.025 * std::cos(17 * angle + 11 * down));
       const double radius = (0.5 * kBagMouth - kBagWire) * profile * crease - wall * profile;
       ring.push_back({radius * std::sin(angle), -kBagDepth * down + (is_inside ? wall * down : 0.0),
                       -0.5 * kBagMouth + radius * std::cos(angle)});

@@ -27,6 +27,30 @@ void SimulatorPresenter::ClosePatientList() {
   OpenHome();
 }
 
+void SimulatorPresenter::OpenRehearsal() {
+  if (page_.failure || loading_.IsRunning()) return;
+  if (control_ != nullptr) control_->SetPaused(true);
+  screen_->ReleasePointer();
+  page_.is_help_open = false;
+  CloseCards();
+  page_.is_rehearsal_open = true;
+  Refresh();
+}
+
+void SimulatorPresenter::CloseRehearsal() {
+  if (!page_.is_rehearsal_open) return;
+  page_.is_rehearsal_open = false;
+  OpenPatientList();
+}
+
+void SimulatorPresenter::OperateOn(const std::filesystem::path& patient) {
+  ChoosePatient(patient);
+  TaskRequest request;
+  request.task = kOperation;
+  request.choice.patient_folder = patient;
+  Open(request);
+}
+
 void SimulatorPresenter::ChoosePatient(const std::filesystem::path& folder) {
   options_.operation.patient = folder;
   settings_.patient = folder.string();

@@ -41,7 +41,7 @@ std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapsh
 
 void SimulatorPresenter::CloseCards() {
   page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = page_.is_home_open = false;
-  page_.is_patient_list_open = page_.is_key_list_open = false;
+  page_.is_patient_list_open = page_.is_key_list_open = page_.is_rehearsal_open = false;
 }
 
 void SimulatorPresenter::OpenHome() {

@@ -61,25 +61,32 @@ void main() {
 )";
 
 const char* const kClearFragmentShader = R"(
-uniform vec3 u_low, u_high;
+uniform sampler3D u_bumps;
+uniform vec3 u_low, u_high;  // where it is deep, where it is shallow or seen edge-on
 uniform vec3 u_gloss;        // wet, wet exponent, sheen
-uniform float u_opacity;     // seen square on
+uniform float u_opacity;     // seen square on, where it is deep
+uniform float u_bump_scale, u_bump;  // ripples of a liquid, creases of a sheet
 
 void main() {
   float inverse_distance = inversesqrt(dot(v_position, v_position));
-  // faint ripples: a place on a puddle counts in its radius
-  vec3 n = normalize(v_normal + 0.05 * vec3(sin(11.0 * v_rest.x + 3.0 * v_rest.y), sin(9.0 * v_rest.y - 5.0 * v_rest.x), 0.0));
   vec3 to_eye = -inverse_distance * v_position;
+  vec3 smooth_n = normalize(v_normal);
+  vec3 slope = texture(u_bumps, v_rest.xyz * u_bump_scale).xyz * 2.0 - 1.0;
+  vec3 n = normalize(smooth_n - u_bump * (slope - smooth_n * dot(smooth_n, slope)));
   vec3 l = normalize(to_eye + inverse_distance * u_light);
   vec3 h = normalize(l + to_eye);
   float light = CalcLight(inverse_distance, to_eye.z);
-  float facing = abs(dot(n, to_eye)), rim = 1.0 - facing;
-  vec3 albedo = mix(u_high, u_low, facing);
+  float facing = abs(dot(n, to_eye)), rim = 1.0 - facing, deep = min(v_rest.w * v_rest.w, 1.0);
+  vec3 albedo = mix(u_high, u_low, facing * deep);
   float point = u_gloss.x * exp2(u_gloss.y * (abs(dot(n, h)) - 1.0));
-  // what it mirrors: the warm wall all round
-  vec3 mirrored = (0.015 + 0.30 * rim * rim * rim) * kMirroredWall * (0.3 + 0.7 * min(light, 1.5));
-  vec3 colour = albedo * (0.25 + 0.75 * facing) * (0.05 + light) + mirrored + (0.6 * point + u_gloss.z * facing * facing) * min(light, 2.0);
-  float opacity = clamp(u_opacity * (1.0 + 1.2 * rim * rim) * v_rest.w + 0.8 * point * v_rest.w, 0.0, 1.0);
+  float broad = exp2(0.08 * u_gloss.y * (abs(dot(n, h)) - 1.0));
+  // what it mirrors: tissue all round, which is bright where the head light falls on it, on the lens's side
+  vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
+  float lit = 0.25 + 0.75 * smoothstep(-0.2, 0.9, mirrored.z) + 0.5 * mirrored.y * mirrored.y;
+  vec3 room = (0.03 + 0.60 * rim * rim * rim) * lit * kMirroredWall * (0.3 + 0.7 * min(light, 1.5));
+  vec3 colour = albedo * (0.25 + 0.75 * facing) * (0.05 + light) + u_gloss.x * room;
+  colour += (0.6 * point + u_gloss.z * broad) * min(light, 2.0);
+  float opacity = clamp((u_opacity * (1.0 + 1.2 * rim * rim) + 0.8 * point + 0.6 * u_gloss.z * broad) * v_rest.w, 0.0, 1.0);
   o_colour = vec4(Finish(2.1 * colour, v_position, gl_FragCoord.xy), opacity);
 }
 )";

@@ -44,7 +44,8 @@ MaterialLook ReadLook(const JsonView& view) {
   view.AllowOnly({"is_tissue",   "low_srgb",      "high_srgb",    "cell_srgb",     "vessel_srgb",
                   "cell_amount", "vessel_amount", "vessel_width", "detail_tile_m", "broad_tile_m",
                   "bump_tile_m", "bump",          "wet",          "wet_exponent",  "sheen",
-                  "wrap",        "glow",          "grooves",      "opacity",       "emission"});
+                  "wrap",        "glow",          "grooves",      "wear",          "opacity",
+                  "emission"});
   MaterialLook look;
   const auto number = [&view](std::string_view key, float& value, const NumberRange& range) {
     value = ToFloat(view.NumberOr(key, double{value}, range));
@@ -72,6 +73,7 @@ MaterialLook ReadLook(const JsonView& view) {
   triple("wrap", look.wrap, kShare);
   number("glow", look.glow, kShare);
   number("grooves", look.grooves, kShare);
+  number("wear", look.wear, kShare);
   number("opacity", look.opacity, kShare);
   number("emission", look.emission, {0, 100});
   return look;
@@ -93,11 +95,12 @@ void ReadEffects(const JsonView& view, Looks& looks) {
 }  // namespace
 
 std::string_view EffectName(Effect effect) noexcept {
-  static constexpr std::string_view kNames[] = {
-      "smoke",           "blanched",         "scorched",        "charred",
-      "blood_film",      "bile_film",        "thin_rim",        "shade",
-      "bounce",          "tissue_highlight", "metal_highlight", "mirrored_lens",
-      "mirrored_tissue", "mirrored_wall",    "mirrored_box",    "strand_shade"};
+  static constexpr std::string_view kNames[] = {"smoke",         "blanched",         "scorched",
+                                                "charred",       "blood_film",       "bile_film",
+                                                "pallor",        "thin_rim",         "shade",
+                                                "bounce",        "tissue_highlight", "metal_highlight",
+                                                "mirrored_lens", "mirrored_tissue",  "mirrored_wall",
+                                                "mirrored_box",  "strand_shade"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(Effect::kCount));
   return kNames[static_cast<std::size_t>(effect)];
 }

@@ -62,7 +62,7 @@ struct Renderer::Content {
     Pose X_camera_world;
     std::vector<SurfaceDraw> surfaces;
   } earlier;
-  SurfaceId rod, cone, puddle;
+  SurfaceId rod, cone;
 
   core::Status Make() {
     if (const auto status = surface_drawer.Make(looks); !status) return status;
@@ -73,9 +73,6 @@ struct Renderer::Content {
     };
     rod = add(MakeUnitRod(), Material::kForce);
     cone = add(MakeUnitCone(), Material::kForce);
-    // the last but one ring and the shore are clearer: a meniscus has no edge
-    const geometry::TriangleMesh flat = MakeUnitPuddle();
-    puddle = surfaces.Add(flat.triangles, flat.positions, Material::kBlood, CalcPuddleOpacity());
     return {};
   }
 
@@ -115,10 +112,8 @@ struct Renderer::Content {
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     glDepthMask(GL_FALSE);
     for (const Puddle& p : frame.puddles) {
-      if (!(p.radius > 0.0)) continue;
-      const Pose X_world_puddle{math::RotationBetween({0, 0, 1}, p.up), p.centre};
-      surface_drawer.Draw(*surfaces.Find(puddle), viewport.X_camera_world * X_world_puddle,
-                          {p.radius, p.radius, p.radius}, MixLook(looks, p));
+      if (const Surface* surface = surfaces.Find(p.surface))
+        surface_drawer.Draw(*surface, viewport.X_camera_world, {1, 1, 1}, MixLook(looks, p));
     }
     for (const SurfaceDraw& draw : frame.surfaces) {
       const Surface* surface = surfaces.Find(draw.surface);
@@ -169,10 +164,9 @@ struct Renderer::Content {
     }
     for (const Puddle& p : frame.puddles) {
       const std::uint16_t label = labels[static_cast<std::size_t>(FindLiquid(looks, p))];
-      if (!(p.radius > 0.0) || label == 0) continue;
-      const Pose X_world_puddle{math::RotationBetween({0, 0, 1}, p.up), p.centre};
-      geometry.Draw(*surfaces.Find(puddle), viewport.X_camera_world * X_world_puddle,
-                    {p.radius, p.radius, p.radius}, label, {});
+      const Surface* surface = surfaces.Find(p.surface);
+      if (surface == nullptr || label == 0) continue;
+      geometry.Draw(*surface, viewport.X_camera_world, {1, 1, 1}, label, {});
     }
     glDisable(GL_CULL_FACE);  // blobs and ribbons face the eye
     std::vector<Fibre> fibres;

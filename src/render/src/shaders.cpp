@@ -18,6 +18,7 @@ layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec4 a_rest;  // rest position, ambient occlusion
 layout(location = 3) in vec4 a_mark;  // blanching, charring, film of blood, film of bile
+layout(location = 5) in float a_pallor;
 uniform mat4 u_camera_from_surface;
 uniform mat3 u_rotation;              // of the above, without its scale
 uniform mat4 u_clip_from_camera;
@@ -28,6 +29,7 @@ out vec3 v_position;
 out vec3 v_normal;
 out vec4 v_rest;                      // rest position, how open it lies here and now
 out vec4 v_mark;
+out float v_pallor;
 
 // Share of the light that the tools nearby leave. Per vertex: it is soft, and a pixel costs more than a vertex.
 float CalcToolShade(vec3 p, vec3 n) {
@@ -51,6 +53,7 @@ void main() {
   v_normal = u_rotation * a_normal;
   v_rest = vec4(a_rest.xyz, a_rest.w * CalcToolShade(v_position, v_normal));
   v_mark = a_mark;
+  v_pallor = a_pallor;
   gl_Position = u_clip_from_camera * position;
 }
 )";
@@ -103,7 +106,10 @@ vec4 WithBrightness(vec3 colour) { return vec4(colour, dot(colour, vec3(0.299, 0
 )";
 
 const char* const kTissueFragmentShader = R"(
+const float kGrainScale = 3.1, kGrainTilt = 0.45;
+const float kBroadGloss = 150.0;  // exponent; a broader highlight than that has no white middle
 in vec4 v_mark;
+in float v_pallor;
 uniform sampler3D u_pattern;
 uniform sampler3D u_bumps;
 uniform vec3 u_low, u_high, u_cell, u_vessel, u_wrap;
@@ -132,6 +138,8 @@ void main() {
   albedo = mix(albedo, u_cell, u_amounts.x * (1.0 - detail.a));
   float vessel = clamp((broad.b - 1.0 + u_amounts.z) / u_amounts.z, 0.0, 1.0);
   albedo = mix(albedo, u_vessel, u_amounts.y * vessel * vessel);
+  // stretched tissue is white, its vessels are empty; patches of it whiten first
+  albedo = mix(albedo, kPallor, v_pallor * (0.55 + 0.45 * detail.r));
   // a thin wall seen edge-on is brighter and paler
   float rim = 1.0 - facing;
   albedo += u_glow * rim * rim * (vec3(0.5) * albedo + kThinRim);
@@ -164,6 +172,19 @@ void main() {
   // the wet coat has a smoother surface of its own; it pools in hollows and thins out between them
   vec3 coat = normalize(n - 0.35 * u_bump * slope + 0.16 * (vec3(detail.r, broad.r, detail.g) - 0.5));
   float coat_cosine = max(0.5 * (dot(coat, l) + dot(coat, to_eye)), 0.0);
+  float island = 1.0;
+#ifdef FINE
+  // near the middle of a highlight the grain beneath shows through the coat: it breaks one large white into many small
+  float nearness = smoothstep(0.970, 0.990, coat_cosine);
+  if (u_gloss.y > kBroadGloss && nearness > 0.0) {
+    vec4 grain = textureLod(u_bumps, v_rest.xyz * (kGrainScale * u_bump_scale) + vec3(0.37, 0.11, 0.71), 0.0);
+    vec3 tilt = grain.xyz * 2.0 - 1.0;
+    coat = normalize(coat - (nearness * min(u_bump, 0.26)) * (kGrainTilt * (tilt - n * dot(n, tilt)) + 0.75 * slope));
+    coat_cosine = max(0.5 * (dot(coat, l) + dot(coat, to_eye)), 0.0);
+    // where it stands out of the coat it is dry
+    island = 1.0 - nearness * min(1.0, 4.0 * u_bump) * (0.92 - 0.92 * smoothstep(0.54, 0.70, grain.a));
+  }
+#endif
   float sharpness = u_gloss.y;
 #ifdef FINE
   // a highlight smaller than a pixel is spread over it (Tokuyoshi and Kaplanyan 2019)
@@ -175,19 +196,22 @@ void main() {
   float softened = 1.0;
 #endif
   float thickness = smoothstep(0.28, 0.66, 0.6 * detail.r + 0.4 * broad.g) * (0.35 + 1.3 * broad.r);
-  float wet = 1.6 * wet_share * softened * exp2(sharpness * (coat_cosine - 1.0)) * thickness * ambient;
+  float wet = 1.6 * wet_share * island * softened * exp2(sharpness * (coat_cosine - 1.0)) * thickness * ambient;
   float sheen = sheen_share * exp2(18.0 * (half_cosine - 1.0));
   vec3 bounce = kBounce * (0.4 + 0.6 * ambient);
-  vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 2.0) * kTissueHighlight;
+  vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 1.35) * kTissueHighlight;
   o_colour = WithBrightness(Finish(2.1 * colour, v_position, gl_FragCoord.xy));
 }
 )";
 
 const char* const kToolFragmentShader = R"(
+const float kGroovesPerMetre = 11000.0;  // radians: 0.57 mm from one to the next
+const vec3 kWorn = vec3(0.9, 0.95, 1.0);
 uniform sampler3D u_pattern;
 uniform vec3 u_low, u_high;
 uniform vec3 u_gloss;        // wet, wet exponent, sheen
 uniform float u_grooves;     // depth of fine grooves across the shaft
+uniform float u_wear;        // scratches and rubbed places that are lighter than the rest
 uniform vec3 u_axis;         // of the shaft, along which it was polished
 uniform vec3 u_room;         // what is mirrored from all round
 uniform vec4 u_overhead;     // lamp of a box trainer: direction to it, power
@@ -231,17 +255,23 @@ void main() {
   float light = CalcLight(inverse_distance, to_eye.z);
   float facing = max(dot(n, to_eye), 0.0);
 
-  // brushed across the shaft, worn where it is touched: streaks that run round it, and clouds of fine scratches
-  vec4 streaks = texture(u_pattern, vec3(9.0, 9.0, 420.0) * v_rest.xyz);
+  // steel is brushed across the shaft; on insulation the trocar's valve has drawn scratches along it; both are worn where
+  // they are touched
+  bool is_metal = u_grooves > 0.0;
+  float metal = is_metal ? 1.0 : 0.0;
   vec4 clouds = texture(u_pattern, 45.0 * v_rest.xyz);
-  float metal = min(1.0, 12.0 * u_grooves);
-  float brushed = 1.0 + metal * (0.9 * (streaks.r - 0.5) + 0.5 * (clouds.r - 0.5));
-  float grooves = 1.0 - u_grooves * (0.5 + 0.5 * sin(v_rest.z * 5200.0));
+  vec4 streaks = texture(u_pattern, (is_metal ? vec3(9.0, 9.0, 760.0) : vec3(170.0, 170.0, 7.0)) * v_rest.xyz);
+  float scratch = smoothstep(0.90, 0.99, streaks.b) * smoothstep(0.40, 0.65, clouds.r);
+  float brushed = 1.0 + metal * (0.5 * (streaks.r - 0.5) + 0.5 * (clouds.r - 0.5));
+  // grooves too fine for the picture become an even grey
+  float groove = v_rest.z * kGroovesPerMetre, width = fwidth(groove), grooves = 1.0;
+  if (is_metal) grooves -= u_grooves * (0.5 + 0.5 * sin(groove) * clamp(1.6 - 0.7 * width, 0.0, 1.0));
 
-  // what the metal mirrors: tissue or box all round, the dark middle of the lens
+  // what it mirrors: tissue or box all round, the dark middle of the lens; only metal gives it the colour of tissue
   vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
   float away = 0.5 - 0.5 * mirrored.z;
   vec3 room = mix(kMirroredLens, u_room, away * away) * (0.55 + 0.45 * mirrored.y);
+  room = mix(vec3(dot(room, vec3(0.30, 0.55, 0.15))), room, 0.15 + 0.60 * smoothstep(0.1, 0.3, u_gloss.z));
 
   float cosine = clamp(dot(n, l), 0.0, 1.0);
   float along = dot(u_axis, h) + metal * 0.05 * (streaks.r - 0.5);
@@ -249,6 +279,7 @@ void main() {
   float point = exp2(4.0 * u_gloss.y * (max(dot(n, h), 0.0) - 1.0));
   float rim = 1.0 - facing;
   vec3 base = mix(u_low, u_high, cosine * cosine) * brushed;
+  base += u_wear * (0.033 * scratch + 0.015 * smoothstep(0.45, 0.8, clouds.r)) * kWorn;
   vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
   colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * brushed * (0.25 + 0.75 * min(light, 1.5));
   colour += u_gloss.x * (0.30 * streak * brushed + 0.8 * point) * min(light, 2.0) * kMetalHighlight;
@@ -351,10 +382,10 @@ std::string FormatFloat(double number) {
 
 std::string MakeEffectColours(const Looks& looks) {
   static constexpr const char* kNames[] = {
-      "kSmoke",          "kBlanched",        "kScorched",       "kCharred",
-      "kBloodFilm",      "kBileFilm",        "kThinRim",        "kShade",
-      "kBounce",         "kTissueHighlight", "kMetalHighlight", "kMirroredLens",
-      "kMirroredTissue", "kMirroredWall",    "kMirroredBox",    "kStrandShade"};
+      "kSmoke",           "kBlanched",       "kScorched",     "kCharred",        "kBloodFilm",
+      "kBileFilm",        "kPallor",         "kThinRim",      "kShade",          "kBounce",
+      "kTissueHighlight", "kMetalHighlight", "kMirroredLens", "kMirroredTissue", "kMirroredWall",
+      "kMirroredBox",     "kStrandShade"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(Effect::kCount));
   std::string source;
   for (std::size_t i = 0; i < looks.effects.size(); ++i) {

@@ -17,10 +17,13 @@ void SetLook(const Program& program, const MaterialLook& look) {
   program.Set("u_gloss", Colour{look.wet, look.wet_exponent, look.sheen});
   if (look.opacity < 1.0f) {
     program.Set("u_opacity", look.opacity);
+    program.Set("u_bump_scale", inverse(look.bump_tile));
+    program.Set("u_bump", look.bump);
     return;
   }
   if (!look.is_tissue) {
     program.Set("u_grooves", look.grooves);
+    program.Set("u_wear", look.wear);
     return;
   }
   program.Set("u_cell", look.cell);
@@ -64,9 +67,10 @@ core::Status SurfaceDrawer::Make(const Looks& looks) {
 
 void SurfaceDrawer::Begin(Quality quality) {
   glVertexAttrib4f(3, 0, 0, 0, 0);  // of surfaces without marks
+  glVertexAttrib1f(5, 0);
   noise_.Bind();
   is_fine_ = quality == Quality::kHigh;
-  for (const Program& program : {Tissue(), tool_}) {
+  for (const Program& program : {Tissue(), tool_, clear_}) {
     glUseProgram(program.name);
     program.Set("u_pattern", 0);
     program.Set("u_bumps", 1);

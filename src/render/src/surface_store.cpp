@@ -106,6 +106,9 @@ void SurfaceStore::UploadMarks(Surface& surface, std::span<const SurfaceMark> ma
     glBindBuffer(GL_ARRAY_BUFFER, surface.marks);
     glEnableVertexAttribArray(3);
     glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SurfaceMark), nullptr);
+    glEnableVertexAttribArray(5);
+    glVertexAttribPointer(5, 1, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SurfaceMark),
+                          reinterpret_cast<const void*>(offsetof(SurfaceMark, pallor)));
     glBindVertexArray(0);
   }
   glBindBuffer(GL_ARRAY_BUFFER, surface.marks);

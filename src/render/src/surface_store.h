@@ -28,7 +28,7 @@ struct Surface {
 };
 
 /// Attributes of a vertex: 0 position, 1 normal, 2 rest position and ambient_occlusion, 3 marks,
-/// 4 earlier position.
+/// 4 earlier position, 5 pallor of the marks.
 /// Needs the OpenGL context of the renderer that owns it.
 class SurfaceStore {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file unit_shapes.h  Shapes of size 1 that the renderer scales into place: arrows and puddles.
+/// \file unit_shapes.h  Shapes of size 1 that the renderer scales into place: arrows.
 #pragma once
 
 #include "trocar/geometry/triangle_mesh.h"
@@ -9,10 +9,5 @@ namespace trocar::render {
 /// Rod and cone along +z with radius and length 1, so that each can be scaled along its axis.
 geometry::TriangleMesh MakeUnitRod();
 geometry::TriangleMesh MakeUnitCone();
-
-/// Level liquid of radius about 1 with an uneven shore, domed by surface tension, facing +z.
-geometry::TriangleMesh MakeUnitPuddle();
-/// (vertices of MakeUnitPuddle) share of its opacity: it ends softly at the shore [-]
-std::vector<double> CalcPuddleOpacity();
 
 }  // namespace trocar::render

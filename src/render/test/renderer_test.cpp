@@ -4,11 +4,15 @@
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "test_scene.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
+#include "trocar/geometry/tube.h"
 
 namespace trocar::render {
 namespace {
@@ -102,6 +106,65 @@ TEST_F(RendererTest, LightDoesNotBurnOutTissueNearTheLens) {
   EXPECT_GT(r, 40);
   EXPECT_LT(r, 250);
   EXPECT_GT(r, g + 20);
+}
+
+// A highlight of smooth tissue near the lens would be one white patch.
+TEST_F(RendererTest, AHighlightOnTissueNearTheLensIsBrokenByItsGrain) {
+  const auto measure = [this](const Looks& looks) {
+    auto renderer = Renderer::Make(looks);
+    EXPECT_TRUE(renderer.ok());
+    Frame frame = PlainFrame();
+    frame.surfaces = {
+        {renderer->AddSurface(MakeSphere({0, 0, 0}, 0.03, 5), Material::kLiver), {{}, {0, 0, -0.08}}}};
+    target_->Bind();
+    renderer->Draw(frame, kWidth, kHeight);
+    Image image;
+    target_->Read(image);
+    // pixels at the edge of white for each that is white: 4 pi / perimeter is small for one round patch
+    int white = 0, edge = 0;
+    const auto is_white = [&](int x, int y) { return Brightness(image, x, y) > 560; };
+    for (int y = 1; y + 1 < kHeight; ++y) {
+      for (int x = 1; x + 1 < kWidth; ++x) {
+        if (!is_white(x, y)) continue;
+        ++white;
+        edge += is_white(x + 1, y) && is_white(x - 1, y) && is_white(x, y + 1) && is_white(x, y - 1) ? 0 : 1;
+      }
+    }
+    return std::array<int, 2>{white, edge};
+  };
+  const auto looks = ReadLooks(std::filesystem::path(TROCAR_SOURCE_DIR) / kLooksFile);
+  ASSERT_TRUE(looks.ok());
+  const auto [white, edge] = measure(*looks);
+  EXPECT_GT(white, 20);
+  EXPECT_GT(edge, 0.4 * white);
+  // negative control: without grain it is a patch
+  Looks smooth = *looks;
+  smooth.materials[static_cast<std::size_t>(Material::kLiver)].bump = 0;
+  const auto [patch, rim] = measure(smooth);
+  EXPECT_GT(patch, 20);
+  EXPECT_LT(static_cast<double>(rim) / patch, 0.7 * edge / white);
+}
+
+TEST_F(RendererTest, AnInsulatedShaftIsGreyAndWorn) {
+  const SurfaceId shaft = renderer_->AddSurface(
+      geometry::MakeTube({{{0, 0, 0}, {0, 0, 0.2}}, {0.005, 0.005}}, 24), Material::kShaft);
+  Frame frame = PlainFrame();
+  // across the picture
+  frame.surfaces = {{shaft, {math::RotationAbout({0, 1, 0}, 0.5 * M_PI), {-0.1, 0, -0.03}}}};
+  frame.exposure = 2;
+  const Image image = Draw(frame);
+  double colour = 0, rough = 0, all = 0;
+  for (int x = 20; x + 20 < kWidth; ++x) {
+    for (int y = kHeight / 2 - 12; y <= kHeight / 2 + 12; ++y) {
+      const auto [r, g, b] = image.At(x, y);
+      all += r + g + b;
+      colour += std::max({r, g, b}) - std::min({r, g, b});
+      rough += std::abs(Brightness(image, x, y) - Brightness(image, x + 8, y));
+    }
+  }
+  ASSERT_GT(all, 0);
+  EXPECT_LT(3 * colour, 0.15 * all) << "it does not mirror the red of tissue";
+  EXPECT_GT(rough, 0.015 * all) << "scratches and wear along it";
 }
 
 TEST_F(RendererTest, PoseMovesThePictureToTheCalculatedPixel) {

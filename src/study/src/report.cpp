@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <map>
+#include <type_traits>
+#include <utility>
 
 #include "study_folder.h"
 #include "table.h"
@@ -28,6 +31,48 @@ constexpr const char* kPlotStyle =
     "svg text{font:12px system-ui,\"DejaVu Sans\",sans-serif;fill:#1d2327}svg "
     ".title{font-size:14px;font-weight:600}svg .grid{stroke:#dcdcde}svg .line{fill:none;stroke-width:1.8}";
 constexpr std::size_t kMostFailuresShown = 50;
+
+/// A number of a run in words, and its unit.
+struct Label {
+  const char *name, *words, *unit;
+};
+constexpr std::array kLabels = {Label{"completed", "Share of runs completed", ""},
+                                Label{"seconds", "Time", "s"},
+                                Label{"score", "Score", "%"},
+                                Label{"errors", "Errors", ""},
+                                Label{"critical_errors", "Critical errors", ""},
+                                Label{"path_left_m", "Path of the left hand", "m"},
+                                Label{"path_right_m", "Path of the right hand", "m"},
+                                Label{"most_force_left_n", "Greatest force, left hand", "N"},
+                                Label{"most_force_right_n", "Greatest force, right hand", "N"},
+                                Label{"impulse_left_ns", "Impulse, left hand", "N s"},
+                                Label{"impulse_right_ns", "Impulse, right hand", "N s"},
+                                Label{"pinch_damages", "Places that jaws crushed", ""},
+                                Label{"tears", "Tears", ""},
+                                Label{"critical_view", "Critical view (0 to 6)", ""},
+                                Label{"detached_share", "Share of the bed that is detached", ""},
+                                Label{"cleared_share", "Share of the triangle that is cleared", ""},
+                                Label{"blood_pooled_ml", "Blood that lies there", "mL"},
+                                Label{"solver_iterations_per_tick", "Solver iterations a tick", ""},
+                                Label{"restored_states", "States taken back", ""}};
+
+Label LabelOf(const std::string& name) {
+  const auto found =
+      std::find_if(kLabels.begin(), kLabels.end(), [&](const Label& label) { return label.name == name; });
+  return found != kLabels.end() ? *found : Label{"", name.c_str(), ""};
+}
+
+/// "Time [s]"
+std::string HeadOf(const std::string& name) {
+  const Label label = LabelOf(name);
+  return label.words + (*label.unit != 0 ? " [" + std::string(label.unit) + "]" : "");
+}
+
+/// "stiffness scale"
+std::string Spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
 
 double FindNumber(const Row& row, const std::string& name) {
   for (const auto& [column, value] : row.result.numbers)
@@ -80,8 +125,10 @@ std::string PlotNumber(std::span<const Row> rows, const PlotAxis& axis, const st
     middle.points.push_back({value, core::CalcPercentile(numbers, 0.5)});
     high.points.push_back({value, core::CalcPercentile(numbers, 0.9)});
   }
-  return bench::FormatSvgPlot({.title = number, .x_label = axis.name, .y_label = "", .is_log_x = axis.is_log},
-                              {middle, low, high});
+  const Label label = LabelOf(number);
+  return bench::FormatSvgPlot(
+      {.title = label.words, .x_label = Spaced(axis.name), .y_label = label.unit, .is_log_x = axis.is_log},
+      {middle, low, high});
 }
 
 /// A plot that needs no page around it.
@@ -93,12 +140,30 @@ core::Status WritePlot(const std::filesystem::path& path, std::string plot) {
   return core::WriteFile(path, plot);
 }
 
-std::string FormatGroups(std::span<const Row> rows, const std::vector<std::string>& names,
-                         const std::function<std::string(const Row&)>& group_of, const std::string& head) {
-  std::map<std::string, std::vector<const Row*>> groups;
-  for (const Row& row : rows) groups[group_of(row)].push_back(&row);
-  std::string text = "<table><tr><th>" + head + "</th><th>runs</th>";
-  for (const std::string& name : names) text += "<th>" + core::EscapeMarkup(name) + "</th>";
+/// Runs that are compared with others, and what they have in common.
+using Groups = std::vector<std::pair<std::string, std::vector<const Row*>>>;
+
+/// In the order of what they have in common: a name or a number.
+template <typename KeyOf>
+Groups GroupBy(std::span<const Row> rows, KeyOf&& key_of) {
+  std::map<decltype(key_of(rows.front())), std::vector<const Row*>> groups;
+  for (const Row& row : rows) groups[key_of(row)].push_back(&row);
+  Groups named;
+  for (auto& [key, members] : groups) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(key)>, double>) {
+      named.emplace_back(FormatNumber(key, 6), std::move(members));
+    } else {
+      named.emplace_back(key, std::move(members));
+    }
+  }
+  return named;
+}
+
+/// Medians, a line a group.
+std::string FormatGroups(const Groups& groups, const std::vector<std::string>& names,
+                         const std::string& head) {
+  std::string text = "<table><tr><th>" + core::EscapeMarkup(head) + "</th><th>runs</th>";
+  for (const std::string& name : names) text += "<th>" + core::EscapeMarkup(HeadOf(name)) + "</th>";
   text += "</tr>\n";
   for (const auto& [group, members] : groups) {
     text += "<tr><td>" + core::EscapeMarkup(group.empty() ? "the scene's own" : group) + "</td><td>" +
@@ -133,19 +198,18 @@ core::Status WriteReport(const std::filesystem::path& path, const StudyPlan& pla
   }
   const std::vector<std::string> names = ListVarying(rows);
   if (!rows.empty()) {
-    page +=
-        "<h2>Medians</h2>\n" + FormatGroups(
-                                   rows, names, [](const Row& row) { return row.run.surgeon; }, "surgeon");
-    if (plan.patients.size() > 1)
-      page += FormatGroups(
-          rows, names, [](const Row& row) { return row.run.patient.filename().string(); }, "patient");
+    const auto surgeon_of = [](const Row& row) { return row.run.surgeon; };
+    const auto patient_of = [](const Row& row) { return row.run.patient.filename().string(); };
+    page += "<h2>Medians</h2>\n" + FormatGroups(GroupBy(rows, surgeon_of), names, "surgeon");
+    if (plan.patients.size() > 1) page += FormatGroups(GroupBy(rows, patient_of), names, "patient");
   }
   std::vector<PlotAxis> axes;
   for (std::size_t i = 0; i < plan.parameters.size() && !rows.empty(); ++i)
     if (plan.parameters[i].values.size() > 1) axes.push_back(AxisOf(plan, i));
   if (plan.patients.size() > 1 && !rows.empty()) axes.push_back(AxisOfPatients(plan));
   for (const PlotAxis& axis : axes) {
-    page += "<h2>" + core::EscapeMarkup(axis.name) + "</h2>\n";
+    page += "<h2>Over " + core::EscapeMarkup(Spaced(axis.name)) + "</h2>\n";
+    if (axis.name != "patient") page += FormatGroups(GroupBy(rows, axis.value_of), names, Spaced(axis.name));
     for (const std::string& name : names) {
       const std::string plot = PlotNumber(rows, axis, name);
       page += plot + "\n";

@@ -223,6 +223,7 @@ core::Result<StudySummary> RunStudy(const StudyOptions& options, const StudyPlan
   }
   if (auto status = WriteCsv(options.folder / "runs.csv", plan, rows); !status) return status.error();
   if (auto status = WriteSqlite(options.folder / "runs.sqlite", plan, rows); !status) return status.error();
+  if (auto status = WriteHdf5(options.folder / "runs.h5", plan, rows); !status) return status.error();
   if (auto status = WriteReport(options.folder / "report.html", plan, rows, summary); !status)
     return status.error();
   return summary;

@@ -8,6 +8,7 @@
 
 #include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/dataset/hdf5_file.h"
 
 namespace trocar::study {
 namespace {
@@ -43,6 +44,21 @@ std::vector<std::string> ListValues(const Row& row) {
   return values;
 }
 
+/// Key, surgeon, patient; outcome and state hash stand behind the parameters.
+bool IsText(const StudyPlan& plan, std::size_t column) {
+  const std::size_t outcome = kInputColumns + plan.parameters.size();
+  return (column >= 1 && column <= 3) || column == outcome || column == outcome + 1;
+}
+
+core::Status TakeName(const core::PartialPath& part, const std::filesystem::path& path) {
+  std::error_code failure;
+  std::filesystem::rename(part.Path(), path, failure);
+  if (failure)
+    return core::Error{core::ErrorCode::kFileUnwritable,
+                       path.string() + ": " + failure.message() + "; check the folder"};
+  return {};
+}
+
 struct CloseDatabase {
   void operator()(sqlite3* database) const { sqlite3_close(database); }
 };
@@ -76,16 +92,13 @@ core::Status WriteSqlite(const std::filesystem::path& path, const StudyPlan& pla
   };
   if (status != SQLITE_OK) return failed();
   const std::vector<std::string> columns = ListColumns(plan, rows);
-  // texts: key, surgeon, patient; outcome and state_hash behind the parameters
-  const std::size_t outcome = kInputColumns + plan.parameters.size();
-  const auto is_text = [&](std::size_t i) { return (i >= 1 && i <= 3) || i == outcome || i == outcome + 1; };
   std::string make = "CREATE TABLE runs (", insert = "INSERT INTO runs VALUES (";
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const bool is_whole = i == 0 || i == kInputColumns - 1;
     make += (i > 0 ? ", \"" : "\"") + columns[i] +
-            (is_text(i) ? "\" TEXT"
-             : is_whole ? "\" INTEGER"
-                        : "\" REAL");
+            (IsText(plan, i) ? "\" TEXT"
+             : is_whole      ? "\" INTEGER"
+                             : "\" REAL");
     if (columns[i] == "key") make += " UNIQUE";
     insert += i > 0 ? ", ?" : "?";
   }
@@ -103,12 +116,44 @@ core::Status WriteSqlite(const std::filesystem::path& path, const StudyPlan& pla
     sqlite3_reset(prepared);
   }
   if (sqlite3_exec(opened, "COMMIT", nullptr, nullptr, nullptr) != SQLITE_OK) return failed();
-  std::error_code failure;
-  std::filesystem::rename(part.Path(), path, failure);
-  if (failure)
-    return core::Error{core::ErrorCode::kFileUnwritable,
-                       path.string() + ": " + failure.message() + "; check the folder"};
-  return {};
+  return TakeName(part, path);
+}
+
+core::Status WriteHdf5(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows) {
+  const core::PartialPath part(path);
+  auto file = dataset::Hdf5File::Make(part.Path());
+  if (!file) return file.error();
+  const auto add_texts = [&](const std::string& name, const auto& text_of) {
+    std::vector<std::string> texts;
+    for (const Row& row : rows) texts.push_back(text_of(row));
+    return file->SetTexts(name, texts);
+  };
+  const auto add_numbers = [&](const std::string& name, const auto& number_of) {
+    core::Status status;
+    for (const Row& row : rows) {
+      const double number = number_of(row);
+      if (status.ok()) status = file->Append<double>(name, {}, std::span(&number, 1));
+    }
+    return status;
+  };
+  std::vector<core::Status> done = {
+      add_numbers("index", [](const Row& row) { return static_cast<double>(row.run.index); }),
+      add_texts("key", [](const Row& row) { return row.run.key; }),
+      add_texts("surgeon", [](const Row& row) { return row.run.surgeon; }),
+      add_texts("patient", [](const Row& row) { return row.run.patient.filename().string(); }),
+      add_numbers("seed", [](const Row& row) { return static_cast<double>(row.run.seed); }),
+      add_texts("outcome", [](const Row& row) { return row.result.outcome; }),
+      add_texts("state_hash", [](const Row& row) { return row.result.state_hash; })};
+  for (std::size_t i = 0; i < plan.parameters.size(); ++i)
+    done.push_back(add_numbers(plan.parameters[i].name, [i](const Row& row) { return row.run.values[i]; }));
+  for (std::size_t i = 0; !rows.empty() && i < rows.front().result.numbers.size(); ++i)
+    done.push_back(add_numbers(rows.front().result.numbers[i].first,
+                               [i](const Row& row) { return row.result.numbers[i].second; }));
+  done.push_back(file->Close());
+  for (const core::Status& status : done) {
+    if (!status) return status;
+  }
+  return TakeName(part, path);
 }
 
 }  // namespace trocar::study

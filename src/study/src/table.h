@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file table.h  What a study came to: one table, as CSV and SQLite, and a page with plots.
+/// \file table.h  What a study came to: one table, as CSV, SQLite and HDF5, and a page with plots.
 #pragma once
 
 #include <filesystem>
@@ -21,6 +21,8 @@ struct Row {
 core::Status WriteCsv(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows);
 /// Table `runs`, one row a run; made anew.
 core::Status WriteSqlite(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows);
+/// A data set for each column, of texts or of doubles; made anew.
+core::Status WriteHdf5(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows);
 /// The page, and each of its plots as a picture in plots/ beside it.
 core::Status WriteReport(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows,
                          const StudySummary& summary);

@@ -2,6 +2,7 @@
 #include "trocar/study/study.h"
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -65,6 +66,34 @@ class StudyTest : public testing::Test {
     return count;
   }
 
+  hid_t Column(hid_t file, const char* name, std::size_t rows) const {
+    const hid_t column = H5Dopen2(file, name, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(column);
+    EXPECT_EQ(H5Sget_simple_extent_npoints(space), static_cast<hssize_t>(rows)) << name;
+    H5Sclose(space);
+    return column;
+  }
+  /// Of runs.h5.
+  std::vector<double> Numbers(const char* name, std::size_t rows) const {
+    std::vector<double> numbers(rows);
+    const hid_t file = H5Fopen((options_.folder / "runs.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t column = Column(file, name, rows);
+    EXPECT_GE(H5Dread(column, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), 0);
+    H5Dclose(column), H5Fclose(file);
+    return numbers;
+  }
+  std::vector<std::string> Texts(const char* name, std::size_t rows) const {
+    const hid_t file = H5Fopen((options_.folder / "runs.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t column = Column(file, name, rows), type = H5Dget_type(column);
+    const std::size_t width = H5Tget_size(type);
+    std::string all(rows * width, '\0');
+    EXPECT_GE(H5Dread(column, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()), 0);
+    H5Tclose(type), H5Dclose(column), H5Fclose(file);
+    std::vector<std::string> texts;
+    for (std::size_t row = 0; row < rows; ++row) texts.emplace_back(all.substr(row * width, width).c_str());
+    return texts;
+  }
+
   fs::path folder_ = fs::path(testing::TempDir()) /
                      (std::string("study_") + testing::UnitTest::GetInstance()->current_test_info()->name());
   StudyOptions options_;
@@ -80,7 +109,8 @@ TEST_F(StudyTest, RunsEachOnceAndCollectsThem) {
   const auto report = core::ReadFile(options_.folder / "report.html");
   const auto plot = core::ReadFile(options_.folder / "plots/path_left_m-by-gravity.svg");
   ASSERT_TRUE(report.ok() && plot.ok());
-  EXPECT_NE(report->find("path_left_m"), std::string::npos);
+  EXPECT_NE(report->find("Path of the left hand [m]"), std::string::npos);
+  EXPECT_NE(report->find("<th>gravity</th>"), std::string::npos);
   EXPECT_EQ(plot->find("<svg xmlns="), 0U);
   EXPECT_NE(plot->find("class=\"line\""), std::string::npos);
   // again: nothing is played, and the table is the same
@@ -89,6 +119,32 @@ TEST_F(StudyTest, RunsEachOnceAndCollectsThem) {
   ASSERT_TRUE(Start().ok());
   EXPECT_EQ(Lines(), before);
   EXPECT_EQ(fs::last_write_time(options_.folder / "results"), stamp);
+}
+
+// The same numbers in HDF5 as in the table of texts.
+TEST_F(StudyTest, KeepsItsTableInHdf5) {
+  ASSERT_TRUE(Start().ok());
+  const auto lines = Lines();
+  const std::vector<double> seeds = Numbers("seed", 8), gravity = Numbers("gravity", 8),
+                            seconds = Numbers("seconds", 8), paths = Numbers("path_left_m", 8);
+  const std::vector<std::string> keys = Texts("key", 8), surgeons = Texts("surgeon", 8);
+  std::vector<std::string> columns;
+  std::istringstream head(lines.at(0));
+  for (std::string column; std::getline(head, column, ',');) columns.push_back(column);
+  const auto at = [&](const std::string& column) {
+    return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), column) - columns.begin());
+  };
+  for (std::size_t row = 0; row < 8; ++row) {
+    std::vector<std::string> values;
+    std::istringstream line(lines.at(row + 1));
+    for (std::string value; std::getline(line, value, ',');) values.push_back(value);
+    EXPECT_EQ(keys[row], values.at(at("key")));
+    EXPECT_EQ(surgeons[row], "expert");
+    EXPECT_EQ(seeds[row], std::stod(values.at(at("seed"))));
+    EXPECT_EQ(gravity[row], std::stod(values.at(at("gravity"))));
+    EXPECT_EQ(seconds[row], std::stod(values.at(at("seconds"))));
+    EXPECT_EQ(paths[row], std::stod(values.at(at("path_left_m"))));
+  }
 }
 
 TEST_F(StudyTest, DoesNotDependOnTheNumberOfWorkers) {

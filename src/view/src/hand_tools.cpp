@@ -23,6 +23,8 @@ constexpr double kSleeveOutside = 0.060;       // m
 constexpr double kSleeveMaxBore = 0.0034;      // m; a thicker shaft gets a wider sleeve
 constexpr double kShadeLength = 0.120;         // m of a shaft that shades tissue
 constexpr std::size_t kAssistantInstance = 2;  // after both hands
+constexpr double kHem = 0.005;                 // m under the bag's mouth
+constexpr double kHemShare = 2.4, kFilmShare = 0.8;
 constexpr int kSparks = 7;
 constexpr double kSparkLength = 0.0028;  // m, of the longest
 
@@ -50,6 +52,13 @@ Material MaterialOf(ToolKind tool, Kind part) {
   }
 }
 
+/// Film that is doubled at the mouth, where the ring runs in it: (vertices) share of its opacity.
+std::vector<double> CalcPouchShares(const geometry::TriangleMesh& pouch) {
+  std::vector<double> shares;
+  for (const Vec3& p : pouch.positions) shares.push_back(p.y > -kHem ? kHemShare : kFilmShare);
+  return shares;
+}
+
 /// Current leaves the toe of the hook, else the tips.
 void AddSparks(render::Frame& frame, const instrument::Tool& tool, const Pose& X_world_tool,
                std::uint64_t tick, std::uint32_t hand) {
@@ -70,8 +79,12 @@ void AddSparks(render::Frame& frame, const instrument::Tool& tool, const Pose& X
 void HandTools::Add(render::Renderer& renderer, const scene::Scene& scene) {
   const auto upload = [&renderer](const instrument::Tool& tool) {
     ShownTool shown{tool, {}};
-    for (const instrument::ToolPart& part : instrument::MakeParts(tool))
-      shown.parts.push_back({part.kind, renderer.AddSurface(part.mesh, MaterialOf(tool.kind, part.kind))});
+    for (const instrument::ToolPart& part : instrument::MakeParts(tool)) {
+      const std::vector<double> shares =
+          part.kind == Kind::kPouch ? CalcPouchShares(part.mesh) : std::vector<double>{};
+      shown.parts.push_back(
+          {part.kind, renderer.AddSurface(part.mesh, MaterialOf(tool.kind, part.kind), shares)});
+    }
     return shown;
   };
   assistant_ = upload(*instrument::FindTool("grasper"));

@@ -13,11 +13,12 @@
 
 #include "band_view.h"
 #include "clip_shapes.h"
+#include "falciform_ligament.h"
 #include "hand_tools.h"
 #include "liquids.h"
-#include "loose_ends.h"
 #include "neighbour_view.h"
 #include "object_view.h"
+#include "omentum_drape.h"
 #include "organ_shape.h"
 #include "stone_view.h"
 #include "strand_field.h"
@@ -42,7 +43,9 @@ using render::Material;
 using scene::SurfaceInfo;
 using simulation::Snapshot;
 
-constexpr const char* kCoverName = "ligament";
+constexpr double kLeastRise = 0.0015;  // m, of fat that covers a duct
+constexpr double kBreathsPerSecond = 0.22;
+constexpr Vec3 kBowelBreath{0, -0.0016, 0.0006}, kOmentumBreath{0, -0.0006, 0.0002};  // m, of a deep breath
 constexpr double kOcclusionReach = 0.030;  // m; farther folds cast no soft shade
 constexpr double kSmallestForce = 0.02;    // N; below, an arrow would only flicker
 constexpr double kLongestArrow = 0.045;    // m
@@ -91,6 +94,12 @@ struct LaparoscopeView::Content {
   std::optional<Pool> pool;
   std::vector<render::SurfaceDraw> background;
   std::vector<NeighbourView> neighbours;  // drawn as part of it
+  /// Scenery that the diaphragm moves.
+  struct Breathing {
+    std::size_t draw;  // of the background
+    Vec3 way;          // at the end of a breath [m]
+  };
+  std::vector<Breathing> breathing;
   /// Scenery on which liquid lies.
   struct Ground {
     render::SurfaceId surface;
@@ -125,7 +134,10 @@ struct LaparoscopeView::Content {
       }
       TROCAR_ASSERT(std::size_t{info.first_node} + info.node_count <= start.positions.size());
       if (info.triangles.empty()) {
-        tubes.emplace_back(info, i, *material).Update(start, film);
+        tubes
+            .emplace_back(info, i, *material, start.positions,
+                          has_patient ? TubeLook::kLiving : TubeLook::kEven)
+            .Update(start, film);
         tube_labels.push_back(MakeLabel(FindLabelClass(info, has_patient), i));
       } else {
         organs.emplace_back(info, *material).Update(start, film);
@@ -136,9 +148,9 @@ struct LaparoscopeView::Content {
   }
 
   /// The abdomen round the organs, and how open every surface lies in it.
-  /// \param own  what the patient brings of it; the rest is the usual one
+  /// \param patient  brings its own neighbours; the rest is the usual one
   void AddSurroundings(std::span<const SurfaceInfo> surfaces, const Snapshot& start,
-                       const std::vector<anatomy::Neighbour>& own) {
+                       const anatomy::Patient& patient) {
     std::vector<Vec3> inside;
     std::vector<TriangleMesh> meshes;
     const auto surround = [&](const auto& shape) {
@@ -148,9 +160,10 @@ struct LaparoscopeView::Content {
       meshes.push_back({{positions.begin(), positions.end()}, {triangles.begin(), triangles.end()}});
     };
     for (const OrganShape& organ : organs) surround(organ);
+    const std::vector<Vec3> of_organs = inside;
     for (const TubeShape& tube : tubes) surround(tube);
     std::vector<roles::NeighbourRole> without;
-    for (const anatomy::Neighbour& neighbour : own) {
+    for (const anatomy::Neighbour& neighbour : patient.neighbours) {
       neighbours.emplace_back(neighbour, static_cast<std::int32_t>(neighbours.size()));
       meshes.push_back(neighbour.mesh);
       without.push_back(neighbour.role);
@@ -159,10 +172,17 @@ struct LaparoscopeView::Content {
     }
     auto parts =
         render::MakeAbdomen(inside, simulation::FindOmentumBalls(surfaces, start.positions), without);
-    FatBody ends = CoverEnds(surfaces, start);
-    if (!ends.Mesh().triangles.empty())
-      parts.insert(parts.begin(), {kCoverName, Material::kFat, ends.Mesh()});
-    for (auto& part : parts) meshes.push_back(part.mesh);
+    TriangleMesh ligament = MakeFalciformLigament(FindFalciform(surfaces, start, patient), parts.back().mesh);
+    if (!ligament.triangles.empty())
+      parts.insert(parts.end() - 1, {"falciform ligament", Material::kPeritoneum, std::move(ligament)});
+    std::vector<double> raised;  // of the omentum's vertices
+    for (auto& part : parts) {
+      if (part.material == Material::kFat) {
+        RoundRims(part.mesh);
+        raised = DrapeOmentum(FindCoveredPlaces(FindTubeLines(surfaces, start), of_organs), part.mesh);
+      }
+      meshes.push_back(part.mesh);
+    }
     std::vector<const TriangleMesh*> occluders;
     for (const TriangleMesh& mesh : meshes) occluders.push_back(&mesh);
 
@@ -176,28 +196,43 @@ struct LaparoscopeView::Content {
     for (OrganShape& organ : organs) add(organ);
     for (TubeShape& tube : tubes) add(tube);
     memory_at_start = memory;
-    std::vector<GroundPiece> ground;
+    std::vector<TriangleMesh> ground;
     AddNeighbours(occluders, ground);
     for (const auto& part : parts) {
       std::vector<Vec3> normals(part.mesh.positions.size());
       geometry::CalcVertexNormals(part.mesh.positions, part.mesh.triangles, normals);
       const auto ambient_occlusion =
           render::CalcAmbientOcclusion(occluders, part.mesh.positions, normals, kOcclusionReach);
-      const LabelClass label =
-          part.name == kCoverName ? LabelClass::kLigamentFat : FindLabelClass(part.material);
-      background.push_back(
-          {renderer.AddSurface(part.mesh, part.material, ambient_occlusion), {}, MakeLabel(label)});
-      // the wall is a dome over everything
-      if (part.material == Material::kPeritoneum) continue;
-      ground_shapes.push_back({background.back().surface, part.mesh.positions, {}});
-      const std::vector<GroundPiece> pieces = MakeGround(part.mesh);
-      ground.insert(ground.end(), pieces.begin(), pieces.end());
+      const auto draw = [&](std::span<const Triangle> triangles, LabelClass label) {
+        const render::SurfaceId surface =
+            renderer.AddSurface(triangles, part.mesh.positions, part.material, ambient_occlusion);
+        renderer.UpdateSurface(surface, part.mesh.positions, normals);
+        background.push_back({surface, {}, MakeLabel(label)});
+        // the wall is a dome over everything
+        if (part.material == Material::kPeritoneum) return;
+        breathing.push_back(
+            {background.size() - 1, part.material == Material::kFat ? kOmentumBreath : kBowelBreath});
+        ground_shapes.push_back({surface, part.mesh.positions, {}});
+      };
+      if (part.material == Material::kFat) {
+        // what covers ducts is the fat of their ligament
+        std::vector<Triangle> over, other;
+        for (const Triangle& t : part.mesh.triangles) {
+          const double rise = raised[t[0]] + raised[t[1]] + raised[t[2]];
+          (rise > 3.0 * kLeastRise ? over : other).push_back(t);
+        }
+        draw(over, LabelClass::kLigamentFat);
+        draw(other, FindLabelClass(part.material));
+      } else {
+        draw(part.mesh.triangles, FindLabelClass(part.material));
+      }
+      if (part.material != Material::kPeritoneum) ground.push_back(part.mesh);
     }
     pool.emplace(std::move(ground));
   }
 
   /// \param[in,out] ground  on which liquid runs: bowel, and what fat covers
-  void AddNeighbours(std::span<const TriangleMesh* const> occluders, std::vector<GroundPiece>& ground) {
+  void AddNeighbours(std::span<const TriangleMesh* const> occluders, std::vector<TriangleMesh>& ground) {
     for (NeighbourView& neighbour : neighbours) {
       const TriangleMesh& mesh = neighbour.Mesh();
       neighbour.Add(renderer, render::CalcAmbientOcclusion(occluders, mesh.positions, neighbour.Normals(),
@@ -205,25 +240,34 @@ struct LaparoscopeView::Content {
       background.push_back({neighbour.Surface(), {}, MakeLabel(FindLabelClass(neighbour.GetMaterial()))});
       if (neighbour.GetMaterial() == Material::kPeritoneum) continue;
       ground_shapes.push_back({neighbour.Surface(), neighbour.FinePositions(), {}});
-      const std::vector<GroundPiece> pieces = MakeGround(mesh);
-      ground.insert(ground.end(), pieces.begin(), pieces.end());
+      ground.push_back(mesh);
     }
   }
 
-  /// Fat round the ends of ducts and vessels that the patient's model does not follow.
-  FatBody CoverEnds(std::span<const SurfaceInfo> surfaces, const Snapshot& start) const {
+  /// Where the falciform ligament leaves the liver [m].
+  static std::vector<Vec3> FindFalciform(std::span<const SurfaceInfo> surfaces, const Snapshot& start,
+                                         const anatomy::Patient& patient) {
+    std::vector<Vec3> places;
+    for (std::size_t i = 0; i < std::min(patient.organs.size(), surfaces.size()); ++i) {
+      const anatomy::Region* region = patient.organs[i].RegionOf(roles::RegionRole::kFalciform);
+      if (region == nullptr) continue;
+      for (const std::uint32_t v : region->vertices) {
+        if (v < surfaces[i].node_count) places.push_back(start.positions[surfaces[i].first_node + v]);
+      }
+    }
+    return places;
+  }
+
+  static std::vector<TubeLine> FindTubeLines(std::span<const SurfaceInfo> surfaces, const Snapshot& start) {
     std::vector<TubeLine> lines;
     for (const SurfaceInfo& info : surfaces) {
       if (!info.triangles.empty()) continue;
       const auto nodes = std::span(start.positions).subspan(info.first_node, info.node_count);
-      lines.emplace_back(nodes.begin(), nodes.end());
+      const bool is_in_fat =
+          info.tube == roles::TubeRole::kCommonBileDuct || info.tube == roles::TubeRole::kCommonHepaticDuct;
+      lines.push_back({{nodes.begin(), nodes.end()}, info.radii[0], is_in_fat});
     }
-    std::vector<Vec3> near;
-    for (const OrganShape& organ : organs)
-      near.insert(near.end(), organ.Positions().begin(), organ.Positions().end());
-    FatBody body;
-    body.Make(CoverLooseEnds(lines, near));
-    return body;
+    return lines;
   }
 
   /// A model of tissue in a box trainer: nothing lies near it.
@@ -272,6 +316,7 @@ struct LaparoscopeView::Content {
       tube.Upload(renderer, memory);
       frame.surfaces.push_back({tube.Lumens(), {}, tube_labels[i]});
       frame.surfaces.push_back({tube.Surface(), {}, tube_labels[i]});
+      tube.AddRemnants(frame);
     }
     std::vector<std::size_t> order(organs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -283,6 +328,20 @@ struct LaparoscopeView::Content {
       organs[i].Upload(renderer, memory);
       frame.surfaces.push_back({organs[i].Surface(), {}, organ_labels[i]});
     }
+    if (pool) ShapePool(snapshot);
+  }
+
+  void ShapePool(const Snapshot& snapshot) {
+    std::vector<GroundShape> ground;
+    for (const OrganShape& organ : organs) ground.push_back({organ.Positions(), organ.Triangles()});
+    pool->Shape(renderer, frame, snapshot, std::move(ground));
+  }
+
+  /// Ventilation pushes the abdomen's contents towards the feet; organs of the model are held where they are.
+  void Breathe(double time) {
+    const double wave = std::sin(2.0 * M_PI * kBreathsPerSecond * time);
+    for (const Breathing& part : breathing)
+      background[part.draw].X_world_surface.translation = (0.5 + 0.5 * wave) * part.way;
   }
 
   /// The pool's shore on the scenery; it is asked anew when the pool has changed.
@@ -353,7 +412,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
   content->objects.Add(content->renderer, scene, start);
   content->bands.Add(content->renderer, scene, strands, start.positions);
   if (scene.objects.empty() || scene.HasPatient()) {
-    content->AddSurroundings(surfaces, start, scene.patient.neighbours);
+    content->AddSurroundings(surfaces, start, scene.patient);
   } else {
     content->AddModel();
     content->light_scale = looks->trainer_light;
@@ -396,6 +455,7 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
   if (c.pool) c.pool->AddTo(c.frame, snapshot);
   c.UpdateShapes(snapshot);
   for (NeighbourView& neighbour : c.neighbours) neighbour.Update(c.renderer, snapshot);
+  c.Breathe(snapshot.time);
   c.strands->AddTo(c.renderer, c.frame, snapshot);
   AddStreams(c.frame, snapshot);
   c.frame.smoke = snapshot.operation.smoke;

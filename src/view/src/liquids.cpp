@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/surgery/flow_network.h"
@@ -23,12 +24,33 @@ constexpr double kPulse = 1.2;          // 1/s, heart beats
 constexpr double kDropRadius = 0.0011;  // m, of a drop of 6 uL
 constexpr double kFall = 0.030;         // m that a drop is seen to run
 constexpr int kJetPieces = 8;
+constexpr double kThread = 0.00085;  // m, of a jet's threads
+constexpr int kMostThreads = 7;
+constexpr double kWidestRope = 0.0012;                    // m, half of a bundle of them
+constexpr double kThreadTurn = 2.399963;                      // rad between turns of successive threads
 constexpr double kLeastPool = 1e-8;                       // m^3; less than a drop is no pool
 constexpr double kReach = 0.040;                          // m round the lowest place whose hollows fill
 constexpr double kLeastSlope = 0.2;                       // cosine; a steeper piece holds no liquid
+constexpr double kSpill = 0.014;                          // m, of a pool that overflows
 constexpr double kHighest = 0.060;                        // m that a pool may rise
+constexpr double kPoolChange = 0.00008;                   // m; less movement leaves the surface as it is
 constexpr double kFlatness = 0.30;                        // depth of a pool in cube roots of its volume
 constexpr double kShallowest = 0.0010, kDeepest = 0.012;  // m
+
+/// A thick jet is a bundle of threads: one ribbon that faces the lens would look like a sheet.
+void AddRope(render::Frame& frame, const Vec3& from, const Vec3& to, double width, Material liquid,
+             std::uint32_t seed) {
+  const Vec3 along = math::Normalized(to - from, {0, 0, 1});
+  const Vec3 u = math::AnyPerpendicular(along), w = math::Cross(along, u);
+  const int threads = std::clamp(static_cast<int>(std::ceil(width / kThread)), 1, kMostThreads);
+  const double reach = std::min(0.35 * (width - kThread), kWidestRope);
+  for (int k = 0; k < threads; ++k) {
+    const double angle = kThreadTurn * k, far = reach * std::sqrt(static_cast<double>(k) / threads);
+    const Vec3 aside = threads == 1 ? Vec3{} : far * (std::cos(angle) * u + std::sin(angle) * w);
+    frame.fibres.push_back({from + aside, to + 1.3 * aside, std::min(width, kThread), 0.2 * reach * (k % 3),
+                            liquid, seed + static_cast<std::uint32_t>(k)});
+  }
+}
 
 void AddJet(render::Frame& frame, const simulation::LeakSnapshot& leak, const Vec3& gravity, double time,
             Material liquid, std::uint32_t seed) {
@@ -45,7 +67,7 @@ void AddJet(render::Frame& frame, const simulation::LeakSnapshot& leak, const Ve
   };
   for (int i = 0; i < kJetPieces; ++i) {
     const double t = kFlight * i / kJetPieces, next = kFlight * (i + 1) / kJetPieces;
-    frame.fibres.push_back({at(t), at(next), 1.4 * width(t), 0.0, liquid, seed});
+    AddRope(frame, at(t), at(next), 1.4 * width(t), liquid, seed + static_cast<std::uint32_t>(16 * i));
     // beads that run along it, the more the farther it has flown
     const double phase = std::fmod(3.1 * time + 0.37 * i, 1.0), bead = t + phase * (next - t);
     frame.blobs.push_back({at(bead), (0.45 + 0.05 * i) * width(bead) * (1.0 + 0.4 * std::sin(2.4 * i)),
@@ -90,6 +112,34 @@ std::vector<GroundPiece> MakeGround(const geometry::TriangleMesh& mesh) {
   return ground;
 }
 
+Pool::Pool(std::vector<geometry::TriangleMesh> scenery) : scenery_(std::move(scenery)) {
+  for (const geometry::TriangleMesh& mesh : scenery_) {
+    const std::vector<GroundPiece> pieces = MakeGround(mesh);
+    ground_.insert(ground_.end(), pieces.begin(), pieces.end());
+  }
+}
+
+void Pool::Shape(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot,
+                 std::vector<GroundShape> organs) {
+  if (frame.puddles.empty()) return;
+  render::Puddle& puddle = frame.puddles.back();
+  for (const geometry::TriangleMesh& mesh : scenery_) organs.push_back({mesh.positions, mesh.triangles});
+  shape_.Make(puddle, snapshot.operation.flow.p_world_pool, organs);
+  const std::vector<Vec3>& positions = shape_.Mesh().positions;
+  const bool is_same = std::equal(
+      positions.begin(), positions.end(), shown_.begin(), shown_.end(),
+      [](const Vec3& a, const Vec3& b) { return math::SquaredNorm(a - b) < kPoolChange * kPoolChange; });
+  if (!is_same) {
+    renderer.RemoveSurface(surface_);
+    surface_ = renderer.AddSurface(shape_.Mesh().triangles, shape_.Rest(), Material::kBlood, shape_.Shares());
+    std::vector<Vec3> normals(positions.size());
+    geometry::CalcVertexNormals(positions, shape_.Mesh().triangles, normals);
+    renderer.UpdateSurface(surface_, positions, normals);
+    shown_ = positions;
+  }
+  puddle.surface = surface_;
+}
+
 void Pool::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const {
   const surgery::FluidLedger& fluids = snapshot.operation.flow.ledger;
   const double volume = fluids.Pooled();
@@ -113,7 +163,7 @@ void Pool::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) con
     bottom = std::min(bottom, height);
     bed += area;
   }
-  render::Puddle puddle{lowest, up, 0, 0, 0, fluids.rinse_pooled};
+  render::Puddle puddle{surface_, lowest, up, 0, 0, 0, fluids.rinse_pooled};
   if (bed < 0.1 * M_PI * reach * reach) {
     // no ground: a lens, half as much as a cylinder of its radius and depth
     const double depth = std::clamp(kFlatness * std::cbrt(volume), kShallowest, kDeepest);
@@ -127,6 +177,8 @@ void Pool::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) con
       for (const Column& column : columns) held += column.area * std::max(0.0, level - column.height);
       (held < volume ? low : high) = level;
     }
+    // the fuller it is the more runs off sideways, to where nobody sees it
+    low = bottom + kSpill * (1.0 - std::exp(-(low - bottom) / kSpill));
     for (const Column& column : columns)
       if (column.height < low) puddle.radius = std::max(puddle.radius, column.side);
     puddle.centre = lowest + low * up;

@@ -12,6 +12,19 @@
 namespace trocar::view {
 namespace {
 
+constexpr double kFirstStretch = 1.30, kFullStretch = 2.4;  // of the area: it begins to whiten, it is white
+
+/// (vertices) area of the triangles round each [m^2].
+void SumAreas(std::span<const Triangle> triangles, std::span<const Vec3> positions,
+              std::vector<double>& areas) {
+  areas.assign(positions.size(), 0.0);
+  for (const auto& [a, b, c] : triangles) {
+    const double area =
+        0.5 * math::Norm(math::Cross(positions[b] - positions[a], positions[c] - positions[a]));
+    for (const std::uint32_t v : {a, b, c}) areas[v] += area;
+  }
+}
+
 std::uint8_t ToByte(float share) {
   return static_cast<std::uint8_t>(255.0f * std::clamp(share, 0.0f, 1.0f) + 0.5f);
 }
@@ -51,8 +64,13 @@ void RefineMarks(std::span<const geometry::Edge> edges, std::size_t coarse,
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const render::SurfaceMark a = marks[edges[i][0]], b = marks[edges[i][1]];
     marks[coarse + i] = {mean(a.blanching, b.blanching), mean(a.charring, b.charring), mean(a.blood, b.blood),
-                         mean(a.bile, b.bile)};
+                         mean(a.bile, b.bile), mean(a.pallor, b.pallor)};
   }
+}
+
+std::uint8_t CalcPallor(double stretch) noexcept {
+  const double share = std::clamp((stretch - kFirstStretch) / (kFullStretch - kFirstStretch), 0.0, 1.0);
+  return ToByte(static_cast<float>(share));
 }
 
 render::SurfaceMark HeatMark(const simulation::OperationSnapshot& operation, std::size_t row) {
@@ -94,6 +112,7 @@ void OrganShape::SetTriangles(std::span<const Triangle> triangles, std::span<con
   }
   LearnRows(rows_, triangles_, positions, memory);
   Resize();
+  LearnAreas(memory);
   is_changed_ = true;
 }
 
@@ -103,11 +122,13 @@ void OrganShape::Update(const simulation::Snapshot& snapshot, const Film& film) 
   refiner_->Refine(positions_, normals_, fine_positions_, fine_normals_);
 
   const simulation::OperationSnapshot& operation = snapshot.operation;
-  if (operation.blanching.empty() && operation.charring.empty() && film.IsEmpty() && !has_marks_) return;
   marks_.resize(refiner_->VertexCount());
+  SumAreas(triangles_, positions_, areas_);
   bool has_any = false;
   for (std::size_t v = 0; v < rows_.size(); ++v) {
     marks_[v] = HeatMark(operation, rows_[v]);
+    if (rest_areas_.size() == areas_.size() && rest_areas_[v] > 0.0)
+      marks_[v].pallor = CalcPallor(areas_[v] / rest_areas_[v]);
     film.Wet(positions_[v], rows_[v], marks_[v]);
     has_any = has_any || marks_[v] != render::SurfaceMark{};
   }
@@ -117,6 +138,13 @@ void OrganShape::Update(const simulation::Snapshot& snapshot, const Film& film) 
   } else {
     marks_.clear();
   }
+}
+
+/// Areas round each vertex before anything moved.
+void OrganShape::LearnAreas(const RowMemory& memory) {
+  std::vector<Vec3> rest(rows_.size());
+  for (std::size_t v = 0; v < rows_.size(); ++v) rest[v] = memory.rest[rows_[v]];
+  SumAreas(triangles_, rest, rest_areas_);
 }
 
 void OrganShape::AddSurface(render::Renderer& renderer, const RowMemory& memory) {
@@ -139,6 +167,7 @@ void OrganShape::AddSurface(render::Renderer& renderer, const RowMemory& memory)
 void OrganShape::Add(render::Renderer& renderer, std::span<const double> ambient_occlusion,
                      RowMemory& memory) {
   for (std::size_t v = 0; v < rows_.size(); ++v) memory.Set(rows_[v], positions_[v], ambient_occlusion[v]);
+  LearnAreas(memory);
   AddSurface(renderer, memory);
 }
 
@@ -146,11 +175,13 @@ void OrganShape::Upload(render::Renderer& renderer, const RowMemory& memory) {
   if (is_changed_) {
     renderer.RemoveSurface(surface_);
     AddSurface(renderer, memory);
+    shown_.clear();
     is_changed_ = false;
   }
   renderer.UpdateSurface(surface_, fine_positions_, fine_normals_);
-  if (marks_.empty()) return;
+  if (marks_.empty() || marks_ == shown_) return;
   renderer.UpdateMarks(surface_, marks_);
+  shown_ = marks_;
   has_marks_ = true;
 }
 

@@ -41,6 +41,7 @@ class OrganShape {
 
  private:
   void Resize();
+  void LearnAreas(const RowMemory& memory);
   void AddSurface(render::Renderer& renderer, const RowMemory& memory);
 
   render::Material material_;
@@ -51,14 +52,20 @@ class OrganShape {
   std::vector<std::uint32_t> rows_;      // vertex -> row of the snapshot
   std::vector<Triangle> triangles_;      // over vertices
   std::vector<Vec3> positions_, normals_;
+  std::vector<double> rest_areas_;  // (vertices) of the triangles round each; empty until it is known [m^2]
+  std::vector<double> areas_;       // now
   std::optional<render::SurfaceRefiner> refiner_;
   std::vector<Vec3> fine_positions_, fine_normals_;
   std::vector<render::SurfaceMark> marks_;  // fine; empty: none to show
+  std::vector<render::SurfaceMark> shown_;  // of the uploaded surface
 };
 
 /// Marks of the drawn vertices from those of the coarse ones, each edge's middle between its ends.
 void RefineMarks(std::span<const geometry::Edge> edges, std::size_t coarse,
                  std::vector<render::SurfaceMark>& marks);
+
+/// How white tissue is that is stretched over so many times its area at rest: 0 to 255.
+std::uint8_t CalcPallor(double stretch) noexcept;
 
 /// What heat has left on a node.
 render::SurfaceMark HeatMark(const simulation::OperationSnapshot& operation, std::size_t row);

@@ -206,7 +206,7 @@ std::vector<SeriesSitting> ListPictureSeries() {
         {"08-bed", "the gallbladder is taken off its bed", IsDetached<45>, 0.5},
         {"09-free", "the gallbladder is free, the bed lies open", IsFree, 0.5},
         {"10-bag", "the gallbladder is in the bag", IsInBag, 0.5}}},
-      {"cholecystectomy", "bleeds", {{"12-bleeding", "an accident: the cystic artery bleeds", Bleeds, 4}}},
+      {"cholecystectomy", "bleeds", {{"12-bleeding", "an accident: the cystic artery bleeds", Bleeds, 35}}},
       {"camera_navigation_30",
        "expert",
        {{"13-camera-navigation", "camera navigation with 30 degrees", IsLaterThan<6>}}},

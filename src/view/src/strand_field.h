@@ -39,7 +39,9 @@ class StrandField {
     std::size_t strand;
     double along;
     math::Vec3 offset, rest;
-    double radius;  // where all strands are whole [m]
+    double radius;                    // where all strands are whole [m]
+    std::vector<std::uint32_t> near;  // strands of the lobules about it, its own among them
+    double thin;                      // its size now, in that where all of them are whole [-]
   };
   /// How many strands of fat meet in a node.
   struct FatNode {
@@ -50,7 +52,8 @@ class StrandField {
 
   std::vector<Strand> strands_;
   std::vector<Lobule> lobules_;
-  std::vector<FatNode> nodes_;  // (rows of Snapshot::positions)
+  std::vector<FatNode> nodes_;         // (rows of Snapshot::positions)
+  std::vector<std::uint8_t> counted_;  // strand_is_intact that the lobules' sizes are of
   FatBody fat_;
   std::vector<FatLobule> shown_, wanted_;  // of the surface that is uploaded; of this snapshot
   std::vector<math::Vec3> normals_;

@@ -2,6 +2,7 @@
 #include "tube_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -10,26 +11,33 @@
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/math/random.h"
 
 namespace trocar::view {
 namespace {
 
-constexpr int kSides = 12;
+constexpr int kSides = TubeCourse::kSides;
 constexpr double kLumenShare = 0.62;     // of the outer radius
 constexpr double kLumenProud = 0.00006;  // m, ahead of the end, so that it is seen
 constexpr double kClipReach = 0.0065;    // m, of a clip's legs from its middle, and what lies beside them
 constexpr double kClipFlat = 0.0007;     // m to both sides along the tube that a clip presses flat
 constexpr double kClipFade = 0.0040;     // m over which the tube becomes round again
 constexpr double kThinnest = 0.0002;     // m, half of what is left between the legs
+constexpr std::uint32_t kRags = 3;       // remnants at each node
+constexpr double kRagProud = 0.00025;    // m that a rag stands off the wall
+constexpr double kRagLength = 0.0022;    // m, of one that hangs free
+constexpr double kRagBreadth = 0.0011, kRagBreadthGain = 0.0012;  // m
+constexpr double kThreadBreadth = 0.00013;                        // m
 
-std::size_t SkinSize(const TubeChain& chain) {
-  return chain.rows.size() * kSides + 2;
-}
-
-/// Place in the chain of what a vertex of its skin goes round: rings in order, then the first and the last centre.
-std::size_t NodeOf(const TubeChain& chain, std::size_t vertex) {
-  const std::size_t rings = chain.rows.size() * kSides;
-  return vertex < rings ? vertex / kSides : vertex == rings ? 0 : chain.rows.size() - 1;
+/// Between two marks.
+render::SurfaceMark MixMarks(const render::SurfaceMark& a, const render::SurfaceMark& b, double share) {
+  const auto mix = [share](std::uint8_t from, std::uint8_t to) {
+    return static_cast<std::uint8_t>(std::lround((1.0 - share) * from + share * to));
+  };
+  render::SurfaceMark mark;
+  mark.blanching = mix(a.blanching, b.blanching);
+  mark.charring = mix(a.charring, b.charring);
+  return mark;
 }
 
 /// Between the legs of a clip the walls lie on each other and spread to the sides.
@@ -97,23 +105,34 @@ std::vector<TubeChain> FindChains(std::span<const simulation::TubePiece> pieces,
   return chains;
 }
 
-TubeShape::TubeShape(const scene::SurfaceInfo& info, std::uint32_t index, render::Material material)
-    : info_(info), index_(index), material_(material) {
+TubeShape::TubeShape(const scene::SurfaceInfo& info, std::uint32_t index, render::Material material,
+                     std::span<const Vec3> start, TubeLook look)
+    : info_(info),
+      index_(index),
+      material_(material),
+      look_(look),
+      own_rest_(start.begin() + info.first_node, start.begin() + info.first_node + info.node_count) {
   TubeChain chain;
   for (std::uint32_t i = 0; i < info.node_count; ++i) chain.rows.push_back(info.first_node + i);
   chain.radii = info.radii;
   chains_.push_back(std::move(chain));
-  Resize();
+  Resize(start);
 }
 
-void TubeShape::Resize() {
+/// \param rest_of_rows  of the rows of all chains [m]
+void TubeShape::Resize(std::span<const Vec3> rest_of_rows) {
+  const std::array<Vec3, 2> fixed = {own_rest_.front(), own_rest_.back()};
   triangles_.clear();
   lumen_triangles_.clear();
+  courses_.clear();
   std::uint32_t offset = 0, lumens = 0;
   for (const TubeChain& chain : chains_) {
-    for (const auto& [a, b, c] : geometry::MakeTubeTriangles(chain.rows.size(), kSides))
+    nodes_.resize(chain.rows.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = rest_of_rows[chain.rows[i]];
+    const TubeCourse& course = courses_.emplace_back(nodes_, chain.radii, fixed, look_);
+    for (const auto& [a, b, c] : geometry::MakeTubeTriangles(course.RingCount(), kSides))
       triangles_.push_back({a + offset, b + offset, c + offset});
-    offset += static_cast<std::uint32_t>(SkinSize(chain));
+    offset += static_cast<std::uint32_t>(course.SkinSize());
     for (const bool is_open : {chain.is_open_first, chain.is_open_last}) {
       if (!is_open) continue;
       for (std::uint32_t side = 0; side < kSides; ++side)
@@ -145,19 +164,19 @@ void TubeShape::SetPieces(std::span<const simulation::TubePiece> pieces, RowMemo
     for (const std::uint32_t row : rows)
       if (memory.is_known[row] == 0) memory.Set(row, positions[row], 1.0);
   }
-  Resize();
+  Resize(memory.rest);
   is_changed_ = true;
 }
 
 void TubeShape::Update(const simulation::Snapshot& snapshot, const Film& film) {
   const simulation::OperationSnapshot& operation = snapshot.operation;
   std::size_t offset = 0;
-  for (const TubeChain& chain : chains_) {
-    nodes_.resize(chain.rows.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = snapshot.positions[chain.rows[i]];
-    geometry::CalcTubeSkin(nodes_, chain.radii, kSides,
-                           std::span(positions_).subspan(offset, SkinSize(chain)));
-    offset += SkinSize(chain);
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    const std::vector<std::uint32_t>& rows = chains_[c].rows;
+    nodes_.resize(rows.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = snapshot.positions[rows[i]];
+    courses_[c].CalcSkin(nodes_, std::span(positions_).subspan(offset, courses_[c].SkinSize()));
+    offset += courses_[c].SkinSize();
   }
   for (std::size_t i = 0; i < std::min(operation.clip_count, operation.clips.size()); ++i) {
     const simulation::ClipSnapshot& clip = operation.clips[i];
@@ -172,14 +191,17 @@ void TubeShape::Update(const simulation::Snapshot& snapshot, const Film& film) {
   marks_.resize(positions_.size());
   bool has_any = false;
   offset = 0;
-  for (const TubeChain& chain : chains_) {
-    for (std::size_t v = 0; v < SkinSize(chain); ++v) {
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    const std::vector<std::uint32_t>& rows = chains_[c].rows;
+    for (std::size_t v = 0; v < courses_[c].SkinSize(); ++v) {
       render::SurfaceMark& mark = marks_[offset + v];
-      mark = HeatMark(operation, chain.rows[NodeOf(chain, v)]);
+      const TubeCourse::Place place = courses_[c].PlaceOf(v);
+      mark = HeatMark(operation, rows[place.node]);
+      if (place.share > 0.0) mark = MixMarks(mark, HeatMark(operation, rows[place.node + 1]), place.share);
       film.Wet(positions_[offset + v], mark);
       has_any = has_any || mark != render::SurfaceMark{};
     }
-    offset += SkinSize(chain);
+    offset += courses_[c].SkinSize();
   }
   if (!has_any && !has_marks_) marks_.clear();
 }
@@ -187,8 +209,9 @@ void TubeShape::Update(const simulation::Snapshot& snapshot, const Film& film) {
 /// Discs before the ends that are open, drawn in from the rim.
 void TubeShape::UpdateLumens() {
   std::size_t offset = 0, lumen = 0;
-  for (const TubeChain& chain : chains_) {
-    const std::size_t rings = chain.rows.size() * kSides;
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    const TubeChain& chain = chains_[c];
+    const std::size_t rings = courses_[c].RingCount() * kSides;
     for (const bool is_first : {true, false}) {
       if (!(is_first ? chain.is_open_first : chain.is_open_last)) continue;
       const Vec3 centre = positions_[offset + rings + (is_first ? 0 : 1)];
@@ -208,22 +231,20 @@ void TubeShape::UpdateLumens() {
       }
       lumen += kSides + 1;
     }
-    offset += SkinSize(chain);
+    offset += courses_[c].SkinSize();
   }
 }
 
 void TubeShape::Add(render::Renderer& renderer, std::span<const double> ambient_occlusion,
                     RowMemory& memory) {
   const std::vector<std::uint32_t>& rows = chains_[0].rows;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    Vec3 centre;
-    double open = 0;
-    for (std::size_t side = 0; side < kSides; ++side) {
-      centre += positions_[i * kSides + side] / kSides;
-      open += ambient_occlusion[i * kSides + side] / kSides;
-    }
-    memory.Set(rows[i], centre, open);
+  std::vector<double> open(rows.size(), 0), count(rows.size(), 0);
+  for (std::size_t v = 0; v < positions_.size(); ++v) {
+    const std::size_t node = courses_[0].PlaceOf(v).node;
+    open[node] += ambient_occlusion[v];
+    count[node] += 1;
   }
+  for (std::size_t i = 0; i < rows.size(); ++i) memory.Set(rows[i], own_rest_[i], open[i] / count[i]);
   AddSurface(renderer, memory);
 }
 
@@ -231,18 +252,67 @@ void TubeShape::AddSurface(render::Renderer& renderer, const RowMemory& memory) 
   std::vector<Vec3> rest(positions_.size());
   std::vector<double> ambient_occlusion(positions_.size());
   std::size_t offset = 0;
-  for (const TubeChain& chain : chains_) {
-    nodes_.resize(chain.rows.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = memory.rest[chain.rows[i]];
-    geometry::CalcTubeSkin(nodes_, chain.radii, kSides, std::span(rest).subspan(offset, SkinSize(chain)));
-    for (std::size_t v = 0; v < SkinSize(chain); ++v)
-      ambient_occlusion[offset + v] = memory.ambient_occlusion[chain.rows[NodeOf(chain, v)]];
-    offset += SkinSize(chain);
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    const std::vector<std::uint32_t>& rows = chains_[c].rows;
+    nodes_.resize(rows.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = memory.rest[rows[i]];
+    courses_[c].CalcSkin(nodes_, std::span(rest).subspan(offset, courses_[c].SkinSize()));
+    for (std::size_t v = 0; v < courses_[c].SkinSize(); ++v) {
+      const TubeCourse::Place place = courses_[c].PlaceOf(v);
+      const double here = memory.ambient_occlusion[rows[place.node]];
+      const double next = memory.ambient_occlusion[rows[std::min(place.node + 1, rows.size() - 1)]];
+      ambient_occlusion[offset + v] = (1.0 - place.share) * here + place.share * next;
+    }
+    offset += courses_[c].SkinSize();
   }
   surface_ = renderer.AddSurface(triangles_, rest, material_, ambient_occlusion);
   lumens_ = {};
   if (!lumen_triangles_.empty())
     lumens_ = renderer.AddSurface(lumen_triangles_, lumen_positions_, render::Material::kLumen);
+}
+
+void TubeShape::AddRemnants(render::Frame& frame) const {
+  if (look_ != TubeLook::kLiving) return;
+  std::size_t offset = 0;
+  for (std::size_t c = 0; c < chains_.size(); ++c) {
+    const std::vector<std::uint32_t>& rows = chains_[c].rows;
+    for (std::size_t node = 0; node + 1 < rows.size(); ++node) {
+      for (std::uint32_t rag = 0; rag < kRags; ++rag)
+        AddRemnant(frame, offset, courses_[c], node, kRags * rows[node] + rag);
+    }
+    offset += courses_[c].SkinSize();
+  }
+}
+
+/// One rag that lies along the wall, a thread over it, or a shred that hangs off it.
+/// \param offset  of the first vertex of the chain
+/// \param seed    the same for the same node, whatever was cut elsewhere
+void TubeShape::AddRemnant(render::Frame& frame, std::size_t offset, const TubeCourse& course,
+                           std::size_t node, std::uint32_t seed) const {
+  math::Random random(seed);
+  const std::size_t steps = course.Steps();
+  const auto pick = [&random](std::size_t count) {
+    return static_cast<std::size_t>(random.Uniform() * static_cast<double>(count));
+  };
+  const std::size_t from = node * steps + pick(steps), side = pick(kSides);
+  const std::size_t to = std::min(from + 1 + pick(steps + 2), course.RingCount() - 1);
+  const std::size_t turned = (side + kSides - 2 + pick(5)) % kSides;
+  const std::size_t a = offset + from * kSides + side, b = offset + to * kSides + turned;
+  const double kind = random.Uniform(), size = random.Uniform();
+  const Vec3 p = positions_[a] + kRagProud * normals_[a], q = positions_[b] + kRagProud * normals_[b];
+  if (kind < 0.5) {
+    frame.fibres.push_back(
+        {p, q, kRagBreadth + kRagBreadthGain * size, 0.0003, render::Material::kFilm, seed});
+  } else if (kind < 0.8) {
+    frame.fibres.push_back({p, q, kThreadBreadth * (0.7 + size), 0.0005, render::Material::kFibre, seed});
+  } else {
+    const Vec3 free =
+        p + kRagLength * (0.5 + size) *
+                math::Normalized(normals_[a] +
+                                 Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)});
+    frame.fibres.push_back(
+        {positions_[a], free, kRagBreadth * (0.6 + 0.8 * size), 0.0004, render::Material::kFilm, seed});
+  }
 }
 
 void TubeShape::Upload(render::Renderer& renderer, const RowMemory& memory) {

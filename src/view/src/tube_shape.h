@@ -9,6 +9,7 @@
 #include "row_memory.h"
 #include "trocar/render/renderer.h"
 #include "trocar/simulation/simulation.h"
+#include "tube_course.h"
 
 namespace trocar::view {
 
@@ -32,7 +33,9 @@ std::vector<TubeChain> FindChains(std::span<const simulation::TubePiece> pieces,
 
 class TubeShape {
  public:
-  TubeShape(const scene::SurfaceInfo& info, std::uint32_t index, render::Material material);
+  /// \param start  rows of the first snapshot: the tube's nodes at rest [m]
+  TubeShape(const scene::SurfaceInfo& info, std::uint32_t index, render::Material material,
+            std::span<const Vec3> start, TubeLook look);
 
   /// Pieces after a cut. Where they have changed the surface is uploaded anew at the next Upload.
   void SetPieces(std::span<const simulation::TubePiece> pieces, RowMemory& memory,
@@ -43,6 +46,10 @@ class TubeShape {
   void Add(render::Renderer& renderer, std::span<const double> ambient_occlusion, RowMemory& memory);
   void Upload(render::Renderer& renderer, const RowMemory& memory);
 
+  /// What dissection leaves on the wall of a living tube: rags of peritoneum and threads. A piece keeps its own through a
+  /// cut.
+  void AddRemnants(render::Frame& frame) const;
+
   render::SurfaceId Surface() const { return surface_; }
   /// The dark of the open ends; names nothing without one.
   render::SurfaceId Lumens() const { return lumens_; }
@@ -52,16 +59,21 @@ class TubeShape {
   const std::vector<Vec3>& Normals() const { return normals_; }
 
  private:
-  void Resize();
+  void Resize(std::span<const Vec3> rest_of_rows);
   void AddSurface(render::Renderer& renderer, const RowMemory& memory);
   void UpdateLumens();
+  void AddRemnant(render::Frame& frame, std::size_t offset, const TubeCourse& course, std::size_t node,
+                  std::uint32_t seed) const;
 
   scene::SurfaceInfo info_;
   std::uint32_t index_;
   render::Material material_;
+  TubeLook look_;
+  std::vector<Vec3> own_rest_;  // (node_count) at the start
   render::SurfaceId surface_, lumens_;
   bool is_changed_ = false, has_marks_ = false;
   std::vector<TubeChain> chains_;
+  std::vector<TubeCourse> courses_;  // (chains)
   std::vector<Triangle> triangles_, lumen_triangles_;
   std::vector<Vec3> positions_, normals_, lumen_positions_, lumen_normals_;
   std::vector<Vec3> nodes_;  // of one chain

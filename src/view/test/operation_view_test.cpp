@@ -11,6 +11,7 @@
 #include "trocar/math/random.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
+#include "trocar/view/labels.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::view {
@@ -213,6 +214,57 @@ TEST_F(OperationViewTest, HeatBlanchesAndThenChars) {
   EXPECT_EQ(Draw(), raw) << "after a reset nothing is left";
 }
 
+TEST_F(OperationViewTest, TissueThatIsPulledTurnsWhite) {
+  MakeView();
+  const Image slack = Draw();
+  // a hand's breadth of the wall is drawn out sideways, in the plane of the picture
+  const Vec3 spot{0, 0, -0.085};
+  const std::vector<Vec3> rest = now_.positions;
+  for (std::size_t i = 0; i < ball_count_; ++i) {
+    const Vec3 from = rest[i] - spot;
+    if (math::Norm(from) < 0.006) now_.positions[i] = spot + 1.7 * from;
+  }
+  const Image pulled = Draw();
+  const auto centre = render::CalcPixel(view_->GetFrame().camera, spot, kWidth, kHeight);
+  // beside the highlight in the middle
+  const auto brightness = [&](const Image& image) {
+    double sum = 0;
+    for (int i = 0; i < 16; ++i) {
+      const auto [r, g, b] = image.At(static_cast<int>(centre.x + 7 * std::cos(i * M_PI / 8)),
+                                      static_cast<int>(centre.y + 7 * std::sin(i * M_PI / 8)));
+      sum += r + g + b;
+    }
+    return sum / 16;
+  };
+  EXPECT_GT(brightness(pulled), brightness(slack) + 15);
+  now_.positions = rest;
+  EXPECT_EQ(Draw(), slack) << "and it reddens again";
+}
+
+TEST_F(OperationViewTest, TheSceneryBreathesAndTheOrgansOfTheModelDoNot) {
+  MakeView({}, true);
+  const auto read = [this](double time) {
+    now_.time = time;
+    view_->Update(now_);
+    return view_->ReadMeshes();
+  };
+  const auto before = read(0), after = read(1.1);
+  ASSERT_EQ(before.size(), after.size());
+  double farthest = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    double moved = 0;
+    for (std::size_t v = 0; v < before[i].mesh.positions.size(); ++v)
+      moved = std::max(moved, math::Distance(before[i].mesh.positions[v], after[i].mesh.positions[v]));
+    farthest = std::max(farthest, moved);
+    if (before[i].label == MakeLabel(LabelClass::kGallbladder, 0) ||
+        before[i].label == MakeLabel(LabelClass::kTissueModel, 0)) {
+      EXPECT_EQ(moved, 0.0);
+    }
+  }
+  EXPECT_GT(farthest, 0.0003);
+  EXPECT_LT(farthest, 0.004);
+}
+
 TEST_F(OperationViewTest, ACutOrganShowsItsNewSurface) {
   now_.positions.resize(now_.positions.size() + 8);  // spare rows
   MakeView();
@@ -321,6 +373,11 @@ TEST_F(OperationViewTest, ThePoolLiesInTheHollowsOfTheGround) {
   now_.operation.flow.ledger.Leak(surgery::Fluid::kBlood, 20e-6);
   view_->Update(now_);
   EXPECT_GT(view_->GetFrame().puddles[0].centre.z, few) << "more stands higher";
+  const double some = view_->GetFrame().puddles[0].centre.z;
+  now_.operation.flow.ledger.Leak(surgery::Fluid::kBlood, 2000e-6);
+  view_->Update(now_);
+  EXPECT_LT(view_->GetFrame().puddles[0].centre.z, some + 0.014)
+      << "and never as high as the lens: it runs off";
 }
 
 TEST_F(OperationViewTest, StonesAreSeenOnceTheyAreOut) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stop_token>
 #include <string>
 
 #include "trocar/anatomy/build_patient.h"
@@ -23,6 +24,7 @@ struct LabelOptions {
   double gap_mm = 0.7;              ///< left free around the gallbladder
   bool is_mirrored = false;         ///< left and right of the map are swapped: take it the other way round
   bool takes_largest_part = false;  ///< also where a large part does not hang together with it
+  std::stop_token stop;             ///< gives up before anything is written: kCancelled
 };
 
 struct OrganLabels {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "trocar/contours/contour_document.h"
@@ -95,6 +96,9 @@ class ContourWorkspace {
     int label = 0;
     std::vector<std::array<Vec2, 2>> lines;
   };
+  /// Shows this map from now on, or none.
+  /// \param labels  a voxel a pixel, as images::AlignLabels makes it
+  void UseReference(std::optional<images::LabelVolume> labels) { reference_ = std::move(labels); }
   bool HasReference() const { return reference_.has_value(); }
   std::vector<ReferenceLines> FindReference(int slice) const;
 

@@ -20,8 +20,16 @@ class ContourCanvas : public Gtk::DrawingArea {
   PaintOptions& Options() { return options_; }
   const ContourPainter& Painter() const { return painter_; }
 
+  /// The reference is another one now, or none.
+  void ForgetReference() {
+    painter_ = {};
+    queue_draw();
+  }
+
   /// Space moves the picture instead of drawing while it is held.
   void HoldSpace(bool is_held);
+  /// Nothing is drawn or deleted: dragging moves the picture.
+  void SetReadOnly(bool is_read_only);
 
   sigc::signal<void()>& SignalEdited() { return signal_edited_; }    ///< contours or choice may have changed
   sigc::signal<void()>& SignalPointed() { return signal_pointed_; }  ///< the pointer moved
@@ -53,7 +61,8 @@ class ContourCanvas : public Gtk::DrawingArea {
   ContourEditor* editor_ = nullptr;
   ContourPainter painter_;
   PaintOptions options_;
-  bool is_space_held_ = false, is_panning_ = false, is_fitted_ = false, is_windowing_ = false;
+  bool is_space_held_ = false, is_read_only_ = false, is_panning_ = false, is_fitted_ = false,
+       is_windowing_ = false;
   double pan_x_ = 0, pan_y_ = 0;
   double wheel_ = 0;  // fractions of a step, of smooth wheels
   images::DisplayWindow window_before_;

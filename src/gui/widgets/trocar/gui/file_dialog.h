@@ -20,6 +20,7 @@ struct FileRequest {
   std::string accept;       ///< on the button; empty: "Save" or "Open"
   std::string new_name;     ///< proposed for a file that is written; empty: one that is there is opened
   std::vector<Kind> kinds;  ///< that are shown; empty: all
+  bool is_folder = false;   ///< a folder that is there is chosen
 };
 
 /// Asks one question at a time. It is a member of the window or view that asks: with it goes the request, which would otherwise

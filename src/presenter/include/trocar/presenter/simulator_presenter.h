@@ -49,6 +49,7 @@ struct SimulatorPage {
   bool is_event_warning = false;
   bool is_help_open = false, is_task_list_open = false, is_result_open = false;
   bool is_recording_list_open = false, is_patient_list_open = false, is_key_list_open = false;
+  bool is_rehearsal_open = false;  ///< from images to an operation; its own presenter says what it shows
   view::ViewOptions view;
   std::optional<core::Error> failure;
 };
@@ -150,6 +151,11 @@ class SimulatorPresenter {
   void ChoosePatient(const std::filesystem::path& folder);
   void OpenPatientList();
   void ClosePatientList();
+  /// The way from images to an operation, in place of the picture.
+  void OpenRehearsal();
+  void CloseRehearsal();
+  /// Begins the whole operation on a patient, who is chosen from now on.
+  void OperateOn(const std::filesystem::path& patient);
 
   /// A hand was taken, and the display lets nobody hold the pointer.
   void SayPointerIsFree();

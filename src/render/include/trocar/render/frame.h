@@ -89,9 +89,12 @@ struct Blob {
   std::uint32_t seed = 0;
 };
 
-/// Liquid that lies in a hollow: its level surface, a little domed at the rim.
+/// Liquid that lies in a hollow.
 struct Puddle {
-  math::Vec3 centre;                      ///< of the surface, world frame [m]
+  /// Its surface in the world frame, coloured by what it holds; the ambient occlusion of its vertices is the share of its
+  /// colour and opacity that it has there: 1 where it is deep, 0 at the shore. One that names none is not drawn.
+  SurfaceId surface;
+  math::Vec3 centre;                      ///< of its level, world frame [m]
   math::Vec3 up{0, 0, 1};                 ///< against gravity, unit
   double radius = 0;                      ///< [m]
   double blood = 1, bile = 0, rinse = 0;  ///< shares of what it holds, in any unit, >= 0

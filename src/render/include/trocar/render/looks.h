@@ -34,6 +34,7 @@ struct MaterialLook {
   Colour wrap{};              ///< light that goes round into the shade, per colour [-]
   float glow = 0;             ///< light that comes through a thin wall at its rim [-]
   float grooves = 0;          ///< depth of fine grooves across the shaft (tools) [-]
+  float wear = 0;             ///< scratches and rubbed places (tools) [-]
   float opacity = 1;          ///< below 1: light passes through, seen square on [-]
   float emission = 0;         ///< light of its own [-]
 };
@@ -46,6 +47,7 @@ enum class Effect {
   kCharred,          ///< tissue that has burnt
   kBloodFilm,        ///< tissue under a film of blood
   kBileFilm,         ///< tissue under a film of bile
+  kPallor,           ///< tissue that is stretched until its blood has left it
   kThinRim,          ///< added at the rim of a thin wall
   kShade,            ///< what is left of the light in folds and in the shade of tools
   kBounce,           ///< light that tissue throws back on tissue

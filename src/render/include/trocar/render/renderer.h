@@ -14,12 +14,13 @@
 
 namespace trocar::render {
 
-/// What surgery has left on one vertex of a tissue's surface, each 0 to 255.
-struct SurfaceMark {
+/// What surgery has left on one vertex of a tissue's surface and does to it now, each 0 to 255.
+struct alignas(4) SurfaceMark {
   std::uint8_t blanching = 0;  ///< white: cooked
   std::uint8_t charring = 0;   ///< brown, then black
   std::uint8_t blood = 0;      ///< film of blood
   std::uint8_t bile = 0;       ///< film of bile
+  std::uint8_t pallor = 0;     ///< stretched: blood is pressed out of it
 
   friend bool operator==(const SurfaceMark&, const SurfaceMark&) = default;
 };

@@ -27,6 +27,8 @@ class Hdf5File {
   template <typename T>
   core::Status Append(const std::string& name, const std::vector<std::size_t>& shape, std::span<const T> row);
 
+  /// A data set of texts in UTF-8, padded with zeros to the longest. \return kFileUnwritable
+  core::Status SetTexts(const std::string& name, const std::vector<std::string>& texts);
   core::Status SetText(const std::string& name, const std::string& text);
   core::Status SetNumber(const std::string& name, double value);
   /// Writes what is left, and closes. \return kFileUnwritable, for example for a full disk
