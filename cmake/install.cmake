@@ -33,6 +33,19 @@ if(TROCAR_PYTHON3)
   add_custom_target(man_pages DEPENDS ${PROJECT_BINARY_DIR}/man/trocar.1)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs
     OPTIONAL FILES_MATCHING PATTERN "*.1")
+  if(TROCAR_MSGFMT)
+    foreach(language IN LISTS TROCAR_LANGUAGES)
+      set(folder ${PROJECT_BINARY_DIR}/man-${language})
+      add_custom_command(OUTPUT ${folder}/trocar.1
+        COMMAND ${TROCAR_PYTHON3} ${PROJECT_SOURCE_DIR}/tools/make-man-pages $<TARGET_FILE:trocar> ${folder} ${language}
+        DEPENDS trocar translation_${language} ${PROJECT_SOURCE_DIR}/po/${language}.po ${PROJECT_SOURCE_DIR}/tools/make-man-pages
+        COMMENT "manual pages: ${language}" VERBATIM)
+      add_custom_target(man_pages_${language} DEPENDS ${folder}/trocar.1)
+      add_dependencies(man_pages man_pages_${language})
+      install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/${language}/man1 COMPONENT programs
+        OPTIONAL FILES_MATCHING PATTERN "*.1")
+    endforeach()
+  endif()
 endif()
 
 # Data. A program in bin/ finds it in ../share/trocar.

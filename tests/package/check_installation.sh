@@ -23,10 +23,12 @@ if python3 -c 'import h5py, numpy' 2>/dev/null; then
   "$root/bin/trocar" dataset --layout trocar --task peg_transfer --size 64x48 --every 0.5 --most-seconds 1 -o set
   "$root/bin/trocar" dataset verify set
 fi
-for page in "$root"/share/man/man1/*.1; do
+for page in "$root"/share/man/man1/*.1 "$root"/share/man/es/man1/*.1; do
   [ -z "$(man --warnings -E UTF-8 -l -Tutf8 -Z "$page" 2>&1 >/dev/null)" ] || { echo "$page is no sound page"; exit 1; }
 done
 [ "$(ls "$root"/share/man/man1 | wc -l)" -gt 20 ]
+[ "$(ls "$root"/share/man/man1)" = "$(ls "$root"/share/man/es/man1)" ] || { echo "manual pages without Spanish"; exit 1; }
+grep -q 'vesícula biliar' "$root"/share/man/es/man1/trocar.1
 if command -v desktop-file-validate >/dev/null; then desktop-file-validate "$root"/share/applications/*.desktop; fi
 if command -v appstreamcli >/dev/null; then appstreamcli validate --no-net "$root"/share/metainfo/*.xml; fi
 

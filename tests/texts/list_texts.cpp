@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // list_texts REPOSITORY: prints, as a template for gettext, the texts that stand in tables of the program (errors, commands with their
-// help, settings, home, tutorial, metrics, mistakes, names of anatomy) and in its data (tasks, courses, levels, forms, the coach's
+// help, options of the command line, settings, home, tutorial, metrics, mistakes, names of anatomy) and in its data (tasks, courses, levels, forms, the coach's
 // rules). xgettext finds those that stand in calls.
 #include <cctype>
 #include <cstdio>
@@ -16,6 +16,7 @@
 #include "trocar/assessment/learning.h"
 #include "trocar/assessment/milestone.h"
 #include "trocar/centre/centre_commands.h"
+#include "trocar/cli/run_command.h"
 #include "trocar/contours/contour_fit.h"
 #include "trocar/core/error_codes.h"
 #include "trocar/editor/contour_commands.h"
@@ -199,6 +200,27 @@ void PrintMedicine() {
     PrintWords(name);
 }
 
+/// The help of all commands. Placeholders of one letter stay.
+void PrintHelpOfCommands() {
+  trocar::cli::ListHelpTexts([](const std::string& text) {
+    bool has_word = false;
+    for (std::size_t i = 1; i < text.size() && !has_word; ++i)
+      has_word = std::isalpha(static_cast<unsigned char>(text[i - 1])) != 0 &&
+                 std::isalpha(static_cast<unsigned char>(text[i])) != 0;
+    if (has_word) Print(text);
+    return text;
+  });
+  // CLI11's complaints about a command line, and how the command completes them
+  for (const char* complaint :
+       {"{1}; see {2} --help", "there is no subcommand \"{1}\"", "{1} is required", "A subcommand",
+        "The following argument was not expected: {1}", "The following arguments were not expected: {1}",
+        "Could not convert: {1} = {2}", "{1}: Value {2} not in range {3} to {4}", "{1}: {2} not in {3}",
+        "{1}: {2} required {3} missing", "{1}: At least {2} required but received {3}",
+        "{1}: At Most {2} required but received {3}", "Expected exactly {1} arguments to {2}, got {3}",
+        "{1} requires {2}", "{1} excludes {2}"})
+    Print(complaint);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -294,6 +316,7 @@ int main(int count, char** arguments) {
        {assessment::Milestone::kCriticalView, assessment::Milestone::kDivided, assessment::Milestone::kFree,
         assessment::Milestone::kCompleted})
     Print(assessment::DescribeUntil(milestone));
+  PrintHelpOfCommands();
   PrintMedicine();
   PrintTasks(repository / "scenes");
   PrintAssets(repository / "assets");

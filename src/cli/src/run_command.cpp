@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "command.h"
+#include "help_language.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/translate.h"
 #include "trocar/core/version.h"
@@ -73,12 +74,10 @@ std::string Explain(const CLI::App& app, const CLI::ParseError& complaint) {
   return "there is no subcommand \"" + unknown.front() + "\"";
 }
 
-int ParseAndRun(int argc, char** argv) {
-  CLI::App app(kDescription, "trocar");
+void AddCommands(CLI::App& app, Outcome& outcome) {
   app.set_version_flag("--version", "trocar " + std::string(core::VersionText()));
   app.footer(kExamples);
   app.require_subcommand(1);
-  Outcome outcome;
   AddWindowCommand(app, outcome);
   AddDemoCommand(app, outcome);
   AddPlayCommand(app, outcome);
@@ -104,6 +103,13 @@ int ParseAndRun(int argc, char** argv) {
   AddReproduceCommand(app, outcome);
   AddDoctorCommand(app, outcome);
   AddErrorsCommand(app, outcome);
+}
+
+int ParseAndRun(int argc, char** argv) {
+  CLI::App app(kDescription, "trocar");
+  Outcome outcome;
+  AddCommands(app, outcome);
+  TranslateHelp(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& complaint) {
@@ -142,6 +148,13 @@ constexpr const char* kNoMemory =
 }
 
 }  // namespace
+
+void ListHelpTexts(const TextVisitor& visit) {
+  CLI::App app(kDescription, "trocar");
+  Outcome outcome;
+  AddCommands(app, outcome);
+  VisitHelpTexts(app, visit);
+}
 
 int RunCommand(int argc, char** argv) {
   core::RemovePartialPathsOnSignals();

@@ -2,7 +2,16 @@
 /// \file run_command.h  The `trocar` command.
 #pragma once
 
+#include <functional>
+#include <string>
+
 namespace trocar::cli {
+
+/// Gets a text and returns what is to stand in its place.
+using TextVisitor = std::function<std::string(const std::string&)>;
+
+/// Visits every text that `trocar ... --help` prints, in English, for the test that each has been translated.
+void ListHelpTexts(const TextVisitor& visit);
 
 /// Reads the command line, runs one subcommand, prints.
 ///
