@@ -55,7 +55,7 @@ RehearsalSeries Describe(const images::ListedSeries& listed) {
 }
 
 /// From the navel, where the patient's frame begins. Directions are the patient's.
-std::string SpokenPlace(const Vec3& p) {
+std::string SpokenPlace(const math::Vec3& p) {
   const std::string across = Number("%.0f", std::fabs(1000 * p.x)),
                     along = Number("%.0f", std::fabs(1000 * p.y));
   const auto say = [&](const char* text) { return core::TranslateWith(text, {across, along}); };
