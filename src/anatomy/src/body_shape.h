@@ -2,8 +2,9 @@
 /// \file body_shape.h  What a label map says of the body's shape: its middle, the height of the navel, its front.
 #pragma once
 
+#include <map>
 #include <optional>
-#include <vector>
+#include <utility>
 
 #include "label_neighbours.h"
 

@@ -143,9 +143,10 @@ std::string FormatSurroundings(const BuildReport& report) {
   }
   for (const std::string& sentence : report.sinking) text += sentence + "\n";
   for (const Port& port : report.patient.ports) {
-    std::snprintf(line, sizeof line, "Port for %s at %.0f, %.0f, %.0f mm (left, cranial, anterior). ",
-                  roles::SpokenName(NameOf(port.use)).c_str(), 1000 * port.position.x, 1000 * port.position.y,
-                  1000 * port.position.z);
+    const auto mm = [](double metres) { return std::lround(1000 * metres); };  // prints no "-0"
+    std::snprintf(line, sizeof line, "Port for %s at %ld, %ld, %ld mm (left, cranial, anterior). ",
+                  roles::SpokenName(NameOf(port.use)).c_str(), mm(port.position.x), mm(port.position.y),
+                  mm(port.position.z));
     text += line + port.reason + "\n";
   }
   if (const auto& table = report.patient.table) {

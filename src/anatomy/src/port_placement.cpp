@@ -138,9 +138,10 @@ class Wall {
   }
 
   Vec3 PlaceAt(double x, double y) const {
-    double z = navel_.z - kAcross * std::pow(x - navel_.x, 2) - kAlong * std::pow(y - navel_.y, 2);
-    if (const auto organs = front_.FindHeight(x, y, kOrganGap)) z = std::max(z, *organs + kOrganGap);
-    return {x, y, z};
+    Vec3 place = PlaceAlone(x, y);
+    if (const auto organs = front_.FindHeight(x, y, kOrganGap))
+      place.z = std::max(place.z, *organs + kOrganGap);
+    return place;
   }
   /// How far caudal a port must at least go to lie below the ribs and below the liver's edge.
   double MostCranial(const Vec3& port, std::string& why) const {
@@ -161,6 +162,7 @@ class Wall {
   }
 
  private:
+  /// As if nothing lay behind the wall.
   Vec3 PlaceAlone(double x, double y) const {
     return {x, y, navel_.z - kAcross * std::pow(x - navel_.x, 2) - kAlong * std::pow(y - navel_.y, 2)};
   }
@@ -218,34 +220,39 @@ Port PlaceWorking(PortUse use, const Patient& patient, double midline, const Wal
     port.reason += why;
   }
   // within reach of the neck, and away from the ports that there are
-  for (int i = 0; i < kMostSteps && math::Distance(port.position, neck) > kMostReach; ++i) {
-    const Vec3 way = math::Normalized(Vec3{neck.x - x, neck.y - y, 0});
-    x += kStep * way.x, y += kStep * way.y;
-    port.position = wall.PlaceAt(x, y);
-    why = "reach";
-  }
-  if (why == "reach") port.reason += ", brought within reach";
-  for (int i = 0; i < kMostSteps && math::Distance(port.position, neck) < kLeastReach; ++i) {
-    y -= kStep;
-    port.position = wall.PlaceAt(x, y);
-    why = "near";
-  }
-  if (why == "near") port.reason += ", moved away from the gallbladder to leave room for the shaft";
+  const auto distance = [&] { return math::Distance(port.position, neck); };
   const auto is_close = [&] {
     return std::any_of(others.begin(), others.end(), [&](const Port& other) {
       return math::Distance(other.position, port.position) < kPortGap;
     });
   };
-  for (int i = 0; i < kMostSteps && is_close(); ++i) {
-    x += use == PortUse::kRightHand ? 0.0 : -kStep;
-    y += use == PortUse::kRightHand ? kStep : 0.0;
-    port.position = wall.PlaceAt(x, y);
-    why = "close";
-  }
-  if (why == "close") port.reason += ", kept " + Mm(kPortGap) + " from the other ports";
+  const auto move_while = [&](const auto& is_wrong, const auto& way, const std::string& reason) {
+    int moved = 0;
+    for (; moved < kMostSteps && is_wrong(); ++moved) {
+      const Vec3 step = kStep * way();
+      x += step.x, y += step.y;
+      port.position = wall.PlaceAt(x, y);
+    }
+    if (moved > 0) port.reason += reason;
+  };
+  move_while([&] { return distance() > kMostReach; },
+             [&] {
+               return math::Normalized(Vec3{neck.x - x, neck.y - y, 0});
+             },
+             ", brought within reach");
+  move_while([&] { return distance() < kLeastReach; },
+             [] {
+               return Vec3{0, -1, 0};
+             },
+             ", moved away from the gallbladder to leave room for the shaft");
+  move_while(
+      is_close,
+      [use] {
+        return use == PortUse::kRightHand ? Vec3{0, 1, 0} : Vec3{-1, 0, 0};
+      },
+      ", kept " + Mm(kPortGap) + " from the other ports");
   char where[96];
-  std::snprintf(where, sizeof where, "; the neck of the gallbladder lies %.0f mm away.",
-                1000 * math::Distance(port.position, neck));
+  std::snprintf(where, sizeof where, "; the neck of the gallbladder lies %.0f mm away.", 1000 * distance());
   port.reason += where;
   return port;
 }

@@ -14,6 +14,7 @@
 
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/anatomy/patient_lint.h"
+#include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/meshing/nearest_surface.h"
@@ -324,7 +325,21 @@ TEST_F(NeighboursFromLabels, WithoutABodyPortsAreTheUsualOnesAndSayThat) {
   const BuildReport report = Build(body);
   const Vec3 fundus = report.patient.LandmarkOf(LandmarkRole::kFundus)->position;
   EXPECT_NEAR(math::Distance(fundus, {-0.075, 0.095, -0.070}), 0, 1e-9);
-  EXPECT_NEAR(math::Norm(report.patient.PortOf(PortUse::kLaparoscope)->position), 0, 1e-12);
+  // the usual ports are the operation's
+  const auto scene = core::JsonDocument::Read(fs::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
+  ASSERT_TRUE(scene.ok());
+  const core::JsonView root = scene->Root(), instruments = root.Object("instruments");
+  const std::map<PortUse, core::JsonView> usual = {
+      {PortUse::kLaparoscope, root.Object("laparoscope")},
+      {PortUse::kLeftHand, instruments.Object("left")},
+      {PortUse::kRightHand, instruments.Object("right")},
+      {PortUse::kAssistant, root.Object("operation").Object("assistant")}};
+  for (const auto& [use, view] : usual) {
+    const auto mm = view.Numbers("port_mm", 3, {-3000, 3000});
+    EXPECT_NEAR(math::Distance(report.patient.PortOf(use)->position, 0.001 * Vec3{mm[0], mm[1], mm[2]}), 0,
+                1e-9)
+        << NameOf(use);
+  }
   EXPECT_THAT(report.patient.PortOf(PortUse::kAssistant)->reason,
               HasSubstr("shows nothing of this body's wall"));
   for (const Neighbour& neighbour : report.patient.neighbours) EXPECT_FALSE(neighbour.is_seen);

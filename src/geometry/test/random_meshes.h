@@ -33,6 +33,12 @@ inline Vec3 RandomDirection(math::Random& random) {
   return math::Normalized(v);
 }
 
+/// Of any direction and at most so long; with every compiler the same draws in the same order.
+inline Vec3 RandomVector(double longest, math::Random& random) {
+  const double length = random.Uniform(0, longest);
+  return length * RandomDirection(random);
+}
+
 inline std::uint32_t RandomIndex(std::size_t count, math::Random& random) {
   return static_cast<std::uint32_t>(random.Uniform() * static_cast<double>(count));
 }
@@ -124,7 +130,7 @@ inline void Jitter(TriangleMesh& mesh, double share, math::Random& random) {
     }
   }
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    mesh.positions[v] += share * random.Uniform() * shortest[v] * RandomDirection(random);
+    mesh.positions[v] += RandomVector(share * shortest[v], random);
 }
 
 /// A ball, box, tube, sheet or single triangle, 1 to 300 mm large, stretched, bent, with irregular triangles; sheets have
@@ -167,8 +173,7 @@ inline NamedSurface MakeRandomSurface(math::Random& random) {
   if (is_sheet) MakeHoles(mesh, share(0.05), random);
   Jitter(mesh, 0.25 * random.Uniform(), random);
   const Vec3 stretch{random.Uniform(0.3, 1), random.Uniform(0.3, 1), random.Uniform(0.3, 1)};
-  const Vec3 wave = random.Uniform(0, 6) * RandomDirection(random),
-             push = random.Uniform(0, 0.15) * RandomDirection(random);
+  const Vec3 wave = RandomVector(6, random), push = RandomVector(0.15, random);
   const double size = 0.001 * std::pow(300.0, random.Uniform());
   for (Vec3& p : mesh.positions) {
     p = {p.x * stretch.x, p.y * stretch.y, p.z * stretch.z};

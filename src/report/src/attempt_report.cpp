@@ -2,7 +2,9 @@
 #include "trocar/report/attempt_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "trocar/core/translate.h"
 #include "trocar/record/recording.h"
@@ -27,28 +29,37 @@ std::string CountGoals(const AttemptTrace& trace) {
                              {std::to_string(done), std::to_string(trace.goals.size())});
 }
 
+Ending FindEnding(const AttemptTrace& trace) {
+  if (trace.outcome.is_completed) return Ending::kCompleted;
+  if (trace.is_operation) return Ending::kLeft;
+  if (trace.outcome.phase.empty()) return Ending::kNoTask;
+  if (trace.outcome.phase == "time_over") return Ending::kTimeOver;
+  return trace.outcome.phase == "ended" ? Ending::kError : Ending::kLeft;
+}
+
 std::string DescribeOutcome(const AttemptTrace& trace) {
-  const std::string& phase = trace.outcome.phase;
-  const double task_time = trace.outcome.task_time > 0 ? trace.outcome.task_time : trace.Seconds();
+  const std::string played = FormatDuration(trace.Seconds());
+  const std::string of_task = trace.outcome.task_time > 0 ? FormatDuration(trace.outcome.task_time) : played;
+  const Ending ending = FindEnding(trace);
   if (trace.is_operation) {
-    return trace.outcome.is_completed
-               ? core::TranslateWith("The operation was completed in {1}.", {FormatDuration(trace.Seconds())})
-               : core::TranslateWith("The operation was not completed: it ended after {1}.",
-                                     {FormatDuration(trace.Seconds())});
+    return ending == Ending::kCompleted
+               ? core::TranslateWith("The operation was completed in {1}.", {played})
+               : core::TranslateWith("The operation was not completed: it ended after {1}.", {played});
   }
-  if (trace.outcome.is_completed)
-    return core::TranslateWith("The task was completed in {1}.", {FormatDuration(task_time)});
-  if (phase == "time_over")
-    return core::TranslateWith("The time ran out after {1}{2}.",
-                               {FormatDuration(task_time), CountGoals(trace)});
-  if (phase == "ended")
-    return core::TranslateWith("An error ended the task after {1}{2}.",
-                               {FormatDuration(task_time), CountGoals(trace)});
-  if (phase.empty())
-    return core::TranslateWith("A scene without a task was played for {1}.",
-                               {FormatDuration(trace.Seconds())});
+  switch (ending) {
+    case Ending::kCompleted:
+      return core::TranslateWith("The task was completed in {1}.", {of_task});
+    case Ending::kTimeOver:
+      return core::TranslateWith("The time ran out after {1}{2}.", {of_task, CountGoals(trace)});
+    case Ending::kError:
+      return core::TranslateWith("An error ended the task after {1}{2}.", {of_task, CountGoals(trace)});
+    case Ending::kNoTask:
+      return core::TranslateWith("A scene without a task was played for {1}.", {played});
+    case Ending::kLeft:
+      break;
+  }
   return core::TranslateWith("The task was not finished: it was left after {1}{2}.",
-                             {FormatDuration(trace.Seconds()), CountGoals(trace)});
+                             {played, CountGoals(trace)});
 }
 
 const MetricReference* FindReference(std::span<const MetricReference> references,
@@ -151,10 +162,16 @@ AttemptFacts DescribeAttempt(const record::Description& description, std::string
   return facts;
 }
 
+const char* NameOf(Ending ending) noexcept {
+  static constexpr std::array kNames{"completed", "time_over", "error", "left", "no_task"};
+  return kNames[static_cast<std::size_t>(ending)];
+}
+
 AttemptReport MakeAttemptReport(const AttemptTrace& trace, const training::AttemptMetrics& metrics,
                                 const AttemptReportInput& input) {
   AttemptReport report;
   report.facts = input.facts;
+  report.ending = FindEnding(trace);
   report.outcome = DescribeOutcome(trace);
   report.is_completed = trace.outcome.is_completed;
   report.is_operation = trace.is_operation;

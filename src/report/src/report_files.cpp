@@ -75,7 +75,8 @@ std::vector<FieldMeaning> FixedFields() {
       {"attempt.player", "who or what moved the hands", "", own},
       {"attempt.program", "version of Trocar", "", own},
       {"attempt.recording", "file name of the recording", "", own},
-      {"outcome.sentence", "how it ended, in words", "", own},
+      {"outcome.ending",
+       "\"completed\", \"time_over\", \"error\" (one that ends the task), \"left\", or \"no_task\"", "", own},
       {"outcome.completed", "whether the task or operation was brought to its end", "", own},
       {"outcome.score", "score of the task; absent where it has none or was not completed",
        "% of an able surgeon's, or points", own},
@@ -165,7 +166,7 @@ std::string FormatJson(const AttemptReport& report) {
                      {"program", facts.program},
                      {"recording", OptionalText(facts.recording)}};
   ordered_json& outcome = json["outcome"] = {
-      {"sentence", report.outcome}, {"completed", report.is_completed}, {"time_s", report.seconds}};
+      {"ending", NameOf(report.ending)}, {"completed", report.is_completed}, {"time_s", report.seconds}};
   if (report.score && report.is_completed) {
     outcome["score"] = *report.score;
     outcome["score_unit"] = facts.best_score ? "percent" : "points";

@@ -96,6 +96,7 @@ TEST(FormatJson, SaysNoScoreWhereTheTaskWasNotCompleted) {
   trace.outcome = {"time_over", false, 0.0, 30};
   const json parsed = json::parse(FormatJson(MakeAttemptReport(trace, {}, {test::MakeFacts(), {}, {}})));
   EXPECT_FALSE(parsed["outcome"].contains("score"));
+  EXPECT_EQ(parsed["outcome"]["ending"], "time_over");
   EXPECT_EQ(parsed["outcome"]["completed"], false);
   EXPECT_EQ(parsed["disclaimer"], "training feedback, not certified assessment");
 }

@@ -36,7 +36,9 @@ constexpr double kHoldStiffness =
     1970;                             // [N/m]; measured with Bullet's error reduction: 2.8 N for a millimetre
 constexpr double kHoldDamping = 5.9;  // [N s/m]
 constexpr double kWorldRadius = 1.0;  // what is farther away has left the scene and stops [m]
-constexpr int kSolverIterations = 30;  // stacks stand
+constexpr int kSolverIterations = 30;  // at most: stacks stand
+constexpr double kConvergedSpeed =
+    1e-5;  // no constraint changes a speed by more in the last iteration [m/s]; a hundredth of kRestSpeed
 constexpr int kPooledManifolds = 512;  // more are taken from the heap
 
 /// Bullet's own constructor leaves the numbers as they are in memory.
@@ -146,6 +148,7 @@ struct RigidWorld::Content {
                                                       configuration.get());
     world->setGravity(ToBullet(gravity));
     world->getSolverInfo().m_numIterations = kSolverIterations;
+    world->getSolverInfo().m_leastSquaresResidualThreshold = std::pow(kConvergedSpeed * kScale, 2);
     world->getSolverInfo().m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
     for (std::size_t i = 0; i < bodies.size(); ++i) Add(i);
     for (std::size_t i = 0; i < tools.size(); ++i) AddToolParts(i);

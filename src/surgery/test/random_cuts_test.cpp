@@ -224,8 +224,7 @@ std::string CutAndPull(CutTissue& tissue, bool has_walls, math::Random& random, 
   ++counts.strokes;
   counts.cutting += has_cut ? 1 : 0;
   const std::uint32_t held = geometry::RandomIndex(tissue.Surface().VertexCount(), random);
-  const Vec3 pull =
-      (0.2 * random.Uniform() * tissue.Size() / kTicksAfter) * geometry::RandomDirection(random);
+  const Vec3 pull = geometry::RandomVector(0.2 * tissue.Size() / kTicksAfter, random);
   tissue.Hold(held);
   for (int tick = 0; tick < kTicksAfter; ++tick) {
     tissue.Pull(held, pull);
@@ -256,7 +255,7 @@ Counts RunRandomCuts(std::uint64_t seed, std::size_t cuts, double organ_share) {
     cut.has_walls = geometry::InspectMesh(surface.mesh).closed && own.Uniform() < 0.5;
     cut.depth = size * own.Uniform(0.01, 0.3);
     cut.step = size * own.Uniform(0.01, 0.2);
-    const std::uint32_t spare_count = own.Uniform() < 0.1 ? 20 : 1500;  // pools that run full
+    const std::uint32_t spare_count = own.Uniform() < 0.2 ? 10 : 1500;  // pools that run full
     const auto fixed = PickFixed(surface.mesh, own);
     CutTissue tissue(surface.mesh, fixed, wall, cut, spare_count);
     ++counts.tissues;

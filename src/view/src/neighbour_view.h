@@ -34,7 +34,6 @@ class NeighbourView {
   /// The surface with what tools have pressed into it.
   void Update(render::Renderer& renderer, const simulation::Snapshot& snapshot);
   render::SurfaceId Surface() const { return surface_; }
-  std::size_t FineCount() const { return fine_positions_.size(); }  ///< vertices that are drawn
   const std::vector<Vec3>& FinePositions() const { return fine_positions_; }
 
  private:

@@ -101,9 +101,16 @@ struct GroupFacts {
   std::string why_not;     ///< a sentence where they do not; else empty
 };
 
+/// How an attempt came to its end.
+enum class Ending : std::uint8_t { kCompleted, kTimeOver, kError, kLeft, kNoTask };
+
+/// "completed", "time_over", "error", "left" or "no_task".
+const char* NameOf(Ending ending) noexcept;
+
 struct AttemptReport {
   AttemptFacts facts;
-  std::string outcome;  ///< a sentence
+  Ending ending = Ending::kLeft;
+  std::string outcome;  ///< a sentence in the language of whoever reads
   bool is_completed = false;
   bool is_operation = false;
   std::optional<double> score;               ///< see AttemptFacts::best_score
