@@ -95,6 +95,7 @@ GeneratedBody::GeneratedBody(std::span<const Parameter> parameters, std::uint64_
   constexpr double kFatGrowth = 0.25;  // of the volume
   const Vec3 size = std::cbrt(1.0 + kFatGrowth * fat) *
                     Vec3{number("liver_transverse"), number("liver_vertical"), number("liver_depth")};
+  taper_ = number("right_lobe_taper");
   edge_blend_ = number("liver_edge_rounding") + 12.0 * fat;
   deep_ = std::clamp((size.z / size.x - 0.55) / 0.45, 0.0, 1.0);
   scale_ = Times(size, {1 / kNominalMm.x, 1 / kNominalMm.y, 1 / kNominalMm.z});
@@ -139,7 +140,7 @@ double GeneratedBody::LobesDistance(const Vec3& p) const {
   double liver = SmoothMax(DomeDistance(p), -viscera_.Distance(p), edge_blend_);
   liver = SmoothMin(liver, SmoothMax(caudate_.Distance(p), -spine_.Distance(p), 6.0), 8.0);
   liver = SmoothMax(liver, -stomach_.Distance(p), 8.0);
-  liver = SmoothMax(liver, -kidney_.Distance(p), 10.0);
+  liver = SmoothMax(liver, -kidney_.Distance(p), 18.0);
   return SmoothMax(liver, -spine_.Distance(p), 12.0);
 }
 
@@ -149,17 +150,18 @@ void GeneratedBody::MakeLobes(double pitch) {
   // a deep liver's right lobe lies beside the spine; its left lobe stays in front and gets thinner
   const double back = 34.0 * deep_;
   right_ = Scaled({-50, 6, -6 - back}, right_size * Vec3{62, 80, 56 + back});
-  lateral_ = Scaled({-52, -26, 6 - back}, right_size * Vec3{52, 60, 42 + 0.8 * back});
+  lateral_ = Scaled({-52, -26 - 8 * taper_, 6 - back},
+                    right_size * Vec3{52, 60, (1 - 0.5 * taper_) * (42 + 0.8 * back)});
   left_ = Scaled({20, 33, 13}, {72, 35, 36 - 6 * deep_});
   tip_ = Scaled({62, 40, 10}, {46, 20, 26});
   // the viscera push in from below, behind and the left: a wide concave face with a sharp lower edge. The less they
   // push from behind, the more they do from the left
-  const double from_left = std::max(0.2, 0.36 + 0.5 * (pitch + 0.50));
+  const double from_left = std::clamp(0.36 + 0.5 * (pitch + 0.50), 0.2, 0.62);
   const Vec3 down = math::Normalized(Vec3{from_left, -0.78, pitch});
   constexpr double kRadius = 165;
   viscera_ = Scaled(Vec3{0, -10, -12} + kRadius * down, {kRadius, kRadius, kRadius});
   stomach_ = Scaled({66, -14, -18}, {66, 46, 46});
-  kidney_ = Scaled({-58, -52, -70 - 1.4 * back}, {36, 52, 36});
+  kidney_ = Scaled({-58, -52, -76 - 1.5 * back}, {36, 52, 36});
   spine_ = Scaled({22, 20, -82 - back}, {34, 140, 46 + back});
   caudate_ = Scaled({2, 24, -30}, caudate_size * Vec3{17, 24, 14});
 }
@@ -171,8 +173,13 @@ void GeneratedBody::MakeGrooves() {
   for (std::size_t i = 0; i < fissure_way.size(); ++i) {
     if (fissure_way[i].second > edge + 14.0) break;
     const double part = std::clamp(fissure_way[i].second / edge, 0.0, 1.0);
+    // a thin lobe is not cut through
+    constexpr double kShare = 0.4, kStep = 1.0;
+    Vec3 above = fissure_way[i].first;
+    while (DomeDistance(above) < 0) above.y += kStep;
+    const double thickness = above.y - fissure_way[i].first.y;
     fissure_.points.push_back(fissure_way[i].first);
-    fissure_.radii.push_back(3.0 + 7.0 * part * part);
+    fissure_.radii.push_back(std::clamp(kShare * thickness, 1.0, 3.0 + 7.0 * part * part));
   }
   porta_ = {{OnViscera(-16, -12), OnViscera(-2, -10), OnViscera(8, -6)}, {3.5, 5.5, 3.5}};
 }
@@ -323,7 +330,7 @@ void GeneratedBody::FoldFundus(Worm& axis) const {
 /// and gallbladder so.
 void GeneratedBody::FindPitch(std::span<const Parameter> parameters) {
   const double wanted = NumberOf(parameters, "gallbladder_inclination") * kRadians;
-  double steep = -1.3, flat = 0.5;
+  double steep = -1.3, flat = 0.9;
   constexpr int kHalvings = 16;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (steep + flat);

@@ -60,7 +60,7 @@ class GeneratedBody {
   void FindPitch(std::span<const Parameter> parameters);
 
   std::uint64_t seed_;
-  double cirrhosis_ = 0, edge_blend_ = 9;
+  double cirrhosis_ = 0, edge_blend_ = 9, taper_ = 0;
   double deep_ = 0;  // 0: as deep as the textbook's liver, 1: as deep as it is wide
   math::Vec3 scale_ = {1, 1, 1};
   geometry::Box box_;  // of the liver

@@ -68,16 +68,18 @@ constexpr ParameterRule kRules[] = {
            "front to back; a deep liver reaches back beside the spine", kLiverSpread),
     Number("liver_edge_rounding", kNormal, 8, 3, 3, 15, 3, 20, "mm", "blend of front and visceral face",
            kWideChoice),
+    Number("right_lobe_taper", kNormal, 0.4, 0.3, 0, 1, 0, 1, "",
+           "0: the right lobe's lower end is blunt, 1: a thin tongue", kWideChoice),
     Number("gallbladder_length", kNormal, 80, 12, 55, 112, 40, 150, "mm", "neck to fundus along the axis",
            "cadavers: 69 +- 8 mm (n = 60), 33 to 120 mm (n = 100); introductiontoradiology: 70 to 100 mm"),
-    Number("gallbladder_diameter", kNormal, 31, 4.5, 21, 44, 15, 60, "mm", "largest",
+    Number("gallbladder_diameter", kNormal, 30, 4.5, 21, 44, 15, 60, "mm", "largest",
            "cadavers: 36 +- 7 mm (n = 60), 20 to 50 mm (n = 100); introductiontoradiology: 30 mm"),
     Number("gallbladder_wall", kNormal, 2.0, 0.4, 1, 3, 0.5, 10, "mm",
            "thickness; not meshed, makes the wall stiffer",
            "radiology: at most 3 mm; mean and deviation: general knowledge"),
     Number("gallbladder_neck", kNormal, 0.39, 0.055, 0.26, 0.52, 0.2, 0.6, "",
            "diameter of the neck, as a share of the largest", kWideChoice),
-    Number("gallbladder_bend", kNormal, 26, 13, 0, 60, 0, 70, "deg", "of the axis from neck to fundus",
+    Number("gallbladder_bend", kNormal, 33, 16, 0, 75, 0, 80, "deg", "of the axis from neck to fundus",
            kWideChoice),
     Number(
         "gallbladder_inclination", kNormal, 47, 19, 12, 66, 8, 70, "deg",
@@ -85,13 +87,13 @@ constexpr ParameterRule kRules[] = {
         "Sanal 2016, CT: 49 +- 21 with stones, 53 +- 19 without; limits: as far as the liver's shape allows"),
     Number("gallbladder_azimuth", kNormal, 24, 10, 4, 50, 0, 60, "deg",
            "of the axis in the axial plane, from anterior to the patient's right", kWideChoice),
-    Number("gallbladder_embedding", kNormal, 0.45, 0.1, 0.25, 0.66, 0.2, 0.7, "",
+    Number("gallbladder_embedding", kNormal, 0.47, 0.11, 0.25, 0.7, 0.2, 0.75, "",
            "share of its diameter that lies in the fossa", kWideChoice),
     Number("fundus_overhang", kNormal, 9, 6, 0, 25, 0, 25, "mm", "fundus in front of the liver's edge",
            "cadavers: 4 to 25 mm below the inferior border (n = 100); the rest general knowledge"),
     Chance("hartmann_pouch", 0.52, "the infundibulum bulges beside the cystic duct",
            "van Eijck 2007: 51 of 98 gallbladders"),
-    Number("hartmann_pouch_depth", kNormal, 5, 2, 2, 9, 1, 12, "mm", "where there is one", kWideChoice),
+    Number("hartmann_pouch_depth", kNormal, 4.5, 1.8, 2, 8, 1, 10, "mm", "where there is one", kWideChoice),
     Word("cystic_duct_series", kSeries, "whose frequencies the insertion follows", "docs/patients.md"),
     Word("cystic_duct_insertion", kHindawiTypes,
          "lateral, medial (from behind), low, parallel, high or short", kHindawi),
@@ -139,19 +141,13 @@ struct IdealRange {
   double centre = 0, spread = 0, low = 0, high = 0;
 };
 constexpr IdealRange kIdeal[] = {
-    {"liver_transverse", 212, 7, 200, 225},
-    {"liver_vertical", 162, 7, 150, 175},
-    {"liver_depth", 112, 7, 100, 125},
-    {"liver_edge_rounding", 9, 0, 9, 9},
-    {"gallbladder_length", 85, 8, 70, 100},
-    {"gallbladder_diameter", 32, 3, 27, 40},
-    {"gallbladder_neck", 0.335, 0, 0.335, 0.335},
-    {"gallbladder_bend", 20, 8, 0, 40},
-    {"gallbladder_inclination", 48, 2.5, 42, 53},
-    {"gallbladder_azimuth", 20, 1.5, 17, 25},
-    {"gallbladder_embedding", 0.36, 0.05, 0.25, 0.48},
-    {"fundus_overhang", 8, 3, 2, 14},
-    {"hartmann_pouch", 0, 0, 0, 0},
+    {"liver_transverse", 212, 7, 200, 225},   {"liver_vertical", 162, 7, 150, 175},
+    {"liver_depth", 112, 7, 100, 125},        {"liver_edge_rounding", 9, 0, 9, 9},
+    {"right_lobe_taper", 0, 0, 0, 0},         {"gallbladder_length", 85, 8, 70, 100},
+    {"gallbladder_diameter", 32, 3, 27, 40},  {"gallbladder_neck", 0.335, 0, 0.335, 0.335},
+    {"gallbladder_bend", 20, 8, 0, 40},       {"gallbladder_inclination", 48, 2.5, 42, 53},
+    {"gallbladder_azimuth", 20, 1.5, 17, 25}, {"gallbladder_embedding", 0.36, 0.05, 0.25, 0.48},
+    {"fundus_overhang", 8, 3, 2, 14},         {"hartmann_pouch", 0, 0, 0, 0},
 };
 
 /// Standard normal number (Box and Muller 1958).
@@ -248,7 +244,7 @@ double CalcGallbladderProfile(double t, double neck, double pouch) {
       {{0.0, 0.776 * neck}, {0.14, 1.254 * neck}, {0.4, 0.84}, {0.68, 1.0}, {0.86, 0.93}, {1.0, 0.74}}};
   std::size_t count = 6;
   if (pouch > 0) {
-    const double infundibulum = std::max(0.46, 1.254 * neck) + 0.6 * pouch;
+    const double infundibulum = std::max(0.56, 1.254 * neck) + 0.7 * pouch;
     knots = {{{0.0, 0.776 * neck},
               {0.13, infundibulum},
               {0.28, infundibulum - pouch},
