@@ -239,7 +239,9 @@ TEST(GeneratePatient, TheGallbladderLiesAsInclinedAsItIsSet) {
     const auto patient = GeneratePatient(4, settings);
     ASSERT_TRUE(patient.ok()) << patient.error().Text();
     ExpectSound(*patient, inclination);
-    for (const ShapeMeasure& measure : *MeasureShapes(*patient)) {
+    const auto measures = MeasureShapes(*patient);
+    ASSERT_TRUE(measures.ok()) << measures.error().Text();
+    for (const ShapeMeasure& measure : *measures) {
       if (measure.name == "gallbladder_inclination") {
         EXPECT_NEAR(measure.value, std::stod(inclination), 7);
       }
@@ -279,7 +281,9 @@ TEST(GeneratePatientSlow, FortySeedsAreSoundAndHoldTheRealOne) {
     for (const Organ& organ : patient->organs)
       EXPECT_GT(geometry::InspectMesh(organ.mesh).min_angle * 180 / M_PI, 5.0)
           << organ.name << ", seed " << seed;
-    for (const ShapeMeasure& measure : *MeasureShapes(*patient)) {
+    const auto measures = MeasureShapes(*patient);
+    ASSERT_TRUE(measures.ok()) << measures.error().Text();
+    for (const ShapeMeasure& measure : *measures) {
       const auto [range, is_new] =
           ranges.try_emplace(std::string(measure.name), std::pair{measure.value, measure.value});
       range->second.first = std::min(range->second.first, measure.value);
