@@ -37,7 +37,7 @@ std::span<const Choice> FindSeries() {
 
 /// Whether the value was drawn: its source is then a publication, or general knowledge.
 bool IsDrawn(const Parameter& parameter) {
-  return parameter.source != "set by the user" && parameter.source != "follows from the insertion";
+  return parameter.source != "set by the user" && !parameter.source.starts_with("follows from");
 }
 
 VariationCount StartCount(std::string name, std::span<const Choice> choices) {
@@ -137,7 +137,7 @@ std::vector<VariationCount> CountVariations(std::span<const std::vector<Paramete
   const auto everyone = [](const std::vector<Parameter>&) { return true; };
   for (const ParameterRule& rule : ParameterRules()) {
     const std::string name(rule.name);
-    if (rule.name == kSeries) continue;  // not drawn: the first one unless it is set
+    if (rule.name == kSeries || rule.name == "population") continue;  // not drawn: the first unless set
     if (rule.name == kInsertion) {
       // its shares depend on the series
       for (const Choice& series : FindSeries()) {

@@ -29,10 +29,12 @@ constexpr ShapeRange kLiterature[] = {
     {"liver_transverse", 200, 225, "thecommonvein.net"},
     {"liver_vertical", 150, 175, "thecommonvein.net: right lobe"},
     {"liver_depth", 100, 125, "thecommonvein.net"},
-    {"liver_volume", 1200, 1500, "thecommonvein.net"},
-    {"gallbladder_length", 70, 120, "introductiontoradiology 70 to 100; textbooks to 120"},
-    {"gallbladder_diameter", 27, 50, "introductiontoradiology about 30; textbooks 30 to 50"},
-    {"gallbladder_volume", 25, 50, "introductiontoradiology 30 to 50; textbooks 25 to 30"},
+    {"liver_volume", 594, 2250, "Feng, WJG 2017: CT, n = 369"},
+    {"gallbladder_length", 33, 120, "JRABMS 2022: cadavers, n = 100"},
+    {"gallbladder_diameter", 20, 50, "JRABMS 2022: cadavers, n = 100"},
+    {"gallbladder_volume", 17, 50,
+     "Am J Gastroenterol 1992: mean 17 to 19 fasting, n = 1703; textbooks to 50"},
+    {"gallbladder_inclination", 28, 70, "Sanal 2016: CT, 49 +- 21, one deviation either way"},
 };
 
 /// The gallbladder cut across its axis.

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 
 #include "trocar/anatomy/patient_lint.h"
+#include "trocar/anatomy/shape_measures.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/meshing/nearest_surface.h"
@@ -57,7 +59,7 @@ void ExpectSound(const Patient& patient, const std::string& what) {
   // fundus in front of and below the neck
   const Vec3 fundus = patient.FindLandmark("fundus")->position,
              neck = patient.FindLandmark("infundibulum")->position;
-  EXPECT_GT(fundus.z, neck.z + 0.02);
+  EXPECT_GT(fundus.z, neck.z + 0.01);
   EXPECT_LT(fundus.y, neck.y);
 }
 
@@ -84,13 +86,13 @@ void ExpectSoundSeeds(std::uint64_t first, std::uint64_t end) {
     if (seed < 6) ExpectApart(*patient);
     const auto number = [&](const char* name) { return NumberOf(patient->parameters, name); };
     // what was drawn is what was built
-    EXPECT_NEAR(number("measured_liver_transverse") / number("liver_transverse"), 1, 0.04);
-    EXPECT_NEAR(number("measured_liver_vertical") / number("liver_vertical"), 1, 0.04);
-    EXPECT_NEAR(number("measured_liver_depth") / number("liver_depth"), 1, 0.04);
-    EXPECT_GT(number("measured_liver_volume"), 1200 * 0.95);
-    EXPECT_LT(number("measured_liver_volume"), 1500 * 1.05);
-    EXPECT_GT(number("measured_gallbladder_volume"), 30 * 0.9);
-    EXPECT_LT(number("measured_gallbladder_volume"), 50 * 1.08);
+    EXPECT_NEAR(number("measured_liver_transverse") / number("liver_transverse"), 1, 0.02);
+    EXPECT_NEAR(number("measured_liver_vertical") / number("liver_vertical"), 1, 0.02);
+    EXPECT_NEAR(number("measured_liver_depth") / number("liver_depth"), 1, 0.02);
+    EXPECT_GT(number("measured_liver_volume"), 950 * 0.92);
+    EXPECT_LT(number("measured_liver_volume"), 2060 * 1.12);
+    EXPECT_GT(number("measured_gallbladder_volume"), 16 * 0.85);
+    EXPECT_LT(number("measured_gallbladder_volume"), 60 * 1.12);
   }
 }
 
@@ -121,7 +123,8 @@ TEST(GeneratePatient, SameSeedGivesTheSameBits) {
 
 TEST(GeneratePatient, VariationsAreThereWhenTheyAreSet) {
   const auto make = [](std::vector<ParameterSetting> settings) {
-    settings.insert(settings.begin(), {{"double_cystic_artery", "no"},
+    settings.insert(settings.begin(), {{"population", "ideal"},
+                                       {"double_cystic_artery", "no"},
                                        {"subvesical_duct", "no"},
                                        {"moynihan_hump", "no"},
                                        {"phrygian_cap", "no"},
@@ -177,9 +180,10 @@ TEST(GeneratePatient, VariationsAreThereWhenTheyAreSet) {
 
 TEST(GeneratePatient, PathologiesChangeTheOrgans) {
   const auto make = [](std::vector<ParameterSetting> settings) {
+    settings.emplace_back("population", "ideal");
     auto patient = GeneratePatient(2, settings);
     EXPECT_TRUE(patient.ok()) << patient.error().Text();
-    ExpectSound(*patient, settings.empty() ? "healthy" : settings.front().first);
+    ExpectSound(*patient, settings.front().first);
     return *patient;
   };
   const auto measured = [](const Patient& patient, const char* name) {
@@ -226,6 +230,71 @@ TEST(GeneratePatient, ComesBackFromItsFolder) {
   EXPECT_EQ(read->parameters, patient->parameters);
   EXPECT_GE(read->parameters.size(), ParameterRules().size() + 9);
   fs::remove_all(folder);
+}
+
+TEST(GeneratePatient, TheGallbladderLiesAsInclinedAsItIsSet) {
+  for (const char* inclination : {"20", "45", "60"}) {
+    const std::vector<ParameterSetting> settings = {{"gallbladder_inclination", inclination},
+                                                    {"phrygian_cap", "no"}};
+    const auto patient = GeneratePatient(4, settings);
+    ASSERT_TRUE(patient.ok()) << patient.error().Text();
+    ExpectSound(*patient, inclination);
+    const auto measures = MeasureShapes(*patient);
+    ASSERT_TRUE(measures.ok()) << measures.error().Text();
+    for (const ShapeMeasure& measure : *measures) {
+      if (measure.name == "gallbladder_inclination") {
+        EXPECT_NEAR(measure.value, std::stod(inclination), 7);
+      }
+    }
+  }
+}
+
+/// Of one body twice, as docs/shapes.md has them: trocar anatomy measure out/labels
+/// assets/patients/visible-human-male/patient
+const std::map<std::string, std::pair<double, double>, std::less<>> kRealMeasures = {
+    {"liver_transverse", {188, 191}},
+    {"liver_vertical", {180, 180}},
+    {"liver_depth", {189, 196}},
+    {"liver_volume", {1764, 1827}},
+    {"fundus_below_edge", {-15.1, -21.3}},
+    {"gallbladder_length", {77, 73}},
+    {"gallbladder_diameter", {28, 26.8}},
+    {"gallbladder_volume", {28.5, 24.1}},
+    {"gallbladder_inclination", {21.3, 16.7}},
+    {"gallbladder_azimuth", {25, 23.3}},
+    {"gallbladder_bend", {37.6, 34.5}},
+    {"gallbladder_neck", {12.5, 11.4}},
+    {"contact_area", {2331, 2429}},
+    {"contact_share", {0.412, 0.467}},
+    {"fossa_depth", {13.8, 15.1}},
+    {"fossa_depth_share", {0.491, 0.564}},
+    {"wall_beyond_duct", {0.3, 4.24}},
+    {"infundibulum_to_hilum", {29.7, 20.4}},
+};
+
+TEST(GeneratePatientSlow, FortySeedsAreSoundAndHoldTheRealOne) {
+  std::map<std::string, std::pair<double, double>, std::less<>> ranges;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const auto patient = GeneratePatient(seed);
+    ASSERT_TRUE(patient.ok()) << "seed " << seed << ": " << patient.error().Text();
+    ExpectSound(*patient, "seed " + std::to_string(seed));
+    for (const Organ& organ : patient->organs)
+      EXPECT_GT(geometry::InspectMesh(organ.mesh).min_angle * 180 / M_PI, 5.0)
+          << organ.name << ", seed " << seed;
+    const auto measures = MeasureShapes(*patient);
+    ASSERT_TRUE(measures.ok()) << measures.error().Text();
+    for (const ShapeMeasure& measure : *measures) {
+      const auto [range, is_new] =
+          ranges.try_emplace(std::string(measure.name), std::pair{measure.value, measure.value});
+      range->second.first = std::min(range->second.first, measure.value);
+      range->second.second = std::max(range->second.second, measure.value);
+    }
+  }
+  for (const auto& [name, real] : kRealMeasures) {
+    const auto& [least, most] = ranges.at(name);
+    EXPECT_LE(least, std::min(real.first, real.second)) << name;
+    EXPECT_GE(most, std::max(real.first, real.second)) << name;
+  }
 }
 
 }  // namespace

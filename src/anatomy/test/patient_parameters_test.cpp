@@ -147,13 +147,72 @@ TEST(DrawParameters, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(code("cystic_duct_insertion", "sideways"), ErrorCode::kUnknownName);
 }
 
+constexpr double kNeck = 0.335;
+
 TEST(GallbladderProfile, IsNarrowAtTheNeckAndWidestInTheBody) {
-  EXPECT_LT(CalcGallbladderProfile(0), 0.3);
+  EXPECT_LT(CalcGallbladderProfile(0, kNeck), 0.3);
   double widest = 0;
-  for (int i = 0; i <= 100; ++i) widest = std::max(widest, CalcGallbladderProfile(0.01 * i));
+  for (int i = 0; i <= 100; ++i) widest = std::max(widest, CalcGallbladderProfile(0.01 * i, kNeck));
   EXPECT_NEAR(widest, 1.0, 0.01);
-  EXPECT_LT(CalcGallbladderProfile(1), 0.8);
-  EXPECT_GT(CalcGallbladderProfile(1), CalcGallbladderProfile(0.15));
+  EXPECT_LT(CalcGallbladderProfile(1, kNeck), 0.8);
+  EXPECT_GT(CalcGallbladderProfile(1, kNeck), CalcGallbladderProfile(0.15, kNeck));
+}
+
+TEST(GallbladderProfile, APouchIsWiderThanTheWaistThatFollows) {
+  constexpr double kPouch = 0.2;
+  EXPECT_NEAR(CalcGallbladderProfile(0.13, kNeck, kPouch) - CalcGallbladderProfile(0.28, kNeck, kPouch),
+              kPouch, 1e-12);
+  EXPECT_GT(CalcGallbladderProfile(0.13, kNeck, kPouch), CalcGallbladderProfile(0.13, kNeck));
+}
+
+/// Measures of the Visible Human Male that are parameters: from its labels, then from contours on its photographs.
+/// trocar anatomy from-labels labels.nii.gz -o out/labels
+/// trocar anatomy measure out/labels assets/patients/visible-human-male/patient
+struct RealMeasure {
+  const char* name;
+  double labels, contours;
+};
+constexpr RealMeasure kReal[] = {
+    {"liver_transverse", 188, 191},     {"liver_vertical", 180, 180},
+    {"liver_depth", 189, 196},          {"gallbladder_length", 77, 73},
+    {"gallbladder_diameter", 28, 26.8}, {"gallbladder_neck", 12.5 / 28, 11.4 / 26.8},
+    {"gallbladder_bend", 37.6, 34.5},   {"gallbladder_inclination", 21.3, 16.7},
+    {"gallbladder_azimuth", 25, 23.3},  {"gallbladder_embedding", 0.491, 0.564},
+};
+
+/// Values of a parameter over many seeds, sorted.
+std::vector<double> DrawSorted(const char* name, const std::vector<ParameterSetting>& settings) {
+  constexpr std::uint64_t kDraws = 2000;
+  std::vector<double> values;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) values.push_back(NumberOf(Draw(seed, settings), name));
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+TEST(Population, HoldsTheRealOneInEveryParameterThatIsMeasured) {
+  for (const RealMeasure& real : kReal) {
+    const auto values = DrawSorted(real.name, {});
+    const double low = values[values.size() / 50], high = values[values.size() - 1 - values.size() / 50];
+    for (const double value : {real.labels, real.contours}) {
+      EXPECT_GT(value, low) << real.name << ": below the 2nd percentile";
+      EXPECT_LT(value, high) << real.name << ": above the 98th percentile";
+    }
+  }
+}
+
+TEST(Population, IdealIsTheNarrowOneAndLeavesDuctsAsTheyWere) {
+  const std::vector<ParameterSetting> ideal = {{"population", "ideal"}};
+  const auto depths = DrawSorted("liver_depth", ideal);
+  EXPECT_GE(depths.front(), 100);
+  EXPECT_LE(depths.back(), 125) << "the real one, 189 mm, lies outside";
+  EXPECT_GE(DrawSorted("gallbladder_inclination", ideal).front(), 42);
+  EXPECT_LE(DrawSorted("gallbladder_embedding", ideal).back(), 0.48);
+  const auto varied = Draw(7), narrow = Draw(7, ideal);
+  EXPECT_EQ(TextOf(varied, "population"), "varied");
+  EXPECT_EQ(TextOf(narrow, "population"), "ideal");
+  EXPECT_EQ(TextOf(narrow, "hartmann_pouch"), "no");
+  for (const char* name : {"cystic_duct_length", "bile_duct_diameter", "gallstone_diameter"})
+    EXPECT_EQ(NumberOf(varied, name), NumberOf(narrow, name)) << name;
 }
 
 }  // namespace

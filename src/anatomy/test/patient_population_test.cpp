@@ -41,7 +41,7 @@ const VariationCount* Find(const std::vector<VariationCount>& variations, std::s
 
 TEST(CountVariations, OfManyDrawsFitsWhatIsConfigured) {
   const auto variations = CountVariations(DrawMany(4000, {}));
-  ASSERT_EQ(variations.size(), 6u);
+  ASSERT_EQ(variations.size(), 7u);
   for (const VariationCount& variation : variations) {
     EXPECT_GT(variation.p_value, 0.001) << variation.parameter;
     double configured = 0;

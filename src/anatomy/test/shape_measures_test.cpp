@@ -96,9 +96,12 @@ TEST(ShapeMeasures, AConstrictionAfterTheInfundibulumIsAPouch) {
 }
 
 TEST(ShapeMeasures, OfGeneratedPatientsFollowWhatTheyWereDrawnWith) {
-  const std::vector<ParameterSetting> shallow = {{"gallbladder_embedding", "0.25"},
+  const std::vector<ParameterSetting> shallow = {{"population", "ideal"},
+                                                 {"gallbladder_embedding", "0.25"},
                                                  {"gallbladder_bend", "0"}},
-                                      deep = {{"gallbladder_embedding", "0.48"}, {"gallbladder_bend", "40"}};
+                                      deep = {{"population", "ideal"},
+                                              {"gallbladder_embedding", "0.48"},
+                                              {"gallbladder_bend", "40"}};
   const auto one = MeasureShapes(*GeneratePatient(3, shallow)),
              other = MeasureShapes(*GeneratePatient(3, deep));
   ASSERT_TRUE(one.ok() && other.ok());

@@ -61,8 +61,9 @@ using ParameterSetting = std::pair<std::string, std::string>;
 ///
 /// Each parameter has a random stream of its own, so that setting one leaves the others as they were. What
 /// depends on another: the insertion on the series, the duct's class on an insertion "short", its length on
-/// the class. Liver and gallbladder sizes are drawn again until the volumes that they make lie within 1200 to
-/// 1500 mL and 30 to 50 mL, unless one of the sizes is set.
+/// the class, shapes on the population. Liver and gallbladder sizes are drawn again until the volumes that they make lie
+/// within 950 to 2050 mL and 16 to 60 mL (1200 to 1500 and 30 to 50 in the population "ideal"), unless one of the
+/// sizes is set.
 /// \param settings  take the place of drawn values; the last of several for one name counts
 /// \return one Parameter a rule; kUnknownName for a name or word that is not known (it lists what is),
 ///         kUsage for a number out of range or no number
@@ -78,6 +79,9 @@ const std::string& TextOf(std::span<const Parameter> parameters, std::string_vie
 
 /// Radius of the gallbladder at part t of its axis, 0 at the neck and 1 at the fundus, as a share of the
 /// largest radius; round at both ends [-].
-double CalcGallbladderProfile(double t);
+/// \param neck   diameter of the neck, as a share of the largest [-]
+/// \param pouch  how much wider the infundibulum is than the waist that follows, as a share of the largest diameter;
+///               0: neither pouch nor waist [-]
+double CalcGallbladderProfile(double t, double neck, double pouch = 0);
 
 }  // namespace trocar::anatomy
