@@ -566,7 +566,7 @@ void RehearsalPresenter::TiltTable(double head_up_deg, double right_up_deg) {
   if (std::fabs(tilt(head_up_deg) - table.head_up) < kSame &&
       std::fabs(tilt(right_up_deg) - table.right_up) < kSame)
     return;
-  table = {tilt(head_up_deg), tilt(right_up_deg), "Tilted by hand."};
+  table = {tilt(head_up_deg), tilt(right_up_deg), std::string(core::Mark("Tilted by hand")) + "."};
   built_->patient.table = table;
   Edit(before);
   Refresh();

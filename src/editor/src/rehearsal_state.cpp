@@ -57,7 +57,7 @@ PortPlan ReadPlan(const core::JsonView& view) {
 
 RehearsalState Read(const core::JsonView& root) {
   root.AllowOnly({"format", "version", "step", "images", "series", "dicom_series", "pattern", "pixel_mm",
-                  "slice_mm", "axes", "source", "labels", "liver", "gallbladder", "built_from", "notes",
+                  "slice_mm", "axes", "source", "labels", "liver_label", "gallbladder_label", "built_from", "notes",
                   "plan", "kept"});
   if (root.Text("format") != kFormat) root.Complain("is no file of a rehearsal");
   root.Integer("version", {kVersion, kVersion});
@@ -79,8 +79,8 @@ RehearsalState Read(const core::JsonView& root) {
   }
   state.source = static_cast<OrganSource>(FindWord(root, "source", kSources));
   state.labels = root.TextOr("labels", "");
-  state.liver = root.IntegerOr("liver", 0, {0, 2147483647});
-  state.gallbladder = root.IntegerOr("gallbladder", 0, {0, 2147483647});
+  state.liver = root.IntegerOr("liver_label", 0, {0, 2147483647});
+  state.gallbladder = root.IntegerOr("gallbladder_label", 0, {0, 2147483647});
   state.built_from = root.TextOr("built_from", "");
   if (root.Has("notes")) {
     for (const core::JsonView& note : root.Array("notes")) state.notes.push_back(note.AsText());
@@ -139,8 +139,8 @@ core::Status SaveRehearsal(const std::filesystem::path& file, const RehearsalSta
   if (state.options.pixel_mm) json["pixel_mm"] = *state.options.pixel_mm;
   if (state.options.slice_mm) json["slice_mm"] = *state.options.slice_mm;
   if (state.options.axes) json["axes"] = *state.options.axes;
-  if (state.liver != 0) json["liver"] = state.liver;
-  if (state.gallbladder != 0) json["gallbladder"] = state.gallbladder;
+  if (state.liver != 0) json["liver_label"] = state.liver;
+  if (state.gallbladder != 0) json["gallbladder_label"] = state.gallbladder;
   if (!state.notes.empty()) json["notes"] = state.notes;
   if (state.plan) json["plan"] = WritePlan(*state.plan);
   return core::WriteFile(file,

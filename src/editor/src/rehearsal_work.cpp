@@ -17,6 +17,7 @@
 #include "trocar/core/translate.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/images/label_alignment.h"
+#include "trocar/roles/roles.h"
 
 namespace trocar::editor {
 namespace {
@@ -178,7 +179,7 @@ core::Result<RehearsedPatient> BuildRehearsed(const RehearsalState& state, const
                                               const std::stop_token& stop) {
   auto built = BuildFrom(state, contours, progress, stop);
   if (!built.ok()) return built;
-  if (progress) progress("checking the patient", 0.95);
+  if (progress) progress(core::Mark("checking the patient"), 0.95);
   built->check = anatomy::LintPatient(built->patient);
   std::error_code failure;
   fs::create_directories(folder.parent_path(), failure);
@@ -242,7 +243,8 @@ std::vector<RehearsalLine> DescribeCheck(const RehearsedPatient& built) {
 std::vector<RehearsalLine> DescribeOrigin(const anatomy::Patient& patient) {
   std::vector<RehearsalLine> lines;
   lines.push_back({Kind::kTitle, core::Translate("Fitted to the images")});
-  std::string seen = core::Translate("liver") + ", " + core::Translate("gallbladder");
+  std::string seen = core::Translate(roles::NameOf(roles::OrganRole::kLiver)) + ", " +
+                     core::Translate(roles::NameOf(roles::OrganRole::kGallbladder));
   if (const std::string more = ListNeighbours(patient, true); !more.empty()) seen += ", " + more;
   if (const std::string tubes = ListTubes(patient, true); !tubes.empty()) seen += ", " + tubes;
   lines.push_back({Kind::kPlain, seen});

@@ -59,6 +59,11 @@ std::vector<fs::path> ListFiles(const fs::path& folder) {
   return files;
 }
 
+/// Whoever erased this was ended in the middle of it: EraseFile overwrites from the beginning on, with zeros.
+bool IsHalfErased(std::string_view text) {
+  return text.starts_with('\0');
+}
+
 /// Where another program has moved it already, that is good, too.
 core::Status Move(const fs::path& from, const fs::path& folder) {
   if (auto made = MakePrivateFolder(folder); !made.ok()) return made;
@@ -177,6 +182,13 @@ void DeliverFolder(Store& store, const DeliveryPlaces& places, DeliveryReport& r
       if (text.error().code == ErrorCode::kFileMissing) continue;  // another program has just delivered it
       report.failure = text.error();
       return;
+    }
+    if (IsHalfErased(*text)) {
+      if (auto erased = EraseFile(file); !erased.ok()) {
+        report.failure = erased.error();
+        return;
+      }
+      continue;
     }
     const auto attempt = ReadAttemptJson(*text, file.filename().string());
     core::Status moved;

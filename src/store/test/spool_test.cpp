@@ -189,6 +189,19 @@ TEST_P(SpoolOver, TakesEightProgramsAtOnce) {
   EXPECT_GOOD(Verify(Open()));
 }
 
+// A program that was killed between overwriting a delivered attempt and removing it leaves zeros, which are no damaged attempt.
+TEST_P(SpoolOver, FinishesAnErasureThatWasCutOff) {
+  const fs::path folder = place_.SpoolFolder(), waiting = folder / "waiting.json";
+  fs::create_directories(folder);
+  std::ofstream(waiting) << std::string(300, '\0');
+  ASSERT_EQ(fs::file_size(waiting), 300u);
+  const DeliveryReport report = Spool(place_).Deliver(Open());
+  EXPECT_FALSE(report.failure) << report.failure->Text();
+  EXPECT_EQ(report.damaged, 0);
+  EXPECT_FALSE(fs::exists(waiting));
+  EXPECT_FALSE(fs::exists(folder / "damaged" / "waiting.json"));
+}
+
 // What a killed program has said to be kept is in the store or in the spool.
 TEST_P(SpoolOver, LosesNothingWhenTheProgramIsKilled) {
   const std::string trainee = Add(Role::kTrainee);
