@@ -57,8 +57,8 @@ PortPlan ReadPlan(const core::JsonView& view) {
 
 RehearsalState Read(const core::JsonView& root) {
   root.AllowOnly({"format", "version", "step", "images", "series", "dicom_series", "pattern", "pixel_mm",
-                  "slice_mm", "axes", "source", "labels", "liver_label", "gallbladder_label", "built_from", "notes",
-                  "plan", "kept"});
+                  "slice_mm", "axes", "source", "labels", "liver_label", "gallbladder_label", "built_from",
+                  "notes", "plan", "kept"});
   if (root.Text("format") != kFormat) root.Complain("is no file of a rehearsal");
   root.Integer("version", {kVersion, kVersion});
   RehearsalState state;

@@ -13,12 +13,11 @@ void FileDialog::Ask(Gtk::Window& parent, const FileRequest& request,
   const std::string accept = !request.accept.empty() ? request.accept
                              : is_new                ? core::Translate("Save")
                                                      : core::Translate("Open");
-  dialog_ = Gtk::FileChooserNative::create(
-      request.title, parent,
-      is_new              ? Gtk::FileChooser::Action::SAVE
-      : request.is_folder ? Gtk::FileChooser::Action::SELECT_FOLDER
-                          : Gtk::FileChooser::Action::OPEN,
-      accept, core::Translate("Cancel"));
+  dialog_ = Gtk::FileChooserNative::create(request.title, parent,
+                                           is_new              ? Gtk::FileChooser::Action::SAVE
+                                           : request.is_folder ? Gtk::FileChooser::Action::SELECT_FOLDER
+                                                               : Gtk::FileChooser::Action::OPEN,
+                                           accept, core::Translate("Cancel"));
   for (const FileRequest::Kind& kind : request.kinds) {
     const auto filter = Gtk::FileFilter::create();
     filter->set_name(kind.name);
