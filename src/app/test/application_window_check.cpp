@@ -22,13 +22,10 @@ using trocar::test::kLongest;
 using trocar::test::kLookColour;
 using trocar::test::Screen;
 using trocar::test::WaitFor;
+using trocar::test::WaitForRecording;
 namespace fs = std::filesystem;
 
 constexpr Colour kProblemColour{0xff, 0x8a, 0x7e};
-
-void PressTimes(const Screen& screen, KeySym key, int times) {
-  for (int i = 0; i < times; ++i) screen.Press(key);
-}
 
 /// The card's first three things are the mouse buttons; then comes the key of the left hand.
 int ChangeAKey(const Screen& screen) {
@@ -36,7 +33,7 @@ int ChangeAKey(const Screen& screen) {
   std::this_thread::sleep_for(seconds(1));
   screen.Save("2_keys.png");
   if (CountColour(screen.Look(), kLookColour) > 20) return Fail("keys are in conflict at first");
-  PressTimes(screen, XK_Tab, 3);
+  screen.PressTimes(XK_Tab, 3);
   screen.Press(XK_space);
   std::this_thread::sleep_for(milliseconds(500));
   screen.Press(XK_m);  // which switches the round mask
@@ -74,7 +71,7 @@ int MakeAPatient(const Screen& screen) {
 
 /// From home: the third entry is the operation, as long as nothing has been trained; the first row of its list is the whole.
 void StartTheOperation(const Screen& screen, int entries) {
-  PressTimes(screen, XK_Tab, entries);
+  screen.PressTimes(XK_Tab, entries);
   screen.Press(XK_space);
   std::this_thread::sleep_for(seconds(2));
   screen.Save("8_operation.png");
@@ -84,14 +81,7 @@ void StartTheOperation(const Screen& screen, int entries) {
 
 int Operate(const Screen& screen) {
   StartTheOperation(screen, 2);
-  const fs::path recordings = fs::path(screen.Folder()) / "recordings";
-  const auto is_recording = [&] {
-    for (const auto& file : fs::directory_iterator(recordings)) {
-      if (file.path().extension() == ".trocar") return true;
-    }
-    return false;
-  };
-  if (!WaitFor(kLongest, is_recording)) return Fail("the operation does not begin");
+  if (!WaitForRecording(screen)) return Fail("the operation does not begin");
   std::this_thread::sleep_for(seconds(6));
   screen.Save("9_operating.png");
   return 0;

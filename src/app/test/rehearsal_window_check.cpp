@@ -22,6 +22,7 @@ using trocar::test::kLongest;
 using trocar::test::Place;
 using trocar::test::Screen;
 using trocar::test::WaitFor;
+using trocar::test::WaitForRecording;
 using trocar::test::WindowPicture;
 namespace fs = std::filesystem;
 
@@ -59,16 +60,12 @@ bool Says(const Screen& screen, const std::string& text) {
   return ReadState(screen).find(text) != std::string::npos;
 }
 
-void PressTimes(const Screen& screen, KeySym key, int times) {
-  for (int i = 0; i < times; ++i) screen.Press(key);
-}
-
 /// From the list of patients: past the built-in one, the seed, and two buttons. \param entries  patients in it
 void OpenFromImages(const Screen& screen, int entries) {
   screen.Press(XK_p, XK_Control_L);
   std::this_thread::sleep_for(seconds(5));  // the list is read, and pictures are drawn
   screen.Save("2_patients.png");
-  PressTimes(screen, XK_Tab, 3 + entries);
+  screen.PressTimes(XK_Tab, 3 + entries);
   screen.Press(XK_space);
   std::this_thread::sleep_for(seconds(2));
 }
@@ -77,7 +74,7 @@ void OpenFromImages(const Screen& screen, int entries) {
 void ChooseItem(const Screen& screen, int index) {
   screen.Press(XK_space);
   std::this_thread::sleep_for(milliseconds(500));
-  PressTimes(screen, XK_Down, index);
+  screen.PressTimes(XK_Down, index);
   screen.Press(XK_Return);
   std::this_thread::sleep_for(milliseconds(500));
 }
@@ -174,14 +171,7 @@ int Operate(const Screen& screen) {
   std::this_thread::sleep_for(seconds(1));
   screen.Save("12_operate.png");
   GoOn(screen);
-  const fs::path recordings = fs::path(screen.Folder()) / "recordings";
-  const auto is_recording = [&] {
-    for (const auto& file : fs::directory_iterator(recordings)) {
-      if (file.path().extension() == ".trocar") return true;
-    }
-    return false;
-  };
-  if (!WaitFor(kLongest, is_recording)) return Fail("the operation does not begin");
+  if (!WaitForRecording(screen)) return Fail("the operation does not begin");
   std::this_thread::sleep_for(seconds(8));
   screen.Save("13_operating.png");
   return 0;

@@ -33,3 +33,22 @@ exit $status
     message(FATAL_ERROR "the window: ${errors}\n${output}")
   endif()
 endfunction()
+
+# find_recording(VARIABLE): what `trocar record info` says of the one attempt that was made
+function(find_recording output)
+  file(GLOB recordings ${FOLDER}/recordings/*.trocar)
+  list(LENGTH recordings count)
+  if(NOT count EQUAL 1)
+    message(FATAL_ERROR "one attempt was made, and there are ${count} recordings")
+  endif()
+  trocar(info record info ${recordings} --json)
+  set(${output} "${info}" PARENT_SCOPE)
+endfunction()
+
+# Fails where the window that was closed last had complaints of GTK.
+function(check_warnings)
+  file(READ ${FOLDER}/output.txt output)
+  if(output MATCHES "Gtk-(WARNING|CRITICAL)")
+    message(FATAL_ERROR "GTK complains: ${output}")
+  endif()
+endfunction()

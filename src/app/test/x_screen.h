@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <thread>
@@ -176,6 +177,9 @@ class Screen {
     XSync(display_, False);
     std::this_thread::sleep_for(milliseconds(150));
   }
+  void PressTimes(KeySym key, int times) const {
+    for (int i = 0; i < times; ++i) Press(key);
+  }
   /// Types a line of ASCII text.
   void Type(const std::string& text) const {
     for (const char c : text) {
@@ -237,6 +241,17 @@ class Screen {
   Display* display_;
   std::string folder_;
 };
+
+/// Whether an attempt is recorded, into the check's folder. \return false after kLongest
+inline bool WaitForRecording(const Screen& screen) {
+  const std::filesystem::path recordings = std::filesystem::path(screen.Folder()) / "recordings";
+  return WaitFor(kLongest, [&] {
+    for (const auto& file : std::filesystem::directory_iterator(recordings)) {
+      if (file.path().extension() == ".trocar") return true;
+    }
+    return false;
+  });
+}
 
 /// The program of a check: CHECK FOLDER. Where the check fails, the screen is saved.
 inline int RunCheck(int argc, char** argv, int (*check)(const Screen&)) {

@@ -7,7 +7,6 @@
 #include <system_error>
 #include <utility>
 
-#include "trocar/anatomy/move_port.h"
 #include "trocar/core/log.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
@@ -23,9 +22,7 @@ using core::Error;
 using core::ErrorCode;
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr double kMostTilt = 30;         // of the table [deg]
 constexpr std::size_t kLeastSlices = 2;  // with contours, of each organ
-constexpr std::size_t kMostUndo = 200;
 
 constexpr const char* kTitles[kRehearsalSteps] = {
     core::Mark("1 Images"), core::Mark("2 Liver and gallbladder"), core::Mark("3 Patient"),
@@ -175,7 +172,7 @@ void RehearsalPresenter::Forget() {
   state_.step = step;
   listed_.clear();
   built_.reset();
-  undo_.clear(), redo_.clear();
+  ports_.Forget();
   page_.series.clear();
   page_.problem.reset();
   Keep();
@@ -433,7 +430,7 @@ void RehearsalPresenter::Build() {
 
 void RehearsalPresenter::UseBuilt(RehearsedPatient built) {
   built_ = std::move(built);
-  proposal_ = Plan();
+  ports_.Begin(built_->patient);
   page_.check = DescribeCheck(*built_);
   page_.origin = DescribeOrigin(built_->patient);
   screen_.ShowFigure(built_->patient);
@@ -445,13 +442,12 @@ void RehearsalPresenter::TakeBuilt(core::Result<RehearsedPatient> built, const s
     return;
   }
   UseBuilt(std::move(*built));
-  undo_.clear(), redo_.clear();
   state_.built_from = built_from;
   state_.notes = built_->notes;
   state_.plan.reset();
   state_.kept.clear();
   page_.is_stale = IsStale();
-  page_.chosen_port = 0;
+  page_.ports.chosen = 0;
   Keep();
   ShowPorts();
 }
@@ -469,7 +465,7 @@ void RehearsalPresenter::LoadDraft() {
             return Keep();
           }
           UseBuilt(std::move(*read));
-          if (state_.plan) UsePlan(*state_.plan);
+          if (state_.plan) PortEditor::Use(*state_.plan, built_->patient);
           page_.is_stale = IsStale();
           ShowPorts();
         };
@@ -479,128 +475,82 @@ void RehearsalPresenter::LoadDraft() {
 void RehearsalPresenter::ShowPorts() {
   if (!IsBuilt()) return;
   const bool has_ports = state_.step >= RehearsalStep::kPorts;
-  screen_.ShowPorts(built_->patient, has_ports ? std::optional(page_.chosen_port) : std::nullopt);
+  screen_.ShowPorts(built_->patient, has_ports ? std::optional(page_.ports.chosen) : std::nullopt);
 }
 
 // ports and table
 
-PortPlan RehearsalPresenter::Plan() const {
-  return {built_->patient.ports, built_->patient.table};
-}
-
-void RehearsalPresenter::UsePlan(const PortPlan& plan) {
-  built_->patient.ports = plan.ports;
-  built_->patient.table = plan.table;
-  state_.plan = plan == proposal_ ? std::nullopt : std::optional(plan);
-}
-
-/// The plan is another one now.
-void RehearsalPresenter::Edit(const PortPlan& before) {
-  const PortPlan now = Plan();
-  if (now == before) return;
-  undo_.push_back(before);
-  if (undo_.size() > kMostUndo) undo_.erase(undo_.begin());
-  redo_.clear();
-  UsePlan(now);
-  Keep();
+/// After whatever may have moved one.
+void RehearsalPresenter::KeepPorts() {
+  auto change = ports_.FindChange(built_->patient);
+  if (change != state_.plan) {
+    state_.plan = std::move(change);
+    Keep();
+  }
   ShowPorts();
+  Refresh();
 }
 
 void RehearsalPresenter::ChoosePort(std::size_t port) {
   if (!IsBuilt() || port >= built_->patient.ports.size()) return;
-  page_.chosen_port = port;
+  page_.ports.chosen = port;
   ShowPorts();
   Refresh();
 }
 
 void RehearsalPresenter::MovePort(double left_mm, double up_mm) {
-  if (!IsBuilt() || page_.chosen_port >= built_->patient.ports.size()) return;
-  page_.problem.reset();
-  const PortPlan before = Plan();
-  anatomy::Port& port = built_->patient.ports[page_.chosen_port];
-  auto moved = anatomy::MovePort(built_->patient, port.use, port.position.x + 0.001 * left_mm,
-                                 port.position.y + 0.001 * up_mm);
-  if (moved.ok()) {
-    port = std::move(*moved);
-    Edit(before);
-  } else {
-    page_.problem = moved.error();
-  }
-  Refresh();
+  if (!IsBuilt() || page_.ports.chosen >= built_->patient.ports.size()) return;
+  const math::Vec3 place = built_->patient.ports[page_.ports.chosen].position;
+  const auto moved =
+      ports_.Move(built_->patient, page_.ports.chosen, place.x + 0.001 * left_mm, place.y + 0.001 * up_mm);
+  page_.problem = moved.ok() ? std::nullopt : std::optional(moved.error());
+  KeepPorts();
 }
 
 void RehearsalPresenter::GrabPort(std::size_t port) {
   if (!IsBuilt() || port >= built_->patient.ports.size()) return;
   page_.problem.reset();
-  page_.chosen_port = port;
-  grabbed_ = Plan();
+  page_.ports.chosen = port;
+  ports_.Grab(built_->patient);
   ShowPorts();
   Refresh();
 }
 
 void RehearsalPresenter::DragPort(const math::Vec3& p_world) {
-  if (!grabbed_ || !IsBuilt()) return;
-  anatomy::Port& port = built_->patient.ports[page_.chosen_port];
-  auto moved = anatomy::MovePort(built_->patient, port.use, p_world.x, p_world.y);
+  if (!ports_.IsGrabbed() || !IsBuilt()) return;
+  const auto moved = ports_.Move(built_->patient, page_.ports.chosen, p_world.x, p_world.y);
   page_.problem = moved.ok() ? std::nullopt : std::optional(moved.error());
-  if (moved.ok()) {
-    port = std::move(*moved);
-    ShowPorts();
-  }
+  if (moved.ok()) ShowPorts();
   Refresh();
 }
 
 void RehearsalPresenter::ReleasePort() {
-  if (!grabbed_) return;
-  const PortPlan before = *std::exchange(grabbed_, std::nullopt);
-  Edit(before);
-  Refresh();
+  if (!ports_.IsGrabbed() || !IsBuilt()) return;
+  ports_.Release(built_->patient);
+  KeepPorts();
 }
 
 void RehearsalPresenter::TiltTable(double head_up_deg, double right_up_deg) {
-  if (!IsBuilt()) return;
-  const PortPlan before = Plan();
-  anatomy::Table table = before.table.value_or(anatomy::Table{});
-  const auto tilt = [](double degrees) { return std::clamp(degrees, -kMostTilt, kMostTilt) * kDegree; };
-  constexpr double kSame = 0.01 * kDegree;
-  if (std::fabs(tilt(head_up_deg) - table.head_up) < kSame &&
-      std::fabs(tilt(right_up_deg) - table.right_up) < kSame)
-    return;
-  table = {tilt(head_up_deg), tilt(right_up_deg), std::string(core::Mark("Tilted by hand")) + "."};
-  built_->patient.table = table;
-  Edit(before);
-  Refresh();
+  if (IsBuilt() && ports_.Tilt(built_->patient, head_up_deg, right_up_deg)) KeepPorts();
 }
 
 void RehearsalPresenter::Undo() {
-  if (!IsBuilt() || undo_.empty()) return;
+  if (!IsBuilt() || !ports_.Undo(built_->patient)) return;
   page_.problem.reset();
-  redo_.push_back(Plan());
-  UsePlan(undo_.back());
-  undo_.pop_back();
-  Keep();
-  ShowPorts();
-  Refresh();
+  KeepPorts();
 }
 
 void RehearsalPresenter::Redo() {
-  if (!IsBuilt() || redo_.empty()) return;
+  if (!IsBuilt() || !ports_.Redo(built_->patient)) return;
   page_.problem.reset();
-  undo_.push_back(Plan());
-  UsePlan(redo_.back());
-  redo_.pop_back();
-  Keep();
-  ShowPorts();
-  Refresh();
+  KeepPorts();
 }
 
 void RehearsalPresenter::ResetPorts() {
   if (!IsBuilt()) return;
   page_.problem.reset();
-  const PortPlan before = Plan();
-  UsePlan(proposal_);
-  Edit(before);
-  Refresh();
+  ports_.Reset(built_->patient);
+  KeepPorts();
 }
 
 // the operation
@@ -697,17 +647,18 @@ std::string RehearsalPresenter::HintText() const {
 }
 
 void RehearsalPresenter::RefreshPorts() {
-  page_.ports.clear();
-  page_.can_undo = !undo_.empty(), page_.can_redo = !redo_.empty();
+  RehearsalPorts& shown = page_.ports;
+  shown.list.clear();
+  shown.can_undo = ports_.CanUndo(), shown.can_redo = ports_.CanRedo();
   if (!IsBuilt()) return;
   const anatomy::Patient& patient = built_->patient;
   for (const anatomy::Port& port : patient.ports) {
-    page_.ports.push_back({SpokenUse(port.use), SpokenPlace(port.position), SpokenReason(port.reason)});
+    shown.list.push_back({SpokenUse(port.use), SpokenPlace(port.position), SpokenReason(port.reason)});
   }
   const anatomy::Table table = patient.table.value_or(anatomy::Table{});
-  page_.head_up_deg = table.head_up / kDegree, page_.right_up_deg = table.right_up / kDegree;
-  page_.table_reason = SpokenReason(table.reason);
-  page_.is_proposal = Plan() == proposal_;
+  shown.head_up_deg = table.head_up / kDegree, shown.right_up_deg = table.right_up / kDegree;
+  shown.table_reason = SpokenReason(table.reason);
+  shown.is_proposal = !ports_.FindChange(patient);
 }
 
 void RehearsalPresenter::RefreshSteps() {

@@ -48,7 +48,7 @@ PortPlan ReadPlan(const core::JsonView& view) {
   if (view.Has("table")) {
     const core::JsonView table = view.Object("table");
     table.AllowOnly({"head_up", "right_up", "reason"});
-    constexpr core::NumberRange kTilt{-0.53, 0.53};
+    constexpr core::NumberRange kTilt{-0.53, 0.53};  // kMostTiltDeg, and a little [rad]
     plan.table = anatomy::Table{table.Number("head_up", kTilt), table.Number("right_up", kTilt),
                                 table.TextOr("reason", "")};
   }

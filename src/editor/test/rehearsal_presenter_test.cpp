@@ -294,14 +294,14 @@ TEST_F(RehearsalTest, ABuildThatIsGivenUpLeavesNothing) {
 TEST_F(RehearsalTest, PortsMoveWithinReachAndComeBack) {
   BuildIt();
   presenter_->GoOn();
-  ASSERT_EQ(Page().ports.size(), 4u);
-  EXPECT_FALSE(Page().ports[1].reason.empty());
+  ASSERT_EQ(Page().ports.list.size(), 4u);
+  EXPECT_FALSE(Page().ports.list[1].reason.empty());
   EXPECT_EQ(screen_.chosen, std::size_t{0});
   presenter_->ChoosePort(1);
   const std::vector<anatomy::Port> proposal = screen_.ports;
   presenter_->MovePort(0, -5);
   EXPECT_NEAR(screen_.ports[1].position.y, proposal[1].position.y - 0.005, 1e-9);
-  EXPECT_FALSE(Page().is_proposal);
+  EXPECT_FALSE(Page().ports.is_proposal);
   presenter_->MovePort(0, -500);
   ASSERT_TRUE(Page().problem.has_value());
   EXPECT_THAT(Page().problem->message, HasSubstr("The port stays"));
@@ -312,15 +312,15 @@ TEST_F(RehearsalTest, PortsMoveWithinReachAndComeBack) {
   presenter_->ReleasePort();
   EXPECT_NEAR(screen_.ports[1].position.x, proposal[1].position.x - 0.004, 1e-9);
   presenter_->TiltTable(20, 45);
-  EXPECT_NEAR(Page().head_up_deg, 20, 1e-9);
-  EXPECT_NEAR(Page().right_up_deg, 30, 1e-9) << "tables tilt no further";
+  EXPECT_NEAR(Page().ports.head_up_deg, 20, 1e-9);
+  EXPECT_NEAR(Page().ports.right_up_deg, 30, 1e-9) << "tables tilt no further";
   presenter_->Undo();
   presenter_->Undo();
   EXPECT_NEAR(screen_.ports[1].position.x, proposal[1].position.x, 1e-9);
   presenter_->Undo();
   EXPECT_EQ(screen_.ports, proposal);
-  EXPECT_TRUE(Page().is_proposal);
-  EXPECT_FALSE(Page().can_undo);
+  EXPECT_TRUE(Page().ports.is_proposal);
+  EXPECT_FALSE(Page().ports.can_undo);
   presenter_->Redo();
   EXPECT_NEAR(screen_.ports[1].position.y, proposal[1].position.y - 0.005, 1e-9);
   presenter_->ResetPorts();
@@ -345,7 +345,7 @@ TEST_F(RehearsalTest, TheWindowMayCloseAnywhereAndGoesOnThere) {
   presenter_->ChoosePort(2);
   presenter_->MovePort(0, 2);
   const std::vector<anatomy::Port> moved = screen_.ports;
-  ASSERT_FALSE(Page().is_proposal) << Page().problem->Text();
+  ASSERT_FALSE(Page().ports.is_proposal) << Page().problem->Text();
   Close();
   Open();
   EXPECT_EQ(Page().step, RehearsalStep::kPorts);
@@ -396,8 +396,8 @@ TEST_F(RehearsalTest, DrawnContoursBecomeAPatientAndStayWhereTheyWere) {
   EXPECT_GE(screen_.saves, 1) << "before it is built from";
   Settle();
   ASSERT_TRUE(Page().is_built) << (Page().problem ? Page().problem->Text() : "");
-  EXPECT_EQ(Page().ports.size(), 4u);
-  EXPECT_THAT(Page().ports[1].reason, HasSubstr("usual place"));
+  EXPECT_EQ(Page().ports.list.size(), 4u);
+  EXPECT_THAT(Page().ports.list[1].reason, HasSubstr("usual place"));
   std::string all;
   for (const RehearsalLine& line : Page().check) all += line.text + "\n";
   EXPECT_THAT(all, HasSubstr("contours give liver and gallbladder alone"));

@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kSpacing = 6;
 constexpr int kPreviewPixels = 72;
-constexpr double kMostTilt = 30;  // [deg]
 constexpr double kStepMm = 1;
 
 Gtk::Label* MakeWrapped(const std::string& text, const char* style) {
@@ -266,7 +265,7 @@ PortsCard::PortsCard(RehearsalPresenter& presenter)
 void PortsCard::AddSpin(Gtk::Box& row, const char* name, Gtk::SpinButton& spin) {
   auto* label = Gtk::make_managed<Gtk::Label>(core::Translate(name));
   label->add_css_class("name");
-  spin.set_adjustment(Gtk::Adjustment::create(0, -kMostTilt, kMostTilt, 1, 5));
+  spin.set_adjustment(Gtk::Adjustment::create(0, -kMostTiltDeg, kMostTiltDeg, 1, 5));
   spin.set_width_chars(3);
   spin.set_hexpand(true);
   gui::SetAccessibleName(spin, core::Translate(name));
@@ -290,23 +289,23 @@ void PortsCard::MakePort(std::size_t index) {
 }
 
 void PortsCard::Show(const RehearsalPage& page) {
-  while (rows_.size() < page.ports.size()) MakePort(rows_.size());
-  chosen_ = page.chosen_port;
+  while (rows_.size() < page.ports.list.size()) MakePort(rows_.size());
+  chosen_ = page.ports.chosen;
   is_showing_ = true;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    rows_[i].button->set_visible(i < page.ports.size());
-    if (i >= page.ports.size()) continue;
-    rows_[i].button->set_active(i == page.chosen_port);
-    gui::SetText(*rows_[i].name, page.ports[i].name);
-    gui::SetText(*rows_[i].place, page.ports[i].place);
-    gui::SetText(*rows_[i].reason, page.ports[i].reason);
+    rows_[i].button->set_visible(i < page.ports.list.size());
+    if (i >= page.ports.list.size()) continue;
+    rows_[i].button->set_active(i == page.ports.chosen);
+    gui::SetText(*rows_[i].name, page.ports.list[i].name);
+    gui::SetText(*rows_[i].place, page.ports.list[i].place);
+    gui::SetText(*rows_[i].reason, page.ports.list[i].reason);
   }
-  head_up_.set_value(page.head_up_deg);
-  right_up_.set_value(page.right_up_deg);
-  gui::SetTextOrHide(table_reason_, page.table_reason);
-  undo_.set_sensitive(page.can_undo);
-  redo_.set_sensitive(page.can_redo);
-  reset_.set_sensitive(!page.is_proposal);
+  head_up_.set_value(page.ports.head_up_deg);
+  right_up_.set_value(page.ports.right_up_deg);
+  gui::SetTextOrHide(table_reason_, page.ports.table_reason);
+  undo_.set_sensitive(page.ports.can_undo);
+  redo_.set_sensitive(page.ports.can_redo);
+  reset_.set_sensitive(!page.ports.is_proposal);
   is_showing_ = false;
 }
 

@@ -179,7 +179,7 @@ void RehearsalView::MakePorts() {
     return is_dragging_;
   };
   figure_.on_drag = [this](const MeshPick& pick) {
-    const std::size_t port = presenter_.Page().chosen_port;
+    const std::size_t port = presenter_.Page().ports.chosen;
     if (is_dragging_ && port < ports_.size())
       presenter_.DragPort(figure_.PointAtDepth(ports_[port], pick.x, pick.y));
   };

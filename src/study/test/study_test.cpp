@@ -111,6 +111,11 @@ TEST_F(StudyTest, RunsEachOnceAndCollectsThem) {
   ASSERT_TRUE(report.ok() && plot.ok());
   EXPECT_NE(report->find("Path of the left hand [m]"), std::string::npos);
   EXPECT_NE(report->find("<th>gravity</th>"), std::string::npos);
+  std::istringstream head(Lines().at(0));
+  for (std::string column; std::getline(head, column, ',');)
+    EXPECT_EQ(report->find(column.find('_') != std::string::npos ? "<th>" + column : "no such text"),
+              std::string::npos)
+        << column << " has no words";
   EXPECT_EQ(plot->find("<svg xmlns="), 0U);
   EXPECT_NE(plot->find("class=\"line\""), std::string::npos);
   // again: nothing is played, and the table is the same

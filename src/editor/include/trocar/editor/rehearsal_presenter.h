@@ -15,6 +15,7 @@
 
 #include "trocar/core/file_lock.h"
 #include "trocar/editor/contour_options.h"
+#include "trocar/editor/port_editor.h"
 #include "trocar/editor/rehearsal_state.h"
 #include "trocar/editor/rehearsal_work.h"
 #include "trocar/gui/background_job.h"
@@ -39,6 +40,14 @@ struct RehearsalPort {
   std::string name, place, reason;
 };
 
+struct RehearsalPorts {
+  std::vector<RehearsalPort> list;
+  std::size_t chosen = 0;
+  double head_up_deg = 0, right_up_deg = 0;
+  std::string table_reason;
+  bool can_undo = false, can_redo = false, is_proposal = true;
+};
+
 /// All that the window says, besides slices and figure.
 struct RehearsalPage {
   RehearsalStep step = RehearsalStep::kImages;
@@ -61,11 +70,7 @@ struct RehearsalPage {
   bool is_built = false, is_stale = false;  ///< stale: what it was built from has changed since
   std::vector<RehearsalLine> check;
 
-  std::vector<RehearsalPort> ports;
-  std::size_t chosen_port = 0;
-  double head_up_deg = 0, right_up_deg = 0;
-  std::string table_reason;
-  bool can_undo = false, can_redo = false, is_proposal = true;
+  RehearsalPorts ports;
 
   std::vector<RehearsalLine> origin;
 };
@@ -177,9 +182,7 @@ class RehearsalPresenter {
   void TakeBuilt(core::Result<RehearsedPatient> built, const std::string& built_from);
   void LoadDraft();
   void ShowPorts();
-  PortPlan Plan() const;
-  void UsePlan(const PortPlan& plan);
-  void Edit(const PortPlan& before);
+  void KeepPorts();
   core::Result<std::filesystem::path> KeepPatient();
 
   std::filesystem::path folder_, patients_;
@@ -191,9 +194,7 @@ class RehearsalPresenter {
   std::optional<images::ImageSeriesInfo> series_;  // that is open
   std::optional<LabelMap> labels_;
   std::optional<RehearsedPatient> built_;
-  PortPlan proposal_;
-  std::vector<PortPlan> undo_, redo_;
-  std::optional<PortPlan> grabbed_;                // before the drag
+  PortEditor ports_;
   std::array<std::size_t, 2> contoured_ = {0, 0};  // slices of liver and gallbladder
 
   struct Request {

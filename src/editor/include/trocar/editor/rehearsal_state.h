@@ -27,6 +27,8 @@ const char* NameOf(RehearsalStep step) noexcept;
 
 enum class OrganSource : std::uint8_t { kNone, kLabels, kContours };
 
+inline constexpr double kMostTiltDeg = 30;  ///< of a table, to either side
+
 /// Where the instruments go in and how the table is tilted.
 struct PortPlan {
   std::vector<anatomy::Port> ports;

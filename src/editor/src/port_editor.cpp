@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/editor/port_editor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "trocar/anatomy/move_port.h"
+#include "trocar/core/translate.h"
+
+namespace trocar::editor {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr double kSameTilt = 0.01 * kDegree;
+constexpr std::size_t kMostUndo = 200;
+
+PortPlan PlanOf(const anatomy::Patient& patient) {
+  return {patient.ports, patient.table};
+}
+
+}  // namespace
+
+void PortEditor::Begin(const anatomy::Patient& patient) {
+  Forget();
+  proposal_ = PlanOf(patient);
+}
+
+void PortEditor::Remember(PortPlan before, const anatomy::Patient& patient) {
+  if (PlanOf(patient) == before) return;
+  undo_.push_back(std::move(before));
+  if (undo_.size() > kMostUndo) undo_.erase(undo_.begin());
+  redo_.clear();
+}
+
+core::Status PortEditor::Move(anatomy::Patient& patient, std::size_t port, double x, double y) {
+  auto moved = anatomy::MovePort(patient, patient.ports[port].use, x, y);
+  if (!moved.ok()) return moved.error();
+  PortPlan before = PlanOf(patient);
+  patient.ports[port] = std::move(*moved);
+  if (!grabbed_) Remember(std::move(before), patient);
+  return {};
+}
+
+void PortEditor::Grab(const anatomy::Patient& patient) {
+  grabbed_ = PlanOf(patient);
+}
+
+void PortEditor::Release(const anatomy::Patient& patient) {
+  if (grabbed_) Remember(*std::exchange(grabbed_, std::nullopt), patient);
+}
+
+bool PortEditor::Tilt(anatomy::Patient& patient, double head_up_deg, double right_up_deg) {
+  const auto tilt = [](double degrees) { return std::clamp(degrees, -kMostTiltDeg, kMostTiltDeg) * kDegree; };
+  const anatomy::Table table = patient.table.value_or(anatomy::Table{});
+  if (std::fabs(tilt(head_up_deg) - table.head_up) < kSameTilt &&
+      std::fabs(tilt(right_up_deg) - table.right_up) < kSameTilt)
+    return false;
+  PortPlan before = PlanOf(patient);
+  patient.table =
+      anatomy::Table{tilt(head_up_deg), tilt(right_up_deg), std::string(core::Mark("Tilted by hand")) + "."};
+  Remember(std::move(before), patient);
+  return true;
+}
+
+bool PortEditor::Exchange(std::vector<PortPlan>& from, std::vector<PortPlan>& to, anatomy::Patient& patient) {
+  if (from.empty()) return false;
+  to.push_back(PlanOf(patient));
+  Use(from.back(), patient);
+  from.pop_back();
+  return true;
+}
+
+void PortEditor::Reset(anatomy::Patient& patient) {
+  PortPlan before = PlanOf(patient);
+  Use(proposal_, patient);
+  Remember(std::move(before), patient);
+}
+
+void PortEditor::Use(const PortPlan& plan, anatomy::Patient& patient) {
+  patient.ports = plan.ports;
+  patient.table = plan.table;
+}
+
+std::optional<PortPlan> PortEditor::FindChange(const anatomy::Patient& patient) const {
+  PortPlan now = PlanOf(patient);
+  if (now == proposal_) return std::nullopt;
+  return now;
+}
+
+}  // namespace trocar::editor
