@@ -28,9 +28,9 @@ using store::Viewer;
 constexpr int kPerTrainee = 100;  // attempts
 constexpr int kGroupMembers = 20;
 constexpr int kTasks = 10, kLevels = 3;
-constexpr int kQuestions = 2000;       // of each kind
-constexpr int kLargeQuestions = 200;   // of those that look at everybody
-constexpr std::size_t kBatch = 10000;  // attempts in a transaction
+constexpr int kQuestions = 2000;         // of each kind
+constexpr int kLargeQuestions = 200;     // of those that look at everybody
+constexpr std::size_t kBatch = 100'000;  // attempts in a transaction; after each, standings are counted anew
 
 const Viewer kOwner = Viewer::Owner();
 

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "altered_state.h"
 #include "published.h"
 #include "scripted_hands.h"
 #include "task_play.h"
@@ -39,6 +40,7 @@ struct Course {
   bool is_dissected = false;      ///< there is no fat, and all fibres of the gallbladder's bed part at once
   bool swaps_hands = false;       ///< each hand does through the other's trocar what the other one would do
   bool looks_before = false;      ///< a tick before what happens and after it, as CountMoments() counts
+  const char* alteration = "";    ///< of Alterations(): each state that is saved gets its values
 };
 
 inline void PrintTo(const Course& course, std::ostream* out) {
@@ -50,7 +52,8 @@ inline std::string NameOf(const testing::TestParamInfo<Course>& info) {
          (info.param.changes_settings ? "_changes_settings" : "") +
          (info.param.has_equal_trays ? "_equal_trays" : "") + (info.param.is_dissected ? "_dissected" : "") +
          (info.param.swaps_hands ? "_swapped" : "") + (info.param.looks_before ? "_moments" : "") +
-         (info.param.from > 0 ? "_late" : "");
+         (info.param.from > 0 ? "_late" : "") +
+         (info.param.alteration[0] != 0 ? "_with_" + std::string(info.param.alteration) : "");
 }
 
 inline constexpr int kGoesOn = 240;  // ticks after a point
@@ -260,12 +263,24 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
   int events_saved = 0;
   std::map<std::size_t, std::size_t> ends;  // tick to point
   Point before;                             // of the tick before
+  std::optional<Simulation> altered;
+  Simulation::AlterField alter;
+  if (course.alteration[0] != 0) {
+    altered = std::move(*Simulation::Make(recording.model, 1));
+    alter = FindAlteration(course.alteration);
+  }
   const auto take = [&](Point& point, std::size_t tick) {
     point.tick = tick;
-    simulation.Save(point.bytes);
-    point.hash = simulation.Hash();
-    point.published = CalcPublishedHash(simulation);
-    point.patches = CalcPatchHash(simulation);
+    if (altered) {
+      simulation.SaveAltered(point.bytes, alter);
+      EXPECT_TRUE(altered->Restore(point.bytes).ok()) << course.alteration;
+    } else {
+      simulation.Save(point.bytes);
+    }
+    Simulation& saved = altered ? *altered : simulation;
+    point.hash = saved.Hash();
+    point.published = CalcPublishedHash(saved);
+    point.patches = CalcPatchHash(saved);
   };
   const auto add = [&](Point point) {
     if (!ends.emplace(point.tick + kGoesOn, recording.points.size()).second) return;

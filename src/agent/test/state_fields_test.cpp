@@ -6,8 +6,7 @@
 // neither saved nor hashed would be noticed as well, by SimulationState.GoesOnToTheSameBits, and a field that nobody reads is
 // found to be none of the state.
 //
-// With TROCAR_STATE_FIELDS_SEARCH=1 in the environment the courses look for the fields that the table knows nowhere instead, at all
-// their points; with a name or the beginning of one, for those fields.
+// With the beginning of a field's name in TROCAR_STATE_FIELDS_SEARCH the courses look for such fields instead, at all their points.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -50,21 +49,12 @@ const std::map<std::string, Effect>& EffectNames() {
 }
 
 /// state_fields.txt: a line each of course, "decides", "shows" or "keeps", and field; or of course, "scratch", field and reason;
-/// or of "same" or "nowhere", field and reason.
+/// or of "same", field and reason.
 struct Table {
   std::map<std::string, std::map<std::string, Effect>> by_course;
   std::map<std::string, Fields> scratch;  ///< by course
   Fields proved;                          ///< those of both, and of "same"
-  Fields same, unproved;
-
-  static bool IsIn(const Fields& listed, const std::string& field) {
-    return std::any_of(listed.begin(), listed.end(), [&](const std::string& one) {
-      return field.compare(0, one.size(), one) == 0 &&
-             (field.size() == one.size() || field[one.size()] == '/');
-    });
-  }
-  /// The field, or a list that it is in.
-  bool IsUnproved(const std::string& field) const { return IsIn(unproved, field); }
+  Fields same;
 
   template <typename T>
   static T Of(const std::map<std::string, T>& by_course, const std::string& course) {
@@ -77,13 +67,12 @@ void AddLine(const std::string& line, Table& table) {
   std::istringstream words(line);
   std::string first, second, third, more;
   words >> first >> second >> third >> more;
-  const bool is_everywhere = first == "nowhere" || first == "same";
-  const bool has_reason = is_everywhere || second == "scratch";
-  const std::string& field = is_everywhere ? second : third;
-  EXPECT_EQ(has_reason, is_everywhere ? !third.empty() : !more.empty()) << "its reason: " << line;
-  EXPECT_TRUE((first == "nowhere" ? table.unproved : table.proved).insert(field).second) << "twice: " << line;
-  if (first == "nowhere") return;
-  if (first == "same") {
+  const bool is_same = first == "same";
+  const bool has_reason = is_same || second == "scratch";
+  const std::string& field = is_same ? second : third;
+  EXPECT_EQ(has_reason, is_same ? !third.empty() : !more.empty()) << "its reason: " << line;
+  EXPECT_TRUE(table.proved.insert(field).second) << "twice: " << line;
+  if (is_same) {
     table.same.insert(field);
   } else if (second == "scratch") {
     table.scratch[first].insert(field);
@@ -322,15 +311,11 @@ struct Found {
 /// At how many points of a course a field is left out that the table does not expect there, or expects to be scratch.
 constexpr int kTries = 3;
 
-/// What the search is for: nothing, "1" for all that the table knows nowhere, or the beginning of a field's name.
+/// What the search is for: nothing, or the beginning of a field's name.
 struct Search {
-  const char* wanted = std::getenv("TROCAR_STATE_FIELDS_SEARCH");
-  bool IsOn() const { return wanted != nullptr; }
-  bool IsForAll() const { return IsOn() && std::string(wanted) == "1"; }
-  bool IsFor(const std::string& field, const Table& table) const {
-    const std::string beginning = wanted;
-    return IsForAll() ? table.IsUnproved(field) : field.compare(0, beginning.size(), beginning) == 0;
-  }
+  const char* beginning = std::getenv("TROCAR_STATE_FIELDS_SEARCH");
+  bool IsOn() const { return beginning != nullptr; }
+  bool IsFor(const std::string& field) const { return field.rfind(beginning, 0) == 0; }
 };
 
 /// Leaves out the fields for which a course is there, and those that nobody knows yet.
@@ -351,7 +336,7 @@ class CourseControl {
       bool is_prepared = false;
       const auto leave_out = [&](const std::string& field) {
         if (!std::exchange(is_prepared, true)) control.Prepare();
-        return control.LeaveOut(field, search_.IsOn() && !search_.IsForAll());
+        return control.LeaveOut(field, search_.IsOn() || listed_.contains(field));
       };
       for (const auto& [field, hash] : control.Saved()) {
         if (table_.same.contains(field) && !control.IsAsAtStart(field) && TriesOf(field) < kTries) {
@@ -392,12 +377,11 @@ class CourseControl {
 
   /// Whether it is to be left out at this point.
   bool IsOpen(const std::string& field) const {
-    if (search_.IsOn()) return search_.IsFor(field, table_) && EffectOf(field) < Effect::kDecides;
+    if (search_.IsOn()) return search_.IsFor(field) && EffectOf(field) < Effect::kDecides;
     if (const auto wanted = listed_.find(field); wanted != listed_.end())
       return EffectOf(field) < wanted->second;
     if (scratch_.contains(field)) return TriesOf(field) < kTries;
-    const bool is_known = table_.proved.contains(field) || table_.IsUnproved(field) ||
-                          IsGroup(field, table_.proved) || IsGroup(field, table_.unproved);
+    const bool is_known = table_.proved.contains(field) || IsGroup(field, table_.proved);
     return !is_known && TriesOf(field) < kTries && EffectOf(field) < Effect::kDecides;
   }
 
@@ -412,7 +396,7 @@ class CourseControl {
 void CheckCourse(const Course& course, const std::string& name) {
   const Table table = ReadTable();
   CourseControl control(table, name);
-  EXPECT_FALSE(control.Listed().empty() && control.Scratch().empty() && table.unproved.empty())
+  EXPECT_FALSE(control.Listed().empty() && control.Scratch().empty() && !Search().IsOn())
       << name << " is there for no field";
   const Recording recording = Record(course, ReadCourse(course));
   ASSERT_FALSE(recording.points.empty());
@@ -462,6 +446,11 @@ Course Dissected(Course course) {
   return course;
 }
 
+Course Altered(Course course, const char* alteration) {
+  course.alteration = alteration;
+  return course;
+}
+
 class StateFieldsSlow : public testing::TestWithParam<Course> {};
 TEST_P(StateFieldsSlow, AreMissed) {
   CheckCourse(GetParam(), NameOf({GetParam(), 0}));
@@ -493,15 +482,17 @@ INSTANTIATE_TEST_SUITE_P(
         Moments({"cholecystectomy", "lets_assistant_hold", 500, 8, 8}),
         Moments({"cholecystectomy", "takes_stones", 900, 4, 12, false, 300}),
         Swapped({"pattern_cut", "expert", 1600, 4, 8}),
-        Dissected({"cholecystectomy", "leaves_stones", 12'000, 16, 16, false, 1400})),
+        Dissected({"cholecystectomy", "leaves_stones", 12'000, 16, 16, false, 1400}),
+        Altered({"peg_transfer", "fumbler", 700, 2, 2}, "handed_over"),
+        Altered({"cholecystectomy", "fumbler", 300, 2, 0}, "tight_cavity"),
+        Altered({"cholecystectomy", "fumbler", 300, 2, 0}, "held_in_tight_cavity"),
+        Altered({"cholecystectomy", "fumbler", 300, 2, 0}, "bleeding_bed"),
+        Course{"cholecystectomy", "spreads_left", 700, 12, 0, false, 200},
+        Course{"cholecystectomy", "spreads_right", 700, 12, 0, false, 200},
+        Altered({"clip_and_cut", "divides_left", 608, 6, 0, false, 572, true}, "blade_beyond_duct"),
+        Altered({"cholecystectomy", "lets_assistant_hold", 500, 4, 8}, "crushed"),
+        Altered({"cholecystectomy", "takes_stones", 900, 4, 6, false, 300}, "completed")),
     NameOf);
-
-class StateFieldsWhole : public testing::TestWithParam<Course> {};
-TEST_P(StateFieldsWhole, AreMissed) {
-  CheckCourse(GetParam(), NameOf({GetParam(), 0}));
-}
-INSTANTIATE_TEST_SUITE_P(Courses, StateFieldsWhole,
-                         testing::Values(Course{"cholecystectomy", "leaves_stones", 60'000, 16, 0}), NameOf);
 
 // Every field that a scene begins with stands in the table.
 TEST(StateFieldsTable, ListsEach) {
@@ -510,9 +501,7 @@ TEST(StateFieldsTable, ListsEach) {
                            "pattern_cut", "peg_transfer", "camera_navigation_30", "wire_run"}) {
     const Simulation simulation = std::move(*Simulation::Make(ReadCourse({name, "", 0, 0}), 1));
     for (const auto& [field, hash] : simulation.HashFields())
-      EXPECT_TRUE(table.proved.contains(field) || table.IsUnproved(field) || IsGroup(field, table.proved) ||
-                  IsGroup(field, table.unproved))
-          << field << " of " << name;
+      EXPECT_TRUE(table.proved.contains(field) || IsGroup(field, table.proved)) << field << " of " << name;
   }
 }
 

@@ -56,6 +56,14 @@ class Obstacle {
   std::vector<Vec3> normals_;
 };
 
+/// The line with its corners rounded; both ends stay.
+std::vector<Vec3> Smoothed(const std::vector<Vec3>& line) {
+  std::vector<Vec3> smooth = line;
+  for (std::size_t i = 1; i + 1 < line.size(); ++i)
+    smooth[i] = 0.5 * line[i] + 0.25 * (line[i - 1] + line[i + 1]);
+  return smooth;
+}
+
 class Placer {
  public:
   Placer(const TriangleMesh& liver, const TriangleMesh& gallbladder)
@@ -102,11 +110,7 @@ class Placer {
       }
       // pushed points get a smooth line again
       constexpr int kSmoothRounds = 2;
-      for (int round = 0; round < kSmoothRounds; ++round) {
-        std::vector<Vec3> smooth = line;
-        for (int i = 1; i < count; ++i) smooth[i] = 0.5 * line[i] + 0.25 * (line[i - 1] + line[i + 1]);
-        line = std::move(smooth);
-      }
+      for (int round = 0; round < kSmoothRounds; ++round) line = Smoothed(line);
       return line;
     };
     const auto length_of = [](const std::vector<Vec3>& line) {
@@ -294,7 +298,11 @@ class DuctTemplate {
     way.push_back(beside.empty() ? junction_ : beside.front());
     const Vec3 sag = math::Normalized(kDownTheDuct - 0.3 * kLeft);
     auto cystic = placer_.Route(way, cystic_radius_, Number("cystic_duct_length") - along_length, sag);
-    if (!beside.empty()) cystic.insert(cystic.end(), beside.begin() + 1, beside.end());
+    if (!beside.empty()) {
+      cystic.insert(cystic.end(), beside.begin() + 1, beside.end());
+      constexpr int kRounds = 6;  // both turns get a radius of about 5 mm
+      for (int round = 0; round < kRounds; ++round) cystic = Smoothed(cystic);
+    }
     tubes_.push_back(MakeTubePoints(TubeRole::kCysticDuct, NameOf(OrganRole::kGallbladder),
                                     NameOf(TubeRole::kCommonBileDuct), cystic, mouth, cystic_radius_));
     tubes_.push_back(MakeTubePoints(TubeRole::kCommonHepaticDuct, NameOf(OrganRole::kLiver),

@@ -263,8 +263,11 @@ double GeneratedBody::MakeGallbladder(std::span<const Parameter> parameters) {
   radius += shrunk * (0.7 * radius - radius);
   const double neck = number("gallbladder_neck");
   const double pouch = TextOf(parameters, "hartmann_pouch") == "yes" ? number("hartmann_pouch_depth") : 0.0;
-  const auto radius_at = [&](double t) {
-    return radius * CalcGallbladderProfile(t, neck, std::min(0.3, 0.5 * pouch / radius));
+  const auto radius_at = [&](double t) { return radius * CalcGallbladderProfile(t, neck); };
+  // a pouch sags from the free wall of the infundibulum: steeply towards the duct, slowly towards the body
+  const auto sag_at = [&](double t) {
+    constexpr double kPlace = 0.13, kToDuct = 0.08, kToBody = 0.18;  // along the axis [-]
+    return pouch * std::exp(-std::pow((t - kPlace) / (t < kPlace ? kToDuct : kToBody), 2));
   };
 
   const double azimuth = number("gallbladder_azimuth") * kRadians;
@@ -291,11 +294,11 @@ double GeneratedBody::MakeGallbladder(std::span<const Parameter> parameters) {
     // the neck hangs free of the fossa and turns towards the duct
     const double free = std::pow(1 - t, 3);
     const double sagitta = length * bend / 8 * (1 - std::pow(2 * t - 1, 2));
-    // a pouch bulges away from the liver and past the duct
-    const double bulge = pouch * std::exp(-std::pow((t - 0.12) / 0.09, 2));
-    axis.points.push_back(on + (r * (1 - 2 * embedding) + 5.0 * free + 0.6 * bulge) * below + sagitta * side -
-                          0.5 * bulge * direction);
-    axis.radii.push_back(r);
+    // half of it is radius, half of it way, so that the wall on the liver's side stays; it lies over the duct
+    const double sag = sag_at(t);
+    axis.points.push_back(on + (r * (1 - 2 * embedding) + 5.0 * free + 0.5 * sag) * below + sagitta * side -
+                          0.3 * sag * direction);
+    axis.radii.push_back(r + 0.5 * sag);
   }
   const Vec3 whole = axis.points.back() - axis.points.front();
   if (TextOf(parameters, "phrygian_cap") == "yes") FoldFundus(axis);

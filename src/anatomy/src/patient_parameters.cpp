@@ -237,36 +237,24 @@ double CalcLiverVolume(const math::Vec3& size) {
 
 }  // namespace
 
-double CalcGallbladderProfile(double t, double neck, double pouch) {
-  // neck, body, fundus: knots of a smooth blend. A pouch is a wider infundibulum, then a waist before the body
-  constexpr std::size_t kMost = 7;
-  std::array<std::array<double, 2>, kMost> knots = {
+double CalcGallbladderProfile(double t, double neck) {
+  // neck, body, fundus: knots of a smooth blend
+  constexpr std::size_t kKnots = 6;
+  const std::array<std::array<double, 2>, kKnots> knots = {
       {{0.0, 0.776 * neck}, {0.14, 1.254 * neck}, {0.4, 0.84}, {0.68, 1.0}, {0.86, 0.93}, {1.0, 0.74}}};
-  std::size_t count = 6;
-  if (pouch > 0) {
-    const double infundibulum = std::max(0.56, 1.254 * neck) + 0.7 * pouch;
-    knots = {{{0.0, 0.776 * neck},
-              {0.13, infundibulum},
-              {0.28, infundibulum - pouch},
-              {0.46, 0.86},
-              {0.7, 1.0},
-              {0.86, 0.93},
-              {1.0, 0.74}}};
-    count = kMost;
-  }
   t = std::clamp(t, 0.0, 1.0);
-  for (std::size_t i = 0; i + 1 < count; ++i) {
+  for (std::size_t i = 0; i + 1 < kKnots; ++i) {
     if (t > knots[i + 1][0]) continue;
     const double h = knots[i + 1][0] - knots[i][0], part = (t - knots[i][0]) / h;
     const auto slope = [&](std::size_t k) {
-      const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, count - 1);
+      const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, kKnots - 1);
       return (knots[b][1] - knots[a][1]) / (knots[b][0] - knots[a][0]);
     };
     const double p2 = part * part, p3 = p2 * part;
     return (2 * p3 - 3 * p2 + 1) * knots[i][1] + (p3 - 2 * p2 + part) * h * slope(i) +
            (3 * p2 - 2 * p3) * knots[i + 1][1] + (p3 - p2) * h * slope(i + 1);
   }
-  return knots[count - 1][1];
+  return knots[kKnots - 1][1];
 }
 
 namespace {

@@ -249,6 +249,34 @@ TEST(GeneratePatient, TheGallbladderLiesAsInclinedAsItIsSet) {
   }
 }
 
+TEST(GeneratePatient, AHartmannPouchSagsFromTheFreeWallAlone) {
+  const auto with_pouch = [](const char* is_there) {
+    const std::vector<ParameterSetting> settings = {
+        {"hartmann_pouch", is_there}, {"hartmann_pouch_depth", "8"}, {"phrygian_cap", "no"}};
+    return *GeneratePatient(4, settings);
+  };
+  const Patient plain = with_pouch("no"), pouched = with_pouch("yes");
+  ExpectSound(pouched, "a deep pouch");
+  const meshing::NearestSurface surface(OrganOf(plain, "gallbladder").mesh);
+  const Organ& gallbladder = OrganOf(pouched, "gallbladder");
+  std::set<std::uint32_t> in_bed;
+  for (const Region& region : gallbladder.regions) {
+    if (region.name == kGallbladderBed) in_bed.insert(region.vertices.begin(), region.vertices.end());
+  }
+  ASSERT_FALSE(in_bed.empty());
+  double free_wall = 0, liver_side = 0;  // most, and mean [mm]
+  for (std::uint32_t v = 0; v < gallbladder.mesh.positions.size(); ++v) {
+    const double distance = 1e3 * surface.Find(gallbladder.mesh.positions[v]).distance;
+    if (in_bed.contains(v)) {
+      liver_side += distance / static_cast<double>(in_bed.size());
+    } else {
+      free_wall = std::max(free_wall, distance);
+    }
+  }
+  EXPECT_NEAR(free_wall, 8, 2.5);
+  EXPECT_LT(liver_side, 1.5);
+}
+
 /// Of one body twice, as docs/shapes.md has them: trocar anatomy measure out/labels
 /// assets/patients/visible-human-male/patient
 const std::map<std::string, std::pair<double, double>, std::less<>> kRealMeasures = {

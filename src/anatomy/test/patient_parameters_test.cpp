@@ -158,13 +158,6 @@ TEST(GallbladderProfile, IsNarrowAtTheNeckAndWidestInTheBody) {
   EXPECT_GT(CalcGallbladderProfile(1, kNeck), CalcGallbladderProfile(0.15, kNeck));
 }
 
-TEST(GallbladderProfile, APouchIsWiderThanTheWaistThatFollows) {
-  constexpr double kPouch = 0.2;
-  EXPECT_NEAR(CalcGallbladderProfile(0.13, kNeck, kPouch) - CalcGallbladderProfile(0.28, kNeck, kPouch),
-              kPouch, 1e-12);
-  EXPECT_GT(CalcGallbladderProfile(0.13, kNeck, kPouch), CalcGallbladderProfile(0.13, kNeck));
-}
-
 /// Measures of the Visible Human Male that are parameters: from its labels, then from contours on its photographs.
 /// trocar anatomy from-labels labels.nii.gz -o out/labels
 /// trocar anatomy measure out/labels assets/patients/visible-human-male/patient

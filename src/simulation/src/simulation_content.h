@@ -137,7 +137,8 @@ struct Simulation::Content {
   void VisitWorld(core::StateArchive& archive);
   void VisitJudgement(core::StateArchive& archive);
   void VisitState(core::StateArchive& archive);
-  void Save(std::vector<std::byte>& bytes);  // only reads, though the list of fields is the one that restores
+  // only reads, though the list of fields is the one that restores
+  void Save(std::vector<std::byte>& bytes, const AlterField& alter = {});
   core::Status Restore(core::StateArchive& archive);
 };
 

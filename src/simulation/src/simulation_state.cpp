@@ -66,9 +66,15 @@ core::Result<std::span<const std::byte>> ReadHeader(const SimulationModel& model
 
 }  // namespace
 
-void Simulation::Content::Save(std::vector<std::byte>& bytes) {
+void Simulation::Content::Save(std::vector<std::byte>& bytes, const AlterField& alter) {
   bytes.resize(sizeof(Header));
   core::StateArchive archive = core::StateArchive::ForSave(bytes);
+  std::size_t begin = bytes.size();
+  if (alter) {
+    archive.Trace([&](const std::string& field, std::uint64_t) {
+      alter(field, std::span(bytes).subspan(std::exchange(begin, bytes.size())));
+    });
+  }
   VisitState(archive);
   const auto fields = std::span<const std::byte>(bytes).subspan(sizeof(Header));
   const Header header{kMagic, kVersion, model->fingerprint, fields.size(), CalcChecksum(fields)};
@@ -164,6 +170,10 @@ void Simulation::Reset() {
 
 void Simulation::Save(std::vector<std::byte>& bytes) const {
   content_->Save(bytes);
+}
+
+void Simulation::SaveAltered(std::vector<std::byte>& bytes, const AlterField& alter) const {
+  content_->Save(bytes, alter);
 }
 
 core::Status Simulation::Restore(std::span<const std::byte> bytes) {

@@ -79,9 +79,7 @@ const std::string& TextOf(std::span<const Parameter> parameters, std::string_vie
 
 /// Radius of the gallbladder at part t of its axis, 0 at the neck and 1 at the fundus, as a share of the
 /// largest radius; round at both ends [-].
-/// \param neck   diameter of the neck, as a share of the largest [-]
-/// \param pouch  how much wider the infundibulum is than the waist that follows, as a share of the largest diameter;
-///               0: neither pouch nor waist [-]
-double CalcGallbladderProfile(double t, double neck, double pouch = 0);
+/// \param neck  diameter of the neck, as a share of the largest [-]
+double CalcGallbladderProfile(double t, double neck);
 
 }  // namespace trocar::anatomy

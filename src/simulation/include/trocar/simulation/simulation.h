@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -101,6 +102,12 @@ class Simulation {
   std::vector<std::pair<std::string, std::uint64_t>> HashFields() const;
   /// Restore for tests: leaves one field out, "world/tissue/position" for instance, which keeps its value.
   core::Status RestoreWithout(std::span<const std::byte> bytes, const std::string& field);
+  /// \param field  that has no fields of its own
+  /// \param bytes  of the field, at the end of the span; lengths of the lists that it is in may come before them
+  using AlterField = std::function<void(const std::string& field, std::span<std::byte> bytes)>;
+  /// Save for tests: a state that no hand may ever bring about.
+  /// \param alter  called with each field in turn; may change its bytes
+  void SaveAltered(std::vector<std::byte>& bytes, const AlterField& alter) const;
 
   /// Cuts out the tissue around one tool for the haptic loop, after a Step.
   /// \note Real-time safe: no allocation, lock or throw.
