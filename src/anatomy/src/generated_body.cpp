@@ -266,7 +266,7 @@ double GeneratedBody::MakeGallbladder(std::span<const Parameter> parameters) {
   const auto radius_at = [&](double t) { return radius * CalcGallbladderProfile(t, neck); };
   // a pouch sags from the free wall of the infundibulum: steeply towards the duct, slowly towards the body
   const auto sag_at = [&](double t) {
-    constexpr double kPlace = 0.13, kToDuct = 0.08, kToBody = 0.18;  // along the axis [-]
+    constexpr double kPlace = 0.09, kToDuct = 0.08, kToBody = 0.18;  // along the axis [-]
     return pouch * std::exp(-std::pow((t - kPlace) / (t < kPlace ? kToDuct : kToBody), 2));
   };
 
@@ -294,11 +294,11 @@ double GeneratedBody::MakeGallbladder(std::span<const Parameter> parameters) {
     // the neck hangs free of the fossa and turns towards the duct
     const double free = std::pow(1 - t, 3);
     const double sagitta = length * bend / 8 * (1 - std::pow(2 * t - 1, 2));
-    // half of it is radius, half of it way, so that the wall on the liver's side stays; it lies over the duct
-    const double sag = sag_at(t);
-    axis.points.push_back(on + (r * (1 - 2 * embedding) + 5.0 * free + 0.5 * sag) * below + sagitta * side -
-                          0.3 * sag * direction);
-    axis.radii.push_back(r + 0.5 * sag);
+    // as much radius as way, so that the wall on the liver's side stays; it lies over the duct
+    const double sag = sag_at(t), wider = 0.35 * sag;
+    axis.points.push_back(on + (r * (1 - 2 * embedding) + 5.0 * free + wider) * below + sagitta * side -
+                          0.6 * sag * direction);
+    axis.radii.push_back(r + wider);
   }
   const Vec3 whole = axis.points.back() - axis.points.front();
   if (TextOf(parameters, "phrygian_cap") == "yes") FoldFundus(axis);

@@ -82,7 +82,7 @@ constexpr ParameterRule kRules[] = {
     Number("gallbladder_bend", kNormal, 33, 16, 0, 75, 0, 80, "deg", "of the axis from neck to fundus",
            kWideChoice),
     Number(
-        "gallbladder_inclination", kNormal, 47, 19, 12, 66, 8, 70, "deg",
+        "gallbladder_inclination", kNormal, 47, 21, 12, 66, 8, 70, "deg",
         "of the axis below the axial plane; the visceral face follows",
         "Sanal 2016, CT: 49 +- 21 with stones, 53 +- 19 without; limits: as far as the liver's shape allows"),
     Number("gallbladder_azimuth", kNormal, 24, 10, 4, 50, 0, 60, "deg",
