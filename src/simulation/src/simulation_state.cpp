@@ -24,7 +24,7 @@ struct Header {
 };
 constexpr std::array<char, 8> kMagic{'T', 'R', 'O', 'C', 'S', 'T', 'A', 'T'};
 /// Counts up whenever a field comes, goes or changes its meaning.
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 
 std::uint64_t CalcChecksum(std::span<const std::byte> bytes) {
   core::StateHash hash;
@@ -132,6 +132,8 @@ void Simulation::Content::VisitJudgement(core::StateArchive& archive) {
   // of the last solve, for those who look
   for (tissue::OrganVolume& organ : world.conserved.organs) archive.Field("organ_volume", organ.volume);
   archive.Field("gravity", tick.gravity);
+  archive.Field("stiffness_scale", tick.load.stiffness_scale);
+  archive.Field("shape_scale", tick.load.shape_scale);
   archive.Field("residual", tick.report.residual);
   archive.Field("iterations", tick.report.iterations);
 }
@@ -144,12 +146,9 @@ core::Status Simulation::Content::Restore(core::StateArchive& archive) {
   for (std::size_t i = 0; i < world.conserved.organs.size(); ++i)
     world.good_conserved.organs[i].volume = world.conserved.organs[i].volume;
   // what is asked between ticks, the force on a hand among it, sees the load of the last one
-  const tissue::VolumeResponses& responses = world.conserved.responses;
-  tick.load = {tick.gravity - kImagingGravity,
-               responses.stiffness_scale,
-               responses.shape_scale,
-               world.touch.Contacts().springs,
-               {}};
+  tick.load.gravity = tick.gravity - kImagingGravity;
+  tick.load.contacts = world.touch.Contacts().springs;
+  tick.load.external_force = {};
   // nor is a patch for a haptic device healthy where the last tick was bad
   tick.verdict = world.guard->LastVerdict();
   // the rest of a tick's scratch is made in the next one
