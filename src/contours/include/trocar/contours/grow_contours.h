@@ -27,6 +27,7 @@ struct GrowthRequest {
   images::DisplayWindow window;  ///< that `read` shows the greys through
   bool is_hounsfield = false;    ///< the greys are CT numbers
   SliceReader read;              ///< through that window
+  bool uses_prior = true;        ///< off: without what is known of the organ's shape, for comparison
 };
 
 /// \param series     the pictures; a copy is kept
