@@ -22,9 +22,11 @@ namespace {
 using images::CtTissue;
 using math::Vec3;
 
-constexpr double kWallMm = 2.0, kDiaphragmMm = 4.0;
-constexpr double kEndMm = 5.0;  // of the gallbladder, whose middle is fundus or neck
-constexpr int kSamples = 2;     // lattice voxels in a pixel's side
+constexpr double kWallMm = 2.0, kDiaphragmMm = 3.0;
+constexpr double kVesselDepthMm = 6.0;  // of vessels below the liver's surface
+constexpr double kEndMm = 5.0;          // of the gallbladder, whose middle is fundus or neck
+constexpr const char *kDucts = "bile_ducts", *kArteries = "arteries", *kHepaticVeins = "hepatic_veins";
+constexpr int kSamples = 2;  // lattice voxels in a pixel's side
 
 constexpr std::array<CtTissue, static_cast<std::size_t>(Substance::kCount)> kTissues = {{
     CtTissue::kAir,              // gel and gas
@@ -136,9 +138,9 @@ class Map {
 
  private:
   static std::optional<CtTissue> FindTissue(const std::string& name) {
-    if (name == "bile_ducts") return CtTissue::kBile;
-    if (name == "arteries") return CtTissue::kArterialBlood;
-    if (name == "hepatic_veins") return CtTissue::kHepaticBlood;
+    if (name == kDucts) return CtTissue::kBile;
+    if (name == kArteries) return CtTissue::kArterialBlood;
+    if (name == kHepaticVeins) return CtTissue::kHepaticBlood;
     if (name == "spleen") return CtTissue::kSpleen;
     switch (roles::FindRole<NeighbourRole>(name).value_or(NeighbourRole::kOther)) {
       case NeighbourRole::kStomach:
@@ -188,10 +190,17 @@ void FillLayer(const Map& map, const PhantomBody& body, const BodyPlan& plan, in
       is_organ[at] = is_gallbladder[at] != 0 || map.IsLiver(labels[at]);
     }
   }
-  const auto depth = meshing::CalcSignedDistances(is_organ, width, height);
-  const auto gallbladder_depth = meshing::CalcSignedDistances(is_gallbladder, width, height);
+  const auto measure = [&](const std::vector<std::uint8_t>& set) {
+    const bool is_empty = std::find(set.begin(), set.end(), 1) == set.end();
+    return is_empty ? std::vector<double>(set.size(), -1e9)
+                    : meshing::CalcSignedDistances(set, width, height);
+  };
+  const auto depth = measure(is_organ), gallbladder_depth = measure(is_gallbladder);
   const auto pipes = body.FindPipes(y), veins = body.FindVeins(y);
-  const double right_part = plan.liver.min.x + 0.3 * (plan.liver.max.x - plan.liver.min.x);
+  const geometry::Box& liver = plan.liver;
+  const double right_part = liver.min.x + 0.3 * (liver.max.x - liver.min.x);
+  const double front_part = liver.min.z + 0.6 * (liver.max.z - liver.min.z);
+  const double dome = liver.max.y - 0.25 * (liver.max.y - liver.min.y);
   CtTissue* layer = &tissues.tissues[tissues.Index(0, 0, k)];
   for (int j = 0; j < height; ++j) {
     const double posterior = tissues.origin_mm[1] + j * step;
@@ -203,7 +212,8 @@ void FillLayer(const Map& map, const PhantomBody& body, const BodyPlan& plan, in
         continue;
       }
       if (is_organ[at] != 0) {
-        const bool is_vein = !map.HasVessels() && body.FindInLiver(p, veins) != Substance::kLiver;
+        const bool is_vein = !map.HasVessels() && depth[at] * step > kVesselDepthMm &&
+                             body.FindInLiver(p, veins) != Substance::kLiver;
         layer[at] = is_vein ? CtTissue::kHepaticBlood : CtTissue::kLiver;
         continue;
       }
@@ -219,11 +229,11 @@ void FillLayer(const Map& map, const PhantomBody& body, const BodyPlan& plan, in
         continue;
       }
       CtTissue tissue = kTissues[static_cast<std::size_t>(body.Find(p, pipes, away))];
-      // the diaphragm lies on the dome and on the right side
+      // the diaphragm lies on the dome, on the right side and in front
       const bool is_soft =
           tissue == CtTissue::kFat || tissue == CtTissue::kHeart || tissue == CtTissue::kLung;
-      if (is_soft && away < kDiaphragmMm && (p.y > plan.porta.y + 20 || p.x < right_part))
-        tissue = CtTissue::kMuscle;
+      const bool is_face = p.y > dome || (p.y > plan.porta.y && (p.x < right_part || p.z > front_part));
+      if (is_soft && away < kDiaphragmMm && is_face) tissue = CtTissue::kMuscle;
       layer[at] = tissue;
     }
   }
@@ -264,6 +274,15 @@ core::Result<CtPhantom> MakeCtPhantom(const images::LabelVolume& labels, const i
   if (!ct) return ct.error();
   images::LabelVolume truth = images::LabelsOn(*ct, labels);
   return CtPhantom{std::move(*ct), std::move(truth)};
+}
+
+std::vector<std::pair<std::string, int>> VisibleHumanLabels() {
+  return {{NameOf(OrganRole::kLiver), 1},
+          {NameOf(OrganRole::kGallbladder), 2},
+          {kDucts, 3},
+          {kArteries, 4},
+          {NameOf(NeighbourRole::kPortalVein), 5},
+          {kHepaticVeins, 6}};
 }
 
 core::Result<images::LabelVolume> DrawLabels(const Patient& patient, const images::Progress& progress) {

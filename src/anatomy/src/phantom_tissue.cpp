@@ -286,12 +286,12 @@ Substance PhantomBody::FindSpine(const Vec3& p, bool& is_there) const {
 }
 
 Substance PhantomBody::Find(const Vec3& place, const std::vector<Pipe>& pipes, double liver_distance) const {
+  const double depth = OutlineDepth(place);
+  if (depth < 0) return Substance::kGel;
   // nothing in a body is as even as a formula
   constexpr double kBend = 3.0, kBendLength = 34;
   const Vec3 p = place + kBend * Vec3{noise_.At(place, kBendLength), 0,
                                       noise_.At(place + Vec3{91, 57, 23}, kBendLength)};
-  const double depth = OutlineDepth(place);
-  if (depth < 0) return Substance::kGel;
   const double wall = kFatMm * (1 + 0.25 * noise_.At(p, 150)) + kMuscleMm;
   bool is_spine = false;
   const Substance spine = FindSpine(p, is_spine);

@@ -4,6 +4,9 @@
 
 #include <filesystem>
 #include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/result.h"
@@ -26,6 +29,9 @@ struct CtPhantom {
 /// \return kLabelsMismatch without liver or gallbladder, or for oblique steps; kUsage for a setting out of range; kCancelled
 core::Result<CtPhantom> MakeCtPhantom(const images::LabelVolume& labels, const images::CtSettings& settings,
                                       std::stop_token stop = {}, const images::Progress& progress = {});
+
+/// What the labels of the Visible Human's reference map are called (docs/measurements.md); the file does not say it.
+std::vector<std::pair<std::string, int>> VisibleHumanLabels();
 
 /// The organs of a patient as a label map of 0.8 x 0.8 x 1 mm, to make a phantom of.
 /// \return kPatientInvalid without liver or gallbladder
