@@ -304,6 +304,10 @@ GrowthRequest MakeGrowthRequest(const images::ImageSeries& series, const Control
   return request;
 }
 
+bool CanGrow(std::string_view organ) {
+  return FindShapePrior(roles::ConventionalRole<OrganRole>(organ)).has_value();
+}
+
 core::Result<GrownOrgan> GrowOrgan(const GrowthRequest& request, std::stop_token stop,
                                    const images::Progress& progress) {
   const Structure& structure = request.points.structures[request.structure];

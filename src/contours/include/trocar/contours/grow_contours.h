@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trocar/contours/contour_document.h"
@@ -34,6 +35,9 @@ struct GrowthRequest {
 /// \param structure  index (TROCAR_ASSERT)
 GrowthRequest MakeGrowthRequest(const images::ImageSeries& series, const ControlPoints& points, int structure,
                                 int slice, const Vec2& click);
+
+/// Whether an organ of that name can grow from a click: liver and gallbladder can.
+bool CanGrow(std::string_view organ);
 
 /// Contours of an organ, not yet in a document.
 struct GrownOrgan {
