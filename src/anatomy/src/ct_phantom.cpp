@@ -285,9 +285,10 @@ std::vector<std::pair<std::string, int>> VisibleHumanLabels() {
           {kHepaticVeins, 6}};
 }
 
-core::Result<images::LabelVolume> DrawLabels(const Patient& patient, const images::Progress& progress) {
+core::Result<images::LabelVolume> DrawLabels(const Patient& patient, const images::Progress& progress,
+                                             double pixel_mm, double slice_mm) {
   PhantomOptions options;
-  options.pixel_mm = 0.8, options.slice_mm = 1.0;
+  options.pixel_mm = pixel_mm, options.slice_mm = slice_mm;
   const auto phantom = Phantom::Make(patient, options);
   if (!phantom) return phantom.error();
   return phantom->MakeLabels(progress);

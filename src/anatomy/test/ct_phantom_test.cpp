@@ -28,7 +28,7 @@ images::CtSettings Coarse() {
 const CtPhantom& Phantom() {
   static const CtPhantom phantom = [] {
     const auto patient = GeneratePatient(1);
-    const auto labels = DrawLabels(*patient);
+    const auto labels = DrawLabels(*patient, {}, 1.6, 2.0);
     return *MakeCtPhantom(*labels, Coarse());
   }();
   return phantom;
@@ -124,27 +124,21 @@ TEST(GrowingUser, ReachesTheFiguresOnACoarsePhantom) {
     EXPECT_LE(trial.dragged, 25);
     EXPECT_LE(trial.drawn, 5);
   }
-  // control: without what is known of the organs' shape growth runs over into what has their greys
+  // control: without what is known of its shape the gallbladder runs over into what has its grey, as partial volume has
   auto other = contours::ContourWorkspace::Open({out / "slices", {}, {}, {}});
   ASSERT_TRUE(other.ok());
   contours::GrowingUser without;
   without.uses_prior = false;
   const auto worse = contours::RehearseGrowth(*other, *labels, without, 1);
   ASSERT_TRUE(worse.ok()) << worse.error().Text();
-  EXPECT_LT(worse->front().dice_grown, 0.94);
-  EXPECT_LT(worse->back().dice_grown, 0.83);
-}
-
-TEST(GrowingUser, RefusesAReferenceOfOtherImages) {
-  const test::TemporaryFolder folder;
-  ASSERT_TRUE(WriteCtPhantom(folder.Path() / "ct", Phantom()).ok());
-  auto workspace = contours::ContourWorkspace::Open({folder.Path() / "ct" / "slices", {}, {}, {}});
-  ASSERT_TRUE(workspace.ok());
+  EXPECT_LT(worse->back().dice_grown, 0.80);
+  EXPECT_LT(worse->back().dice_grown, trials->back().dice_grown - 0.05);
+  // a reference of other images judges nothing
   images::LabelVolume moved = Phantom().labels;
   moved.origin[2] += 500;
-  const auto trials = contours::RehearseGrowth(*workspace, moved, {}, 1);
-  ASSERT_FALSE(trials.ok());
-  EXPECT_EQ(trials.error().code, core::ErrorCode::kLabelsMismatch);
+  const auto refused = contours::RehearseGrowth(*workspace, moved, {}, 1);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, core::ErrorCode::kLabelsMismatch);
 }
 
 }  // namespace

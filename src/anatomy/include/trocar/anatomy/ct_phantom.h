@@ -33,9 +33,10 @@ core::Result<CtPhantom> MakeCtPhantom(const images::LabelVolume& labels, const i
 /// What the labels of the Visible Human's reference map are called (docs/measurements.md); the file does not say it.
 std::vector<std::pair<std::string, int>> VisibleHumanLabels();
 
-/// The organs of a patient as a label map of 0.8 x 0.8 x 1 mm, to make a phantom of.
+/// The organs of a patient as a label map, to make a phantom of.
 /// \return kPatientInvalid without liver or gallbladder
-core::Result<images::LabelVolume> DrawLabels(const Patient& patient, const images::Progress& progress = {});
+core::Result<images::LabelVolume> DrawLabels(const Patient& patient, const images::Progress& progress = {},
+                                             double pixel_mm = 0.8, double slice_mm = 1.0);
 
 /// Writes slices/ (a DICOM series) and labels.nrrd (the truth) into a folder.
 /// \param folder  is made; it must not exist, or be empty
