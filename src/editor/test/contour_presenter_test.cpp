@@ -232,7 +232,7 @@ class GrowingTest : public ContourPresenterTest {
     flags_.Await(is_grown_);
     presenter_->FinishGrowth();
   }
-  std::size_t Contoured() const { return presenter_->Workspace()->Document().ContouredSlices(1).size(); }
+  std::size_t Contoured() { return presenter_->Workspace()->Document().ContouredSlices(1).size(); }
 };
 
 TEST_F(GrowingTest, GrowsBesideTheWindowAsOneStep) {
