@@ -86,7 +86,7 @@ TEST_F(NamesAreStrippedSlow, FromThePatientItsAttemptsAndTheirDataSets) {
   EXPECT_EQ(test::FindLeaks(Path("written")), std::vector<std::string>());
   // control: the search goes into the recording, too
   std::ofstream(Out("attempt.trocar"), std::ios::binary | std::ios::app) << "GRUENWALD";
-  EXPECT_EQ(test::FindLeaks(Path("written")).size(), 1u);
+  EXPECT_FALSE(test::FindLeaks(Path("written")).empty());
 }
 
 }  // namespace
