@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "phantom_files.h"
 #include "trocar/anatomy/phantom.h"
 #include "trocar/core/assert.h"
 #include "trocar/core/partial_path.h"
@@ -79,10 +80,8 @@ core::Status WriteLabelVolume(const fs::path& path, const images::LabelVolume& v
   return core::WriteFile(path, text);
 }
 
-core::Status WritePhantom(const fs::path& folder, const Patient& patient, const PhantomOptions& options,
-                          const images::Progress& progress) {
-  const auto phantom = Phantom::Make(patient, options);
-  if (!phantom) return phantom.error();
+core::Status WriteNewFolder(const fs::path& folder,
+                            const std::function<core::Status(const fs::path&)>& write) {
   fs::path target = folder;
   if (!target.has_filename()) target = target.parent_path();
   std::error_code failure;
@@ -92,7 +91,7 @@ core::Status WritePhantom(const fs::path& folder, const Patient& patient, const 
   }
   const core::PartialPath part(target);
   const fs::path& partial = part.Path();
-  auto status = WriteContent(partial, *phantom, patient, progress);
+  auto status = write(partial);
   if (status) {
     // an empty folder may stand in the way
     fs::remove(target, failure);
@@ -102,6 +101,14 @@ core::Status WritePhantom(const fs::path& folder, const Patient& patient, const 
                            target.string() + ": " + failure.message() + "; check the folder and its rights"};
   }
   return status;
+}
+
+core::Status WritePhantom(const fs::path& folder, const Patient& patient, const PhantomOptions& options,
+                          const images::Progress& progress) {
+  const auto phantom = Phantom::Make(patient, options);
+  if (!phantom) return phantom.error();
+  return WriteNewFolder(
+      folder, [&](const fs::path& partial) { return WriteContent(partial, *phantom, patient, progress); });
 }
 
 }  // namespace trocar::anatomy

@@ -46,6 +46,7 @@ constexpr std::array<Look, static_cast<std::size_t>(Substance::kCount)> kLooks =
     {{62, 68, 26}, {84, 90, 40}, 0.7, 14},       // bile
     {{168, 158, 84}, {186, 176, 108}, 0.5, 4},   // duct
     {{150, 44, 36}, {170, 66, 54}, 0.5, 4},      // artery
+    {{46, 14, 20}, {66, 22, 26}, 0.6, 7},        // blood of the aorta
 }};
 
 /// Distance to the axis of a pipe and the nearest axis point [mm].
@@ -79,6 +80,21 @@ Vec3 Millimetres(const Vec3& metres) {
   return 1000.0 * metres;
 }
 
+BodyPlan PlanBody(const Patient& patient) {
+  const auto box = [&](OrganRole role) {
+    return geometry::CalcBox(patient.organs[patient.OrganOf(role)].mesh.positions);
+  };
+  const geometry::Box liver = box(OrganRole::kLiver), gallbladder = box(OrganRole::kGallbladder);
+  const Landmark* fundus = patient.LandmarkOf(LandmarkRole::kFundus);
+  const Landmark* neck = patient.LandmarkOf(LandmarkRole::kInfundibulum);
+  BodyPlan plan;
+  plan.liver = {Millimetres(liver.min), Millimetres(liver.max)};
+  plan.lowest = 1000.0 * gallbladder.min.y;
+  plan.fundus = Millimetres(fundus != nullptr ? fundus->position : gallbladder.min);
+  plan.porta = Millimetres(neck != nullptr ? neck->position : gallbladder.max);
+  return plan;
+}
+
 }  // namespace
 
 NoiseField::NoiseField(std::uint64_t seed) : values_(kLattice * kLattice * kLattice) {
@@ -107,7 +123,8 @@ double NoiseField::At(const Vec3& p, double wavelength) const {
 Tint CalcTint(Substance substance, const Vec3& p, const NoiseField& noise) {
   const Look& look = kLooks[static_cast<std::size_t>(substance)];
   // each substance has its own place in the noise
-  const Vec3 moved = p + 37.0 * static_cast<double>(substance) * Vec3{1, 0.7, 0.3};
+  const Substance place = substance == Substance::kAorticBlood ? Substance::kBlood : substance;
+  const Vec3 moved = p + 37.0 * static_cast<double>(place) * Vec3{1, 0.7, 0.3};
   const double share = std::clamp(0.5 + look.amount * 0.75 * noise.Rough(moved, look.wavelength), 0.0, 1.0);
   Tint tint;
   for (int i = 0; i < 3; ++i) tint[i] = look.base[i] + share * (look.other[i] - look.base[i]);
@@ -121,17 +138,10 @@ double PhantomBody::Ball::Distance(const Vec3& p) const {
   return slope > 0 ? length * (length - 1.0) / slope : -std::min({radii.x, radii.y, radii.z});
 }
 
-PhantomBody::PhantomBody(const Patient& patient, std::uint64_t seed) : noise_(seed) {
-  const int liver = patient.OrganOf(OrganRole::kLiver),
-            gallbladder = patient.OrganOf(OrganRole::kGallbladder);
-  liver_ = geometry::CalcBox(patient.organs[liver].mesh.positions);
-  liver_ = {Millimetres(liver_.min), Millimetres(liver_.max)};
-  const geometry::Box gallbladder_box = geometry::CalcBox(patient.organs[gallbladder].mesh.positions);
-  const Landmark* landmark = patient.LandmarkOf(LandmarkRole::kFundus);
-  const Vec3 fundus = Millimetres(landmark != nullptr ? landmark->position : gallbladder_box.min);
-  const Landmark* neck_mark = patient.LandmarkOf(LandmarkRole::kInfundibulum);
-  const Vec3 porta = Millimetres(neck_mark != nullptr ? neck_mark->position : gallbladder_box.max);
+PhantomBody::PhantomBody(const Patient& patient, std::uint64_t seed) : PhantomBody(PlanBody(patient), seed) {}
 
+PhantomBody::PhantomBody(const BodyPlan& plan, std::uint64_t seed) : noise_(seed), liver_(plan.liver) {
+  const Vec3 &fundus = plan.fundus, &porta = plan.porta;
   const double mid = midline_ = liver_.min.x + kMidlineShare * (liver_.max.x - liver_.min.x);
   const double top = liver_.max.y, bottom = liver_.min.y, back = liver_.min.z, front = liver_.max.z;
   half_width_ = std::max({160.0, mid - liver_.min.x + 32, liver_.max.x - mid + 32});
@@ -139,7 +149,7 @@ PhantomBody::PhantomBody(const Patient& patient, std::uint64_t seed) : noise_(se
   middle_z_ = 0.5 * (first + last);
   half_depth_ = 0.5 * (first - last);
   constexpr double kBlock = 14;  // of gel around the body
-  const double lowest = std::min(bottom, 1000.0 * gallbladder_box.min.y);
+  const double lowest = std::min(bottom, plan.lowest);
   extent_ = {{mid - half_width_ - kBlock, lowest - 12, last - kBlock},
              {mid + half_width_ + kBlock, top + 10, first + kBlock}};
 
@@ -182,7 +192,7 @@ PhantomBody::PhantomBody(const Patient& patient, std::uint64_t seed) : noise_(se
                     10.5,
                     1.6,
                     Substance::kVesselWall,
-                    Substance::kBlood});
+                    Substance::kAorticBlood});
   pipes_.push_back({{{mid - 19, extent_.min.y - 20, back + 14}, {mid - 22, extent_.max.y + 20, back + 22}},
                     11,
                     0.8,
@@ -276,12 +286,12 @@ Substance PhantomBody::FindSpine(const Vec3& p, bool& is_there) const {
 }
 
 Substance PhantomBody::Find(const Vec3& place, const std::vector<Pipe>& pipes, double liver_distance) const {
+  const double depth = OutlineDepth(place);
+  if (depth < 0) return Substance::kGel;
   // nothing in a body is as even as a formula
   constexpr double kBend = 3.0, kBendLength = 34;
   const Vec3 p = place + kBend * Vec3{noise_.At(place, kBendLength), 0,
                                       noise_.At(place + Vec3{91, 57, 23}, kBendLength)};
-  const double depth = OutlineDepth(place);
-  if (depth < 0) return Substance::kGel;
   const double wall = kFatMm * (1 + 0.25 * noise_.At(p, 150)) + kMuscleMm;
   bool is_spine = false;
   const Substance spine = FindSpine(p, is_spine);

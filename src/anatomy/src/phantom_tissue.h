@@ -34,6 +34,7 @@ enum class Substance {
   kBile,
   kDuct,
   kArtery,
+  kAorticBlood,
   kCount
 };
 
@@ -58,11 +59,19 @@ class NoiseField {
 /// Colour of a substance at a place, with its texture.
 Tint CalcTint(Substance substance, const math::Vec3& p, const NoiseField& noise);
 
+/// What the body is drawn around; left, cranial, anterior [mm].
+struct BodyPlan {
+  geometry::Box liver;
+  double lowest = 0;         ///< of the gallbladder
+  math::Vec3 fundus, porta;  ///< of the gallbladder: its end and its neck
+};
+
 /// Everything but liver, gallbladder and the patient's own ducts and arteries. World frame in millimetres:
 /// left, cranial, anterior.
 class PhantomBody {
  public:
   PhantomBody(const Patient& patient, std::uint64_t seed);
+  PhantomBody(const BodyPlan& plan, std::uint64_t seed);
 
   const geometry::Box& Extent() const { return extent_; }  ///< of the pictures [mm]
   const NoiseField& Noise() const { return noise_; }

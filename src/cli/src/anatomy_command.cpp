@@ -40,11 +40,7 @@ core::Status Build(const BuildArguments& arguments) {
     options.overlays = arguments.overlays.empty() ? arguments.output + "-overlays" : arguments.overlays;
   }
   ProgressBar bar("building", 1.0);
-  const core::Result<anatomy::BuildReport> report =
-      anatomy::BuildPatient(options, [&](std::string_view what, double fraction) {
-        bar.SetLabel(what);
-        bar.Show(fraction);
-      });
+  const core::Result<anatomy::BuildReport> report = anatomy::BuildPatient(options, ShownBy(bar));
   bar.Finish();
   if (!report) return report.error();
   std::fputs(anatomy::FormatReport(*report).c_str(), stdout);
@@ -57,11 +53,7 @@ core::Status Build(const BuildArguments& arguments) {
 
 core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   ProgressBar bar("building", 1.0);
-  const core::Result<anatomy::BuildReport> report =
-      anatomy::BuildPatientFromLabels(options, [&](std::string_view what, double fraction) {
-        bar.SetLabel(what);
-        bar.Show(fraction);
-      });
+  const core::Result<anatomy::BuildReport> report = anatomy::BuildPatientFromLabels(options, ShownBy(bar));
   bar.Finish();
   if (!report) return report.error();
   std::vector<std::vector<std::string>> rows = {{"organ", "slices", "triangles", "closed", "manifold",
@@ -193,6 +185,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   AddAnatomyCompleteCommand(*anatomy, outcome);
   AddAnatomyContoursCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
+  AddAnatomyGrowCommand(*anatomy, outcome);
   AddAnatomyRehearseCommand(*anatomy, outcome);
   AddAnatomyEditCommand(*anatomy, outcome);
   AddAnatomyLabelEdgesCommand(*anatomy, outcome);

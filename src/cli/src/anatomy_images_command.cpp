@@ -98,10 +98,7 @@ core::Status Show(ImagesArguments arguments) {
   }
   arguments.options.memory_bytes = static_cast<std::size_t>(arguments.memory_mb) << 20;
   ProgressBar bar("opening", 1.0);
-  const images::Progress progress = [&](std::string_view what, double fraction) {
-    bar.SetLabel(what);
-    bar.Show(fraction);
-  };
+  const images::Progress progress = ShownBy(bar);
   const auto series = images::ImageSeries::Open(arguments.path, arguments.options, progress);
   if (!series) {
     bar.Finish();

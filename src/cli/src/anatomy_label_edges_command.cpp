@@ -4,9 +4,7 @@
 #include <CLI/Formatter.hpp>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "command.h"
 #include "console.h"
@@ -21,68 +19,22 @@ struct Arguments {
   bool is_json = false;
 };
 
-std::string Format(const char* format, double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
-
-void PrintTable(const contours::LabelEdges& edges) {
-  std::vector<std::vector<std::string>> rows = {{"organ", "labels", "places", "edge seen",
-                                                 "mean distance [mm]", "median", "signed mean", "within 1 mm",
-                                                 "drawn contours [mm]"}};
-  const auto add = [&](const std::vector<contours::LabelEdgeReport>& reports, const char* labels) {
-    for (const auto& report : reports) {
-      rows.push_back({report.name, labels, std::to_string(report.places), Format("%.2f", report.seen),
-                      Format("%.2f", report.mean_mm), Format("%.2f", report.median_mm),
-                      Format("%+.2f", report.signed_mean_mm), Format("%.2f", report.within_1mm),
-                      Format("%.2f", report.drawn_mm)});
-    }
-  };
-  add(edges.as_given, "as given");
-  add(edges.shifted, "shifted");
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf("\nShifted by %+.2f mm along columns, %+.2f mm along rows, %+.2f mm along slices.\n",
-              edges.shift_mm[0], edges.shift_mm[1], edges.shift_mm[2]);
-}
-
-void PrintJson(const contours::LabelEdges& edges) {
-  const auto list = [](const std::vector<contours::LabelEdgeReport>& reports) {
-    nlohmann::json all = nlohmann::json::array();
-    for (const auto& report : reports) {
-      all.push_back({{"name", report.name},
-                     {"places", report.places},
-                     {"seen", report.seen},
-                     {"mean_mm", report.mean_mm},
-                     {"median_mm", report.median_mm},
-                     {"signed_mean_mm", report.signed_mean_mm},
-                     {"within_1mm", report.within_1mm},
-                     {"drawn_mm", report.drawn_mm}});
-    }
-    return all;
-  };
-  const nlohmann::json all = {
-      {"as_given", list(edges.as_given)}, {"shifted", list(edges.shifted)}, {"shift_mm", edges.shift_mm}};
-  std::printf("%s\n", all.dump(2).c_str());
-}
-
 core::Status Measure(const Arguments& arguments) {
   contours::LabelEdgeOptions options = arguments.options;
   options.control_points = arguments.control_points;
   options.images = arguments.images;
   options.reference = arguments.reference;
   ProgressBar bar("measuring", 1.0);
-  const auto edges = contours::MeasureLabelEdges(options, [&](std::string_view what, double fraction) {
-    bar.SetLabel(what);
-    bar.Show(fraction);
-  });
+  const auto edges = contours::MeasureLabelEdges(options, ShownBy(bar));
   bar.Finish();
   if (!edges) return edges.error();
   if (arguments.is_json) {
-    PrintJson(*edges);
-  } else {
-    PrintTable(*edges);
+    std::fputs(contours::FormatJson(*edges).c_str(), stdout);
+    return {};
   }
+  std::fputs(FormatTable(contours::Tabulate(*edges)).c_str(), stdout);
+  std::printf("\nShifted by %+.2f mm along columns, %+.2f mm along rows, %+.2f mm along slices.\n",
+              edges->shift_mm[0], edges->shift_mm[1], edges->shift_mm[2]);
   return {};
 }
 

@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "trocar/anatomy/ct_phantom.h"
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/phantom.h"
 
@@ -17,9 +18,30 @@ namespace {
 
 struct PhantomArguments {
   anatomy::PhantomOptions options;
-  std::string output, patient;
+  std::string output, patient, phase, labels;
+  double noise_hu = 12.0;
   std::vector<std::string> settings;
 };
+
+core::Status MakeCt(const PhantomArguments& arguments, const core::Result<anatomy::Patient>& patient) {
+  const auto phase = images::FindCtPhase(arguments.phase);
+  if (!phase) return core::Error{core::ErrorCode::kUsage, "--ct none, arterial or portal"};
+  ProgressBar bar("drawing", 1.0);
+  const auto labels = arguments.labels.empty() ? anatomy::DrawLabels(*patient, ShownBy(bar))
+                                               : images::ReadLabelVolume(arguments.labels);
+  if (!labels) return labels.error();
+  const anatomy::PhantomOptions& o = arguments.options;
+  const auto phantom = anatomy::MakeCtPhantom(
+      *labels, {*phase, o.pixel_mm, o.slice_mm, o.blur_px * o.pixel_mm, arguments.noise_hu, o.seed}, {},
+      ShownBy(bar));
+  if (!phantom) return phantom.error();
+  if (auto status = anatomy::WriteCtPhantom(arguments.output, *phantom, ShownBy(bar)); !status) return status;
+  bar.Finish();
+  std::printf(
+      "Wrote %s: slices/ (a CT series), labels.nrrd (the truth)\nNext: trocar anatomy contours %s/slices\n",
+      arguments.output.c_str(), arguments.output.c_str());
+  return {};
+}
 
 core::Status MakePhantom(const PhantomArguments& arguments) {
   const auto settings = ParseSettings(arguments.settings);
@@ -30,12 +52,10 @@ core::Status MakePhantom(const PhantomArguments& arguments) {
   const auto patient = arguments.patient.empty() ? anatomy::GeneratePatient(arguments.options.seed, *settings)
                                                  : anatomy::ReadPatient(arguments.patient);
   if (!patient) return patient.error();
+  if (!arguments.phase.empty()) return MakeCt(arguments, patient);
+  if (!arguments.labels.empty()) return core::Error{core::ErrorCode::kUsage, "--labels belongs to --ct"};
   ProgressBar bar("drawing", 1.0);
-  const auto status = anatomy::WritePhantom(arguments.output, *patient, arguments.options,
-                                            [&](std::string_view what, double share) {
-                                              bar.SetLabel(what);
-                                              bar.Show(share);
-                                            });
+  const auto status = anatomy::WritePhantom(arguments.output, *patient, arguments.options, ShownBy(bar));
   bar.Finish();
   if (!status) return status;
   const std::string& o = arguments.output;
@@ -52,8 +72,8 @@ core::Status MakePhantom(const PhantomArguments& arguments) {
 }  // namespace
 
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome) {
-  CLI::App* command =
-      anatomy.add_subcommand("phantom", "Draw cryosection pictures of a generated patient, with the truth");
+  CLI::App* command = anatomy.add_subcommand(
+      "phantom", "Draw cryosection pictures or a CT of a generated patient, with the truth");
   auto arguments = std::make_shared<PhantomArguments>();
   auto& options = arguments->options;
   command->add_option("--seed", options.seed, "Of the patient, the textures and the clicks")
@@ -68,12 +88,23 @@ void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome) {
   command->add_option("--patient", arguments->patient, "Draw this patient instead of a generated one")
       ->type_name("PATIENT");
   command
+      ->add_option("--ct", arguments->phase,
+                   "Draw a CT: no contrast (none), arterial or portal venous (portal) phase")
+      ->type_name("PHASE");
+  command
+      ->add_option("--labels", arguments->labels,
+                   "With --ct: draw this label map's organs, not a generated patient's")
+      ->type_name("FILE");
+  command->add_option("--noise-hu", arguments->noise_hu, "Of a CT")->capture_default_str();
+  command
       ->add_option("--noise", options.noise,
                    "Grain and uneven light: 0 none, 1 as a fair photograph, up to 5")
       ->capture_default_str();
   command->add_option("--blur", options.blur_px, "Of the lens [pixels]")->capture_default_str();
   command->add_option("--pixel-mm", options.pixel_mm, "Size of a pixel")->capture_default_str();
-  command->add_option("--slice-mm", options.slice_mm, "Distance of the slices")->capture_default_str();
+  const auto* slice =
+      command->add_option("--slice-mm", options.slice_mm, "Distance of the slices; of a CT 3 by default")
+          ->capture_default_str();
   command->add_option("--every", options.every, "Control points on every n-th slice")->capture_default_str();
   command->add_option("--points", options.points, "Control points on the largest contour of a slice")
       ->capture_default_str();
@@ -83,8 +114,12 @@ void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome) {
       "The whole chain can be tried without any data. Axial slices, columns to the left, rows to posterior.\n"
       "Example: trocar anatomy phantom --seed 7 -o out/phantom\n"
       "         trocar anatomy build out/phantom/control_points.json --images out/phantom/slices \\\n"
-      "           --reference out/phantom/labels.nrrd -o out/built");
-  command->callback([arguments, &outcome] { outcome.status = MakePhantom(*arguments); });
+      "           --reference out/phantom/labels.nrrd -o out/built\n"
+      "         trocar anatomy phantom --ct portal --seed 1 -o out/ct");
+  command->callback([arguments, slice, &outcome] {
+    if (!arguments->phase.empty() && slice->count() == 0) arguments->options.slice_mm = 3.0;
+    outcome.status = MakePhantom(*arguments);
+  });
 }
 
 }  // namespace trocar::cli

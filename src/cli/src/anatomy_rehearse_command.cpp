@@ -2,11 +2,8 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -16,82 +13,6 @@
 
 namespace trocar::cli {
 namespace {
-
-struct Spread {
-  double mean = 0, deviation = 0, least = 0, most = 0;
-};
-
-Spread CalcSpread(const contours::OrganRehearsal& organ, double (*value)(const contours::RehearsalRun&)) {
-  Spread spread;
-  const auto n = static_cast<double>(organ.runs.size());
-  for (const auto& run : organ.runs) spread.mean += value(run) / n;
-  spread.least = spread.most = value(organ.runs.front());
-  for (const auto& run : organ.runs) {
-    spread.deviation += std::pow(value(run) - spread.mean, 2);
-    spread.least = std::min(spread.least, value(run));
-    spread.most = std::max(spread.most, value(run));
-  }
-  spread.deviation = n > 1 ? std::sqrt(spread.deviation / (n - 1)) : 0.0;
-  return spread;
-}
-
-/// A measure of the table and its name in JSON.
-struct Measure {
-  const char* key;
-  double (*value)(const contours::RehearsalRun&);
-};
-
-constexpr Measure kMeasures[] = {
-    {"error_placed_mm", [](const contours::RehearsalRun& r) { return r.error_placed_mm; }},
-    {"error_adapted_mm", [](const contours::RehearsalRun& r) { return r.error_adapted_mm; }},
-    {"dice_placed", [](const contours::RehearsalRun& r) { return r.dice_placed; }},
-    {"dice_adapted", [](const contours::RehearsalRun& r) { return r.dice_adapted; }}};
-
-void PrintTable(const std::vector<contours::OrganRehearsal>& organs) {
-  std::vector<std::vector<std::string>> rows = {{"organ", "runs", "slices", "points", "inserted",
-                                                 "point error placed [mm]", "adapted [mm]", "Dice placed",
-                                                 "adapted"}};
-  for (const auto& organ : organs) {
-    std::size_t slices = 0, points = 0, inserted = 0;
-    for (const auto& run : organ.runs) slices += run.slices, points += run.points, inserted += run.inserted;
-    const std::size_t n = organ.runs.size();
-    std::vector<std::string> row = {organ.name, std::to_string(n), std::to_string(slices / n),
-                                    std::to_string(points / n), std::to_string(inserted / n)};
-    for (const Measure& measure : kMeasures) {
-      const Spread spread = CalcSpread(organ, measure.value);
-      char text[64];
-      std::snprintf(text, sizeof(text), "%.3f +- %.3f", spread.mean, spread.deviation);
-      row.push_back(text);
-    }
-    rows.push_back(std::move(row));
-  }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-}
-
-void PrintJson(const std::vector<contours::OrganRehearsal>& organs) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const auto& organ : organs) {
-    nlohmann::json entry = {{"name", organ.name}, {"runs", nlohmann::json::array()}};
-    for (const auto& run : organ.runs) {
-      nlohmann::json one = {{"seed", run.seed},
-                            {"slices", run.slices},
-                            {"points", run.points},
-                            {"inserted", run.inserted},
-                            {"notes", run.notes}};
-      for (const Measure& measure : kMeasures) one[measure.key] = measure.value(run);
-      entry["runs"].push_back(one);
-    }
-    for (const Measure& measure : kMeasures) {
-      const Spread spread = CalcSpread(organ, measure.value);
-      entry[measure.key] = {{"mean", spread.mean},
-                            {"deviation", spread.deviation},
-                            {"least", spread.least},
-                            {"most", spread.most}};
-    }
-    list.push_back(entry);
-  }
-  std::printf("%s\n", nlohmann::json{{"organs", list}}.dump(2).c_str());
-}
 
 struct Arguments {
   contours::RehearsalOptions options;
@@ -108,17 +29,12 @@ core::Status Rehearse(const Arguments& arguments) {
   options.clicks.points = {arguments.points.front(), arguments.points.back()};
   if (!arguments.overlays.empty()) options.overlays = arguments.overlays;
   ProgressBar bar("rehearsing", 1.0);
-  const auto organs = contours::RehearseContours(options, [&](std::string_view what, double fraction) {
-    bar.SetLabel(what);
-    bar.Show(fraction);
-  });
+  const auto organs = contours::RehearseContours(options, ShownBy(bar));
   bar.Finish();
   if (!organs) return organs.error();
-  if (arguments.is_json) {
-    PrintJson(*organs);
-  } else {
-    PrintTable(*organs);
-  }
+  std::fputs(arguments.is_json ? contours::FormatJson(*organs).c_str()
+                               : FormatTable(contours::Tabulate(*organs)).c_str(),
+             stdout);
   return {};
 }
 

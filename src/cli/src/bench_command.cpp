@@ -108,6 +108,8 @@ void AddBenchCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--url", arguments->options.url,
                    "An empty PostgreSQL database for the store (postgresql://...)")
       ->type_name("URL");
+  command->add_option("--labels", arguments->options.labels, "Label map of liver and gallbladder for growth")
+      ->type_name("FILE");
   command->add_flag("--json", arguments->is_json, "Machine-readable: suite, machine, cases, ratios");
   command->footer(
       "A case whose answer is wrong ends the suite with E-BEN-001 and exit status 1.\n"

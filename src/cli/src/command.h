@@ -48,6 +48,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::vector<std::string>& texts);
 /// Below `trocar anatomy`.
 void AddAnatomyGenerateCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyGrowCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyCompleteCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome);

@@ -296,12 +296,16 @@ std::vector<Vec2> ChooseFewPoints(const std::vector<Vec2>& outline, double toler
 GrowthRequest MakeGrowthRequest(const images::ImageSeries& series, const ControlPoints& points, int structure,
                                 int slice, const Vec2& click) {
   TROCAR_ASSERT(structure >= 0 && structure < static_cast<int>(points.structures.size()));
-  GrowthRequest request{points, structure, slice, click, series.Info().slice_numbers, {}, false, {}};
+  GrowthRequest request{points, structure, slice, click, series.Info().slice_numbers, {}, false, {}, true};
   const images::ImageSeriesInfo& info = series.Info();
   request.is_hounsfield = !info.is_color && info.grey_range[0] < kCtLow && info.grey_range[1] > kCtHigh;
   request.window = request.is_hounsfield ? images::DisplayWindow{kCtCentre, kCtWidth} : info.suggested_window;
   request.read = [series, window = request.window](int number) { return series.ReadSlice(number, window); };
   return request;
+}
+
+bool CanGrow(std::string_view organ) {
+  return FindShapePrior(roles::ConventionalRole<OrganRole>(organ)).has_value();
 }
 
 core::Result<GrownOrgan> GrowOrgan(const GrowthRequest& request, std::stop_token stop,
@@ -330,6 +334,7 @@ core::Result<GrownOrgan> GrowOrgan(const GrowthRequest& request, std::stop_token
                                    layer};
   GrowthSettings settings;
   settings.prior = *prior;
+  settings.uses_prior = request.uses_prior;
   settings.stop = stop;
   if (request.is_hounsfield) {
     for (int i = 0; i < 2; ++i)

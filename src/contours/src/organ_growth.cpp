@@ -29,7 +29,7 @@ constexpr double kBlack = 3, kWhite = 252;  // [grey levels]
 constexpr double kVesselReaches = 5.0;      // vessels differ from the organ by at most so many reaches
 constexpr int kRounds = 12;                 // of the border
 constexpr double kBorderMm = 1.2;           // deviation of the Gaussian that keeps the border short
-constexpr double kBesideMm = 3.0;    // deviation of the window in which a border's outer greys are taken
+constexpr double kBesideMm = 1.5;    // deviation of the window in which a border's outer greys are taken
 constexpr double kDataWeight = 0.6;  // of the greys against the border's length
 constexpr double kCubicMmPerMl = 1000.0;
 
@@ -436,6 +436,7 @@ class Growth {
     region = FindPart(region, at_, start);
     if (!settings_.uses_prior) return;
     FillHoles(region, at_);
+    TakeTipsOff(region, start);
     if (settings_.prior.wall_mm <= 0) return;
     // the border lies half a voxel beyond the centres
     const float wall = static_cast<float>(settings_.prior.wall_mm + 0.25 * (at_.step[0] + at_.step[1]));
@@ -443,6 +444,20 @@ class Growth {
     at_.ForVoxels([&](std::size_t i) {
       if (away[i] <= wall && (blocked_.empty() || blocked_[i] == 0)) region[i] = 1;
     });
+  }
+
+  /// What partial volume made alike: between bright and dark it has the grey of what lies in between.
+  void TakeTipsOff(Flags& region, std::size_t start) const {
+    const float tip = static_cast<float>(settings_.prior.tip_mm);
+    if (tip <= 0) return;
+    const auto depth = CalcDistances(Invert(region), at_.size, at_.step);
+    const Flags thick = Where(depth, at_, [tip](float d) { return d > tip; });
+    const auto away = CalcDistances(thick, at_.size, at_.step);
+    Flags blunt(region.size());
+    at_.ForVoxels([&](std::size_t i) { blunt[i] = region[i] != 0 && away[i] <= tip ? 1 : 0; });
+    // an organ that is thin all over stays as it is
+    Flags part = FindPart(blunt, at_, start);
+    if (part[start] != 0) region = std::move(part);
   }
 
   core::Status CheckSize(const GrownRegion& grown) const {
@@ -519,12 +534,12 @@ std::optional<ShapePrior> FindShapePrior(roles::OrganRole organ) {
   ShapePrior prior;
   if (organ == roles::OrganRole::kLiver) {
     // a liver measures 1.0 to 2.5 L; diseased ones are larger or smaller
-    prior = {6.0, 5.0, 6.0, 5.0, 0.0, 400, 4500, {320, 260, 320}, {-20, 260}};
+    prior = {6.0, 5.0, 6.0, 5.0, 2.0, 0.0, 400, 4500, {320, 260, 320}, {-20, 260}};
     return prior;
   }
   if (organ == roles::OrganRole::kGallbladder) {
     // 7 to 10 cm long, 3 to 4 cm across, 30 to 50 mL; a hydrops is several times that. The wall measures 2 to 3 mm.
-    prior = {3.0, 2.2, 2.0, 3.0, 2.0, 3, 400, {170, 170, 170}, {-30, 75}};
+    prior = {3.0, 2.2, 2.0, 3.0, 2.2, 2.0, 3, 400, {170, 170, 170}, {-30, 75}};
     return prior;
   }
   return std::nullopt;

@@ -135,6 +135,39 @@ TEST(GrowRegion, CutsThinBridgesByItsPriorAlone) {
   EXPECT_LT(Dice(joined, leaked->inside, a), 0.75);
 }
 
+// the diaphragm: between organ and fat in its grey, and no thicker than two or three voxels
+TEST(GrowRegion, KeepsAThinLayerOut) {
+  const Vec3 centre{35, 35, 42};
+  const Distance all = [](const Vec3&) { return -1.0; }, organ = Ball(centre, 21);
+  const GreyVolume volume = Draw({{all, 30}, {Ball(centre, 24.5), 122}, {organ, kOrgan}}, 4);
+  const auto grown = GrowRegion(volume, VoxelAt(centre), Settings());
+  ASSERT_TRUE(grown.ok()) << grown.error().Text();
+  EXPECT_GT(Dice(volume, grown->inside, organ), 0.97);
+  // control: the border is that of the organ, not of the layer around it
+  EXPECT_LT(Dice(volume, grown->inside, Ball(centre, 24.5)), 0.85);
+}
+
+// a thin plate of the organ's grey, as partial volume makes between bright and dark
+TEST(GrowRegion, TakesThinTipsOff) {
+  const Vec3 centre{35, 35, 42};
+  const Distance ball = Ball(centre, 18);
+  const Distance plate = [](const Vec3& p) {
+    return p.x > 35 && p.x < 60 && std::fabs(p.y - 35) < 1.2 && std::fabs(p.z - 42) < 10 ? -1.0 : 1.0;
+  };
+  const GreyVolume volume = Draw({{ball, kOrgan}, {plate, kOrgan}}, 0);
+  const std::size_t on_plate = volume.Index(VoxelAt({56, 35, 42})[0], 50, 14);
+  GrowthSettings settings = Settings();
+  settings.prior.tip_mm = 2;
+  const auto blunt = GrowRegion(volume, VoxelAt(centre), settings);
+  ASSERT_TRUE(blunt.ok()) << blunt.error().Text();
+  EXPECT_EQ(blunt->inside[on_plate], 0);
+  EXPECT_GT(Dice(volume, blunt->inside, ball), 0.97);
+  settings.prior.tip_mm = 0;
+  const auto sharp = GrowRegion(volume, VoxelAt(centre), settings);
+  ASSERT_TRUE(sharp.ok()) << sharp.error().Text();
+  EXPECT_EQ(sharp->inside[on_plate], 1) << "the control has no tip";
+}
+
 TEST(GrowRegion, SaysWhatIsWrongWithAClick) {
   const Vec3 centre{35, 35, 42};
   const auto refusal = [&](const GreyVolume& volume, const Vec3& click, const GrowthSettings& settings) {

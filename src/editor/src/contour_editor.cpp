@@ -53,6 +53,16 @@ void ContourEditor::SetSliceStep(int step) {
   slice_step_ = std::clamp(step, 1, 50);
 }
 
+void ContourEditor::SetPointing(bool is_on) {
+  Release();
+  is_pointing_ = is_on;
+}
+
+void ContourEditor::PointTo(const Vec2& place) {
+  is_pointing_ = false;
+  if (on_place) on_place(place);
+}
+
 void ContourEditor::EmitError(const core::Status& status) {
   if (!status.ok() && on_error) on_error(status.error());
 }
@@ -120,6 +130,7 @@ void ContourEditor::Press(const Vec2& at, bool is_double) {
   Release();
   const Vec2 p = ToPicture(view, size, at);
   pointer_ = p;
+  if (is_pointing_) return PointTo(p);
   auto& document = workspace_->Document();
   const auto& open = Here().open;
   if (!open.empty()) {
@@ -186,6 +197,8 @@ std::vector<Vec2> ContourEditor::RubberLine() {
 }
 
 void ContourEditor::CloseContour() {
+  if (is_pointing_)
+    return PointTo(pointer_.value_or(ToPicture(view, size, {0.5 * size.width, 0.5 * size.height})));
   auto& document = workspace_->Document();
   document.BeginGesture();
   // the edge is followed back to the first point too
@@ -258,10 +271,12 @@ void ContourEditor::GoToContoured(bool is_last) {
   if (!contoured.empty()) SetSlice(is_last ? contoured.back() : contoured.front());
 }
 
-/// Gives up the drag, the choice or the open contour, in this order.
+/// Gives up pointing, the drag, the choice or the open contour, in this order.
 void ContourEditor::Cancel() {
   auto& document = workspace_->Document();
-  if (is_dragging_) {
+  if (is_pointing_) {
+    is_pointing_ = false;
+  } else if (is_dragging_) {
     is_dragging_ = false;
     document.CancelGesture();
     choice_.reset();

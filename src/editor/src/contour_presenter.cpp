@@ -24,9 +24,11 @@ ContourPresenter::ContourPresenter(const ContourOptions& options, std::filesyste
       screen_(&screen),
       wakes_(std::move(wakes)),
       loading_(wakes_.on_loaded),
-      building_(wakes_.on_built) {}
+      building_(wakes_.on_built),
+      growing_(wakes_.on_grown) {}
 
 ContourPresenter::~ContourPresenter() {
+  growth_stop_.request_stop();
   surfaces_.reset();
 }
 
@@ -83,6 +85,8 @@ void ContourPresenter::OpeningFailed(const core::Error& error) {
 
 /// Ends the contours that are shown.
 void ContourPresenter::Drop() {
+  growth_stop_.request_stop();
+  is_growth_void_ = growing_.IsRunning();
   screen_->UseEditor(nullptr);
   surfaces_.reset();
   prefetcher_.reset();
@@ -103,6 +107,7 @@ void ContourPresenter::UseWorkspace(contours::ContourWorkspace workspace) {
     Report(error);
   };
   editor_->on_event = [this](const std::string& text) { ShowHint(text); };
+  editor_->on_place = [this](const contours::Vec2& place) { StartGrowth(place); };
   prefetcher_ = std::make_unique<contours::SlicePrefetcher>(workspace_->Store());
   surfaces_ = std::make_unique<SurfaceUpdates>(*workspace_, wakes_.on_surfaces);
   screen_->UseEditor(editor_.get());
@@ -190,7 +195,7 @@ bool ContourPresenter::Meets(ContourNeeds needs) const {
     case ContourNeeds::kReference:
       return is_open && workspace_->HasReference();
     case ContourNeeds::kNoBuild:
-      return is_open && !building_.IsRunning();
+      return is_open && !building_.IsRunning() && !growing_.IsRunning();
   }
   return false;
 }
@@ -221,8 +226,9 @@ void ContourPresenter::Do(ContourAction action) {
   const ContourNeeds needs = FindNeeds(action);
   const bool is_editors = needs == ContourNeeds::kUndo || needs == ContourNeeds::kRedo;
   if (!Meets(needs) && !(is_editors && editor_ != nullptr)) return Refresh();
-  // Esc closes the help first, and is the editor's otherwise
+  // Esc closes the help first, then ends growing, and is the editor's otherwise
   const bool is_mine = action != ContourAction::kCancel || page_.is_help_open;
+  if (!is_mine && growing_.IsRunning()) return Stop();
   if (const Handler* handler = gui::FindHandler(Handlers(), action); handler != nullptr && is_mine) {
     handler->run(*this);
     return Refresh();
@@ -258,6 +264,10 @@ std::span<const ContourPresenter::Handler> ContourPresenter::Handlers() noexcept
        [](const Self& self) { return self.editor_ != nullptr && !self.editor_->IsScissors(); }},
       {ContourAction::kScissorsMode, [](Self& self) { self.editor_->SetScissors(true); },
        [](const Self& self) { return self.editor_ != nullptr && self.editor_->IsScissors(); }},
+      {ContourAction::kGrowMode, [](Self& self) { self.ToggleGrowMode(); },
+       [](const Self& self) {
+         return self.editor_ != nullptr && (self.editor_->IsPointing() || self.IsGrowing());
+       }},
       // the window's own
       {ContourAction::kToggleFullscreen,
        [](Self& self) { self.screen_->DoInWindow(ContourAction::kToggleFullscreen); }},
@@ -395,8 +405,8 @@ void ContourPresenter::StartBuild(const std::filesystem::path& folder) {
   Refresh();
 }
 
-void ContourPresenter::StopBuild() {
-  build_stop_.request_stop();
+void ContourPresenter::Stop() {
+  (page_.is_growing ? growth_stop_ : build_stop_).request_stop();
   page_.is_stopping = true;
   Refresh();
 }
@@ -417,6 +427,64 @@ void ContourPresenter::FinishBuild() {
     }
     text.back() = '.';
     screen_->ShowNotice(core::TranslateWith("{1} Check it with: trocar anatomy check", {text}));
+  }
+  Refresh();
+}
+
+// growing
+
+void ContourPresenter::ToggleGrowMode() {
+  editor_->SetPointing(!editor_->IsPointing());
+  if (!editor_->IsPointing()) return ShowHint("");
+  const auto& structures = workspace_->Document().Points().structures;
+  const std::string organ = structures.empty() ? std::string() : structures[editor_->Structure()].name;
+  if (!contours::CanGrow(organ)) {
+    editor_->SetPointing(false);
+    return ShowHint(
+        core::Translate(
+            "Liver and gallbladder can grow from a click; choose one of them in the list of organs"),
+        true);
+  }
+  ShowHint(core::TranslateWith(
+      "Click into the middle of the {1}, away from its border and from vessels; Esc gives up",
+      {core::Translate(organ)}));
+}
+
+void ContourPresenter::StartGrowth(const contours::Vec2& place) {
+  if (growing_.IsRunning()) return;
+  growth_stop_ = {};
+  is_growth_void_ = false;
+  page_.is_busy = page_.is_growing = true;
+  page_.is_stopping = false;
+  page_.fraction = 0;
+  growing_.Start([this, stop = growth_stop_.get_token(),
+                  request = workspace_->MakeGrowthRequest(editor_->Structure(), editor_->Slice(), place)] {
+    return contours::GrowOrgan(request, stop, [this](std::string_view what, double fraction) {
+      progress_.Set(what, fraction);
+      wakes_.on_progress();
+    });
+  });
+  ShowHint(core::Translate("The organ grows ... Esc gives it up"));
+}
+
+void ContourPresenter::FinishGrowth() {
+  const auto grown = growing_.Take();
+  page_.is_busy = page_.is_growing = false;
+  if (is_growth_void_) return Refresh();
+  const core::Status status =
+      grown.ok() ? contours::ApplyGrowth(workspace_->Document(), *grown) : core::Status(grown.error());
+  if (!status.ok() && status.error().code == core::ErrorCode::kCancelled) {
+    ShowHint(core::Translate("Growing was given up; nothing has changed"));
+  } else if (!status.ok()) {
+    editor_->on_error(status.error());
+  } else {
+    editor_->Choose({});
+    OnEdited();
+    ShowHint(core::TranslateWith(
+        "The {1} grew: {2} mL, {3}. Look through them, and drag the points that lie wrong; Ctrl+Z takes it "
+        "back.",
+        {core::Translate(grown->name), std::to_string(static_cast<int>(grown->volume_ml + 0.5)),
+         core::TranslateCount("{1} slice", "{1} slices", grown->slices.size())}));
   }
   Refresh();
 }

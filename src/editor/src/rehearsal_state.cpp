@@ -3,6 +3,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
@@ -143,8 +144,20 @@ core::Status SaveRehearsal(const std::filesystem::path& file, const RehearsalSta
   if (state.gallbladder != 0) json["gallbladder_label"] = state.gallbladder;
   if (!state.notes.empty()) json["notes"] = state.notes;
   if (state.plan) json["plan"] = WritePlan(*state.plan);
-  return core::WriteFile(file,
-                         json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  // paths of images often name a person: nobody else may look into the folder, from before it is written
+  namespace fs = std::filesystem;
+  std::error_code failure;
+  fs::create_directories(file.parent_path(), failure);
+  if (!failure) fs::permissions(file.parent_path(), fs::perms::owner_all, failure);
+  if (failure) {
+    return core::Error{
+        core::ErrorCode::kFileUnwritable,
+        file.parent_path().string() + ": " + failure.message() + "; check the folder and its rights"};
+  }
+  auto written = core::WriteFile(
+      file, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  if (written) fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write, failure);
+  return written;
 }
 
 }  // namespace trocar::editor

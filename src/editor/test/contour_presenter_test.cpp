@@ -62,7 +62,8 @@ class ContourPresenterTest : public testing::Test {
 
   void Begin() {
     presenter_.emplace(options_, folder_.Path() / "user", screen_,
-                       ContourWakes{flags_.Raise(is_loaded_), flags_.Raise(is_built_), [] {}, [] {}});
+                       ContourWakes{flags_.Raise(is_loaded_), flags_.Raise(is_built_), [] {}, [] {},
+                                    flags_.Raise(is_grown_)});
     presenter_->Start();
   }
   void Load() {
@@ -87,8 +88,8 @@ class ContourPresenterTest : public testing::Test {
   ContourOptions options_;
   FakeScreen screen_;
   AwaitedFlags flags_;
-  bool is_loaded_ = false, is_built_ = false;  // raised by flags_
-  std::optional<ContourPresenter> presenter_;  // ends before what it uses
+  bool is_loaded_ = false, is_built_ = false, is_grown_ = false;  // raised by flags_
+  std::optional<ContourPresenter> presenter_;                     // ends before what it uses
 };
 
 TEST_F(ContourPresenterTest, OpensBesideTheWindow) {
@@ -205,12 +206,109 @@ TEST_F(ContourPresenterTest, BuildsBesideTheWindowAndCanGiveUp) {
   EXPECT_TRUE(screen_.page.is_building);
   EXPECT_FALSE(presenter_->IsEnabled(ContourAction::kBuild));
   EXPECT_TRUE(presenter_->OnClose()) << "the build is not lost without a question";
-  presenter_->StopBuild();
+  presenter_->Stop();
   EXPECT_TRUE(screen_.page.is_stopping);
   flags_.Await(is_built_);
   presenter_->FinishBuild();
   EXPECT_FALSE(screen_.page.is_building);
   EXPECT_TRUE(presenter_->IsEnabled(ContourAction::kBuild));
+}
+
+/// The disc is a gallbladder of 7 mL.
+class GrowingTest : public ContourPresenterTest {
+ protected:
+  void OpenDiscFor(int structure) {
+    Open();
+    screen_.editor->size = {120, 100};
+    FitPicture(screen_.editor->view, screen_.editor->size, 120, 100);
+    screen_.editor->ChooseStructure(structure);
+  }
+  void Click(const Vec2& pixel) {
+    ContourEditor& editor = *screen_.editor;
+    editor.Press(ToCanvas(editor.view, editor.size, pixel), false);
+    presenter_->OnEdited();
+  }
+  void Finish() {
+    flags_.Await(is_grown_);
+    presenter_->FinishGrowth();
+  }
+  std::size_t Contoured() { return presenter_->Workspace()->Document().ContouredSlices(1).size(); }
+};
+
+TEST_F(GrowingTest, GrowsBesideTheWindowAsOneStep) {
+  OpenDiscFor(1);
+  presenter_->Do(ContourAction::kGrowMode);
+  EXPECT_TRUE(screen_.editor->IsPointing());
+  EXPECT_NE(screen_.page.hint.find("gallbladder"), std::string::npos) << screen_.page.hint;
+  Click({60, 50});
+  EXPECT_FALSE(screen_.editor->IsPointing()) << "one click, one organ";
+  EXPECT_TRUE(screen_.page.is_growing);
+  EXPECT_TRUE(screen_.page.is_busy);
+  EXPECT_FALSE(presenter_->IsEnabled(ContourAction::kGrowMode));
+  EXPECT_FALSE(presenter_->IsEnabled(ContourAction::kBuild));
+  EXPECT_TRUE(screen_.editor->Here().open.empty()) << "the click has drawn a point";
+  Finish();
+  EXPECT_FALSE(screen_.page.is_growing);
+  EXPECT_FALSE(screen_.page.is_busy);
+  EXPECT_FALSE(screen_.page.is_hint_warning) << screen_.page.hint;
+  EXPECT_NE(screen_.page.hint.find("mL"), std::string::npos) << screen_.page.hint;
+  EXPECT_GE(Contoured(), 3u);
+  presenter_->Do(ContourAction::kUndo);
+  EXPECT_EQ(Contoured(), 0u);
+  presenter_->Do(ContourAction::kRedo);
+  EXPECT_GE(Contoured(), 3u);
+}
+
+TEST_F(GrowingTest, GrowsByKeysAlone) {
+  OpenDiscFor(1);
+  presenter_->Do(ContourAction::kGrowMode);
+  presenter_->Do(ContourAction::kCloseContour);  // Enter: the middle of the picture
+  ASSERT_TRUE(presenter_->IsGrowing());
+  Finish();
+  EXPECT_GE(Contoured(), 3u) << screen_.page.hint;
+}
+
+TEST_F(GrowingTest, SaysWhatIsWrongWithAClickAndWhatToDo) {
+  OpenDiscFor(1);
+  presenter_->Do(ContourAction::kGrowMode);
+  Click({89, 50});  // the border
+  Finish();
+  EXPECT_TRUE(screen_.page.is_hint_warning);
+  EXPECT_NE(screen_.page.hint.find("click"), std::string::npos) << screen_.page.hint;
+  EXPECT_EQ(Contoured(), 0u);
+  EXPECT_FALSE(presenter_->IsEnabled(ContourAction::kUndo));
+  // an organ that does not grow
+  ASSERT_TRUE(presenter_->Workspace()->Document().AddStructure("spleen", 100).ok());
+  screen_.editor->ChooseStructure(2);
+  presenter_->Do(ContourAction::kGrowMode);
+  EXPECT_FALSE(screen_.editor->IsPointing());
+  EXPECT_TRUE(screen_.page.is_hint_warning);
+}
+
+TEST_F(GrowingTest, EscapeGivesUpPointingAndGrowing) {
+  OpenDiscFor(1);
+  presenter_->Do(ContourAction::kGrowMode);
+  presenter_->Do(ContourAction::kCancel);
+  EXPECT_FALSE(screen_.editor->IsPointing());
+  presenter_->Do(ContourAction::kGrowMode);
+  Click({60, 50});
+  ASSERT_TRUE(presenter_->IsGrowing());
+  presenter_->Do(ContourAction::kCancel);
+  EXPECT_TRUE(screen_.page.is_stopping);
+  Finish();
+  EXPECT_EQ(Contoured(), 0u);
+  EXPECT_NE(screen_.page.hint.find("given up"), std::string::npos) << screen_.page.hint;
+}
+
+TEST_F(GrowingTest, WhatIsOpenedMeanwhileKeepsItsContours) {
+  OpenDiscFor(1);
+  presenter_->Do(ContourAction::kGrowMode);
+  Click({60, 50});
+  presenter_->OpenWith(DiscSeries());
+  Load();
+  Finish();
+  EXPECT_EQ(Contoured(), 0u);
+  EXPECT_FALSE(presenter_->Workspace()->Document().IsDirty());
 }
 
 TEST_F(ContourPresenterTest, ShowsPartsByName) {

@@ -434,6 +434,16 @@ TEST_F(RehearsalTest, ASecondWindowLeavesItToTheFirst) {
   EXPECT_FALSE(second.IsBusy());
 }
 
+// it holds the path of the images, and a folder is often called after a person
+TEST_F(RehearsalTest, NobodyElseMayReadWhereTheImagesLie) {
+  fs::permissions(Kept(), fs::perms::owner_all | fs::perms::group_read | fs::perms::others_read);
+  ChooseSlices();
+  const auto modes = [](const fs::path& path) { return fs::status(path).permissions() & fs::perms::all; };
+  ASSERT_TRUE(fs::exists(Kept() / "rehearsal.json"));
+  EXPECT_EQ(modes(Kept() / "rehearsal.json"), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(modes(Kept()), fs::perms::owner_all);
+}
+
 TEST_F(RehearsalTest, ABrokenFileOfItsStateIsPutAside) {
   Close();
   ASSERT_TRUE(core::WriteFile(Kept() / "rehearsal.json", "{").ok());

@@ -47,7 +47,7 @@ ContourPane::ContourPane(const ContourOptions& options, gui::Tips& tips, Contour
   presenter_ = std::make_unique<ContourPresenter>(
       options, Glib::get_user_data_dir(), static_cast<ContourScreen&>(*this),
       ContourWakes{[this] { loaded_.emit(); }, [this] { built_.emit(); }, [this] { progressed_.emit(); },
-                   [this] { surfaces_changed_.emit(); }});
+                   [this] { surfaces_changed_.emit(); }, [this] { grown_.emit(); }});
   MakeRoutes();
 }
 
@@ -132,11 +132,11 @@ void ContourPane::MakeStatus(Gtk::Box& status) {
   place_.add_css_class("numbers");
   busy_.set_valign(Gtk::Align::CENTER);
   busy_.set_visible(false);
-  stop_build_.set_visible(false);
-  stop_build_.add_css_class("small");
-  tips_.Set(stop_build_, core::Translate("Give up the patient that is being built; nothing is written"));
+  stop_.set_visible(false);
+  stop_.add_css_class("small");
+  tips_.Set(stop_, core::Translate("Give up what is being made; nothing is changed or written"));
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&series_text_), static_cast<Gtk::Widget*>(&place_),
-                              static_cast<Gtk::Widget*>(&busy_), static_cast<Gtk::Widget*>(&stop_build_),
+                              static_cast<Gtk::Widget*>(&busy_), static_cast<Gtk::Widget*>(&stop_),
                               static_cast<Gtk::Widget*>(&state_)})
     status.append(*widget);
 }
@@ -166,9 +166,10 @@ void ContourPane::MakeRoutes() {
       [this](const images::ImageSeriesOptions& series) { presenter_->OpenWith(series); });
   loaded_.connect([this] { presenter_->FinishLoading(); });
   built_.connect([this] { presenter_->FinishBuild(); });
+  grown_.connect([this] { presenter_->FinishGrowth(); });
   progressed_.connect([this] { presenter_->ShowProgress(); });
   surfaces_changed_.connect([this] { presenter_->TakeSurfaces(); });
-  stop_build_.signal_clicked().connect([this] { presenter_->StopBuild(); });
+  stop_.signal_clicked().connect([this] { presenter_->Stop(); });
 }
 
 void ContourPane::Show(const ContourPage& page) {
@@ -179,8 +180,8 @@ void ContourPane::Show(const ContourPage& page) {
   gui::SetText(state_, page.state);
   busy_.set_visible(page.is_busy);
   busy_.set_fraction(page.fraction);
-  stop_build_.set_visible(page.is_building);
-  stop_build_.set_sensitive(!page.is_stopping);
+  stop_.set_visible(page.is_building || page.is_growing);
+  stop_.set_sensitive(!page.is_stopping);
   panel_.set_sensitive(page.is_document_open);
   PaintOptions& options = canvas_.Options();
   options.has_points = page.has_points;

@@ -118,7 +118,7 @@ core::Status ContourRun::DoStep(const ScriptStep& step) {
     }
     at_.presenter.StartBuild(step.words[0]);
   } else if (step.verb == "stop-build") {
-    at_.presenter.StopBuild();
+    at_.presenter.Stop();
   } else if (step.verb == "sizes") {
     return core::Error{core::ErrorCode::kScriptInvalid, "the pictures say their sizes, or the options do"};
   }

@@ -78,4 +78,9 @@ struct RehearsalOptions {
 core::Result<std::vector<OrganRehearsal>> RehearseContours(const RehearsalOptions& options,
                                                            const images::Progress& progress = {});
 
+/// Means and deviations over the runs, a row an organ below a row of headings; every organ has a run.
+std::vector<std::vector<std::string>> Tabulate(const std::vector<OrganRehearsal>& organs);
+/// Every run, and the spread of its measures.
+std::string FormatJson(const std::vector<OrganRehearsal>& organs);
+
 }  // namespace trocar::contours

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trocar/contours/contour_document.h"
@@ -27,12 +28,16 @@ struct GrowthRequest {
   images::DisplayWindow window;  ///< that `read` shows the greys through
   bool is_hounsfield = false;    ///< the greys are CT numbers
   SliceReader read;              ///< through that window
+  bool uses_prior = true;        ///< off: without what is known of the organ's shape, for comparison
 };
 
 /// \param series     the pictures; a copy is kept
 /// \param structure  index (TROCAR_ASSERT)
 GrowthRequest MakeGrowthRequest(const images::ImageSeries& series, const ControlPoints& points, int structure,
                                 int slice, const Vec2& click);
+
+/// Whether an organ of that name can grow from a click: liver and gallbladder can.
+bool CanGrow(std::string_view organ);
 
 /// Contours of an organ, not yet in a document.
 struct GrownOrgan {

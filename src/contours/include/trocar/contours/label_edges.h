@@ -48,4 +48,8 @@ struct LabelEdgeOptions {
 core::Result<LabelEdges> MeasureLabelEdges(const LabelEdgeOptions& options,
                                            const images::Progress& progress = {});
 
+/// A row an organ and map below a row of headings.
+std::vector<std::vector<std::string>> Tabulate(const LabelEdges& edges);
+std::string FormatJson(const LabelEdges& edges);
+
 }  // namespace trocar::contours

@@ -38,9 +38,10 @@ struct ShapePrior {
   double opening_mm = 4.0;  ///< bridges thinner than twice this are cut, >= 0
   double closing_mm = 5.0;  ///< vessels narrower than twice this belong to the organ, >= 0
   double band_mm = 4.0;     ///< how far the border may then move to where the greys change, >= 0
-  double wall_mm = 0.0;     ///< of another grey, laid around, >= 0
-  double least_ml = 0.0;    ///< a smaller volume is no such organ
-  double most_ml = 1e9;     ///< neither is a larger one
+  double tip_mm = 0.0;    ///< what sticks out of the result and is thinner than twice this is taken off, >= 0
+  double wall_mm = 0.0;   ///< of another grey, laid around, >= 0
+  double least_ml = 0.0;  ///< a smaller volume is no such organ
+  double most_ml = 1e9;   ///< neither is a larger one
   std::array<double, 3> most_mm = {1e9, 1e9,
                                    1e9};           ///< longest extent along left-right, front-back, head-feet
   std::array<double, 2> hounsfield = {-1e9, 1e9};  ///< of its tissue on CT [HU]

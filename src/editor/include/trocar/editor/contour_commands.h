@@ -31,6 +31,7 @@ enum class ContourAction {
   kToggleScissors,
   kPointsMode,
   kScissorsMode,
+  kGrowMode,  ///< the next click says where the organ is that grows from it
   kUndo,
   kRedo,
   kFitView,
@@ -58,7 +59,7 @@ enum class ContourNeeds {
   kUndo,      ///< likewise, and there is something to take back
   kRedo,
   kReference,  ///< likewise, and a label map to compare with
-  kNoBuild,    ///< likewise, and no patient is being built
+  kNoBuild,    ///< likewise, and no patient is being built, no organ grows
 };
 
 using ContourCommand = gui::Command<ContourAction, ContourNeeds>;

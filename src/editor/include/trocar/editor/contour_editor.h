@@ -42,6 +42,9 @@ class ContourEditor {
   void Choose(std::optional<ContourChoice> choice) { choice_ = choice; }
   bool IsScissors() const { return is_scissors_; }
   void SetScissors(bool is_on) { is_scissors_ = is_on; }
+  /// The next press points into the organ, and draws nothing; pressing or Cancel ends it.
+  bool IsPointing() const { return is_pointing_; }
+  void SetPointing(bool is_on);
   /// Slices that page keys and propagation go at once, 1 to 50.
   int SliceStep() const { return slice_step_; }
   void SetSliceStep(int step);
@@ -76,6 +79,8 @@ class ContourEditor {
   std::function<void(const core::Error&)> on_error;
   /// A command did something worth a line: "Carried 2 contours to slice 481".
   std::function<void(const std::string&)> on_event;
+  /// The organ has been pointed into [pixels of the picture].
+  std::function<void(const Vec2&)> on_place;
 
   /// A slice away from this one with closed contours, in the direction given; nothing when there is none.
   std::optional<int> FindContoured(int direction) const;
@@ -86,6 +91,7 @@ class ContourEditor {
   void GoTo(const std::optional<contours::EditPlace>& place, const std::string& verb);
   void GoTo(const std::optional<int>& slice);
   void GoToContoured(bool is_last);
+  void PointTo(const Vec2& place);
   void CloseContour();
   void Cancel();
   void DeleteChosen();
@@ -105,7 +111,7 @@ class ContourEditor {
 
   contours::ContourWorkspace* workspace_;
   int structure_ = 0, slice_ = 0, slice_step_ = 1;
-  bool is_scissors_ = false, is_dragging_ = false;
+  bool is_scissors_ = false, is_dragging_ = false, is_pointing_ = false;
   Vec2 grip_;  // from the pointer to the dragged point [pixels of the picture]
   std::optional<ContourChoice> choice_;
   std::optional<Vec2> pointer_;

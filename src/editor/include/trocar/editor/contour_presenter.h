@@ -30,7 +30,8 @@ struct ContourPage {
   bool is_busy = false;      ///< a bar shows how far it is
   double fraction = 0;       ///< [-]
   bool is_building = false;  ///< the build can be stopped ...
-  bool is_stopping = false;  ///< ... and has been told to
+  bool is_growing = false;   ///< likewise an organ that grows
+  bool is_stopping = false;  ///< it has been told to
   bool is_document_open = false;
   bool is_help_open = false;
   bool has_points = true, has_fill = true, has_ghosts = true, has_reference = false;
@@ -77,6 +78,7 @@ class ContourScreen {
 /// How the threads of the presenter wake the window's thread; called by them.
 struct ContourWakes {
   std::function<void()> on_loaded, on_built, on_progress, on_surfaces;
+  std::function<void()> on_grown = [] {};
 };
 
 class ContourPresenter {
@@ -97,6 +99,7 @@ class ContourPresenter {
   // the presenter's threads and timers say so
   void FinishLoading();
   void FinishBuild();
+  void FinishGrowth();
   void ShowProgress();
   void TakeSurfaces();
   /// \return whether the timer goes on
@@ -120,13 +123,15 @@ class ContourPresenter {
   bool OnClose();
   /// \pre contours are open and saved, and no patient is being built (TROCAR_ASSERT)
   void StartBuild(const std::filesystem::path& folder);
-  void StopBuild();
+  /// Gives up the organ that grows, or the patient that is being built.
+  void Stop();
   void CancelSurfaces();
 
   /// Ends a run that is not attended.
   void Abandon(const core::Error& error);
   const std::optional<core::Error>& GetFailure() const { return failure_; }
   bool IsBuilding() const { return building_.IsRunning(); }
+  bool IsGrowing() const { return growing_.IsRunning(); }
   bool CanBuild() const;
   /// No surface is due or being made.
   bool AreSurfacesDone() const;
@@ -154,6 +159,8 @@ class ContourPresenter {
   void ChooseAndOpen();
   void ChooseAndBuild();
   void CloseAnyway();
+  void ToggleGrowMode();
+  void StartGrowth(const contours::Vec2& place);
   void RequestSurfaces(bool is_all);
   void PrefetchNeighbours();
   void Refresh();
@@ -179,8 +186,11 @@ class ContourPresenter {
   contours::WorkspaceOptions loading_options_;
   std::stop_source build_stop_;
   std::filesystem::path build_folder_;
+  std::stop_source growth_stop_;
+  bool is_growth_void_ = false;  // other contours have been opened since it began
   gui::BackgroundJob<core::Result<contours::ContourWorkspace>> loading_;
   gui::BackgroundJob<core::Result<anatomy::BuildReport>> building_;
+  gui::BackgroundJob<core::Result<contours::GrownOrgan>> growing_;
 };
 
 }  // namespace trocar::editor

@@ -54,6 +54,7 @@ struct RehearsalState {
 /// \return an empty state where there is no file
 /// \note Errors: kJsonSyntax, kJsonField.
 core::Result<RehearsalState> LoadRehearsal(const std::filesystem::path& file);
+/// Nobody but the account that runs the program may read the file and the folder that it lies in (modes 600 and 700).
 core::Status SaveRehearsal(const std::filesystem::path& file, const RehearsalState& state);
 
 }  // namespace trocar::editor

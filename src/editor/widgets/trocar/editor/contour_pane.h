@@ -90,12 +90,12 @@ class ContourPane : public Gtk::Box, private ContourScreen {
   gui::HelpCard help_card_{ContourHelp()};
   Gtk::Label hint_, place_, series_text_, state_;
   Gtk::ProgressBar busy_;
-  Gtk::Button stop_build_{core::Translate("Stop")};
+  Gtk::Button stop_{core::Translate("Stop")};
   gui::FileDialog file_dialog_;
   bool is_read_only_ = false;
   std::array<sigc::connection, static_cast<std::size_t>(ContourTimer::kCount)> timers_;
   sigc::connection told_;  // that a series is there
-  Glib::Dispatcher loaded_, built_, progressed_, surfaces_changed_;
+  Glib::Dispatcher loaded_, built_, progressed_, surfaces_changed_, grown_;
   std::unique_ptr<ContourPresenter> presenter_;
 };
 

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+# Opens a CT phantom in the contour window, where somebody lets the liver grow with real clicks, gives it up once, and saves.
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER})
+include(${CMAKE_CURRENT_LIST_DIR}/window_run.cmake)
+set(ENV{XDG_DATA_HOME} ${FOLDER}/data)
+trocar(made anatomy phantom --ct portal --seed 1 --pixel-mm 1.6 --slice-mm 5 -o ${FOLDER}/ct)
+use_window(--contours ${FOLDER}/ct/slices --points ${FOLDER}/points.json)
+file(READ ${FOLDER}/points.json points)
+string(JSON name GET "${points}" structures 0 name)
+string(JSON slices LENGTH "${points}" structures 0 slices)
+string(JSON others LENGTH "${points}" structures 1 slices)
+if(NOT name STREQUAL "liver" OR slices LESS 15 OR NOT others EQUAL 0)
+  message(FATAL_ERROR "the liver has ${slices} slices, the gallbladder ${others}: ${points}")
+endif()
+check_warnings()
