@@ -188,7 +188,7 @@ def take_turns(learnt, seed):
     return shown_parts
 
 
-def clone(demonstrations, epochs, rounds=0, attempts=80, seeds=range(9_001, 9_021), show=lambda text: print(text, flush=True)):
+def clone(demonstrations, epochs, rounds=0, attempts=80, seeds=range(9_001, 9_013), show=lambda text: print(text, flush=True)):
     """A clone, and its learning curve: epochs, and the share of successes and of goals over a few seeds."""
     learnt = Clone(demonstrations)
     curve = ([], [], [])
@@ -201,7 +201,7 @@ def clone(demonstrations, epochs, rounds=0, attempts=80, seeds=range(9_001, 9_02
         show(f"epoch {learnt.epochs}: {100 * success:.0f} % of {len(seeds)} attempts succeed, {100 * goals:.0f} % of the goals are done")
 
     def look(epoch):
-        if epoch % max(1, epochs // 2) == 0:
+        if epoch % epochs == 0 or epoch == epochs // 2:
             judge()
 
     learnt.learn(epochs, look)
