@@ -33,7 +33,7 @@ TEST(TimeShortest, CountsTheOnlyRunOfNoRepeats) {
 
 // About a minute: each environment is measured for two seconds.
 TEST(EnvironmentBenchmarkSlow, MeasuresEveryEnvironmentAndItsPictures) {
-  const auto result = RunEnvironmentBenchmark({.threads = 2});
+  const auto result = RunEnvironmentBenchmark({.threads = 2, .repeats = 1});
   ASSERT_TRUE(result.ok()) << result.error().Text();
   const auto value_of = [&](std::string_view name) {
     for (const BenchmarkCase& entry : result->cases)

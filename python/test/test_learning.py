@@ -22,6 +22,7 @@ if MISSING:
 import clone  # noqa: E402
 import learning  # noqa: E402
 import reach  # noqa: E402
+import sight  # noqa: E402
 import torch  # noqa: E402
 
 
@@ -60,7 +61,7 @@ class Learning(unittest.TestCase):
     @staticmethod
     def most_steps(demonstrations, make_policy, seed, settings):
         """Share of the goal's steps that were done, at most during an episode."""
-        with trocar.make(demonstrations.task, seed=seed, **{k: v for k, v in settings.items() if k != "tremble"}) as environment:
+        with trocar.make(demonstrations.task, seed=seed, **settings) as environment:
             policy = make_policy(environment, seed)
             state, _ = environment.reset(seed=seed)
             most = done = 0.0
@@ -85,6 +86,59 @@ class Learning(unittest.TestCase):
             for step in range(30):
                 state, *_ = environment.step(actions[step].astype(float))
                 np.testing.assert_allclose(state[tips], states[step + 1][tips], atol=0.0005)
+
+    def test_what_is_next_is_found_in_demonstrations_of_many_things(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_demonstrations(folder + "/set", "--task", "peg_transfer", "--seeds", "1:1")
+            shown = clone.Demonstrations(folder + "/set")
+        self.assertAlmostEqual(shown.longest, 107, delta=20)
+        seen = sight.Sight(shown.fields["state"], shown.states)
+        names = [field["name"] for field in shown.fields["state"]]
+        rings = [name for name in names if name.startswith("object.ring_") and name.endswith(".held")]
+        regions = [name for name in names if name.startswith("region.")]
+        self.assertEqual([rings[thing] for thing in seen.next.thing], 2 * [f"object.ring_{i}.held" for i in range(1, 7)])
+        for goal, allowed in enumerate(seen.next.allowed):
+            side = "right" if goal < 6 else "left"
+            self.assertTrue(all(regions[region].startswith(f"region.{side}_") for region in np.flatnonzero(allowed)))
+        # the left hand takes a ring at its left, the right one at its right: docs/tasks.md
+        np.testing.assert_allclose(seen.next.grips[:, 0], [-0.0095, 0.0095], atol=0.0025)
+        # the first ring is lifted, then the second: the same is seen, but for where it is
+        goals, things, _ = seen.next.find(shown.states[0])
+        firsts = [np.argmax(things == ring) for ring in range(6)]
+        self.assertEqual(firsts, sorted(firsts))
+        self.assertEqual(sorted(set(goals[:-1])), list(range(12)))
+        # another ring that lies still far away changes nothing
+        state = shown.states[0][:1].copy()
+        before = seen.raw(state)
+        state[:, seen.next.places[5]] += 0.001
+        np.testing.assert_array_equal(before, seen.raw(state))
+        state[:, seen.next.places[0]] += 0.001
+        self.assertTrue((before != seen.raw(state)).any())
+
+    def test_expert_and_clone_take_turns(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_demonstrations(folder + "/set", "--task", "lift_and_grasp", "--seeds", "1:2")
+            shown = clone.Demonstrations(folder + "/set")
+        rows = len(shown.rows()[0])
+        parts = [part for seed in range(1, 4) for part in clone.take_turns(clone.Clone(shown), seed)]
+        self.assertTrue(parts, "an untrained clone strays, and the expert finishes")
+        for states, actions, is_whole in parts:
+            self.assertEqual(len(states), len(actions) + 1)
+            self.assertTrue(is_whole)
+            shown.add(states, actions, is_whole)
+        whole = rows + sum(len(actions) for _, actions, _ in parts)
+        self.assertEqual(len(shown.rows()[0]), whole)
+        # of a part that was cut off the last actions have no chunk that is known whole
+        shown.is_whole[-1] = False
+        self.assertEqual(len(shown.rows()[0]), whole - clone.CHUNK + 1)
+
+    def test_who_does_nothing_for_long_is_given_up(self):
+        rest = lambda environment, seed: lambda state: np.zeros(environment.action_space.shape)
+        played = learning.play("lift_and_grasp", 1, rest, patience=3.0, actions="tip", most_seconds=20)
+        self.assertEqual(played, (False, 0.0, 3.0))
+        told = []
+        self.assertEqual(learning.judge("lift_and_grasp", range(1, 22), rest, patience=0.2, actions="tip", show=told.append), (0.0, 0.0))
+        self.assertEqual(len(told), 2, "after 20 and at the end")
 
     def test_curve_is_a_picture(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -3,12 +3,14 @@
 
   trocar dataset --layout trocar --no-pictures --task lift_and_grasp --seeds 1:120 --every 0.1 -o sets/lift
   build/python/bin/python samples/python/clone.py sets/lift
+  trocar dataset --layout trocar --no-pictures --task peg_transfer --seeds 1:60 --every 0.1 -o sets/peg
+  build/python/bin/python samples/python/clone.py sets/peg --rounds 2
 
 Behaviour cloning with chunks of actions (Zhao et al., "Learning fine-grained bimanual manipulation", RSS 2023): from what an
 environment observes, a network foretells where both tips will be during the next second, and how they are turned and opened. Some of it is
-done, then it looks again. Between rounds of learning the clone plays, and somewhere the expert takes over and finishes: what was
-done from there on is demonstrated, too (after Ross et al., "A reduction of imitation learning to no-regret online learning",
-AISTATS 2011). Needs python3-torch and python3-h5py.
+done, then it looks again. Between rounds of learning the clone plays, and somewhere the expert takes over; with many goals they take
+turns. What the expert did from there on is demonstrated, too (after Ross et al., "A reduction of imitation learning to no-regret
+online learning", AISTATS 2011). Needs python3-torch and python3-h5py.
 """
 import argparse
 import json
@@ -22,20 +24,19 @@ import numpy as np
 import torch
 
 import trocar
+from sight import HANDS, Sight, places_of
 
 CHUNK = 8    # actions that are foretold
 DONE = 7     # of them are done before the next look: before jaws open or close, hands rest for longer than the rest says
-# by which tips, spins and jaws are moved away while learning, so that the policy finds back [m], [rad]
-STRAY, STRAY_SPIN, STRAY_JAW = 0.001, 0.2, 0.02
-NEAR = 0.002  # differences of places are seen in detail below this [m]
-HANDS = ("left", "right")
 TIP_SPEED, SPIN_RATE, JAW_RATE = 0.12, 3.0, 2.5  # of an action of 1 [m/s], [rad/s]
 TREMBLE = 0.05  # of an action, when it is judged
-ROUND_SEEDS = 20_001  # and on: of what the clone begins and the expert finishes
+PATIENCE = 20   # an attempt in which so long no step of a goal was done has failed, when it is judged [s]
+ROUND_SEEDS = 20_001  # and on: of what the clone begins and the expert goes on with
+GOALS_A_TURN = 2      # that the expert finishes in the time of a turn
 
 
 class Demonstrations:
-    """States and actions of attempts that were completed."""
+    """States and actions of attempts that were completed, and of parts of others."""
 
     def __init__(self, folder):
         folder = pathlib.Path(folder)
@@ -53,19 +54,26 @@ class Demonstrations:
         plan = self.card["plan"]
         self.task, self.level, self.every = plan["task"], plan["level"], plan["every_seconds"]
         self.longest = max(len(states) for states in self.states) * self.every
+        self.is_whole = [True] * len(self.states)
+
+    def add(self, states, actions, is_whole):
+        """What was demonstrated later; of a part that was cut off what came next is not known."""
+        self.states.append(states)
+        self.actions.append(actions)
+        self.is_whole.append(is_whole)
 
     def rows(self):
         """(n, state), and for each the chunk (n, CHUNK, 2, 5): how far each tip will be from here [m], its spin and commanded jaw [rad].
 
         Not rates: those add up whatever error is made. Jaws that hold a thing are seen open and commanded shut.
         """
-        at = {field["name"]: np.arange(field["first"], field["first"] + field["count"]) for field in self.fields["state"]}
+        at = places_of(self.fields["state"])
         tips = [at[f"{hand}.tip"] for hand in HANDS]
         spins, jaws = ([at[f"{hand}.joints"][joint] for hand in HANDS] for joint in (2, 4))
         jaw_actions = learning.columns(self.fields["action_tip"], [f"{hand}.jaw" for hand in HANDS])
         holds = np.concatenate([at[f"{hand}.is_grasping"] for hand in HANDS])
         states, chunks = [], []
-        for seen, done in zip(self.states, self.actions):
+        for seen, done, is_whole in zip(self.states, self.actions, self.is_whole):
             last = len(seen) - 1
             ahead = np.minimum(np.arange(last)[:, None] + 1 + np.arange(CHUNK), last)
             places = np.stack([seen[:, tip] for tip in tips], axis=1)
@@ -73,54 +81,11 @@ class Demonstrations:
             commanded[0] = np.where(seen[0, holds] > 0, 0, seen[0, jaws])
             for step in range(last):
                 commanded[step + 1] = np.maximum(commanded[step] + self.every * JAW_RATE * done[step, jaw_actions], 0)
-            states.append(seen[:last])
+            known = last if is_whole else max(0, last - CHUNK + 1)
+            states.append(seen[:known])
             chunks.append(np.concatenate([places[ahead] - places[:last, None], seen[:, spins][ahead][..., None],
-                                          commanded[ahead][..., None]], axis=-1))
+                                          commanded[ahead][..., None]], axis=-1)[:known])
         return np.concatenate(states), np.concatenate(chunks)
-
-
-class Sight:
-    """What a network sees of a state: tips, spins, jaws, things and goals, and how far each tip is from each thing and region.
-
-    The clock would be learnt by heart. Trocar joints and shafts say again where a tip is: who sees both learns to trust the wrong one
-    while tips are moved aside.
-    """
-
-    def __init__(self, fields):
-        at = {field["name"]: np.arange(field["first"], field["first"] + field["count"]) for field in fields}
-        self.tips = np.concatenate([at[f"{hand}.tip"] for hand in HANDS])
-        self.held = [at[name] for name in at if name.endswith(".held")]
-        self.things = [at[name.removesuffix("held") + "position"] for name in at if name.endswith(".held")]
-        whole = [name for name in at if name.split(".")[-1] in ("tip", "is_grasping", "is_touching", "held", "done", "is_open", "is_whole")]
-        whole += [name.removesuffix("held") + what for name in at if name.endswith(".held") for what in ("position", "rotation")]
-        self.turns = np.concatenate([at[f"{hand}.joints"][[2, 4]] for hand in HANDS])  # spin and jaw
-        self.sees = np.concatenate([*(at[name] for name in whole), self.turns])
-        regions = [at[name] for name in at if name.startswith("region.")]
-        tips = [at[f"{hand}.tip"] for hand in HANDS]
-        self.pairs = [(a, b) for a in tips for b in self.things + regions] + [(a, b) for a in self.things for b in regions]
-        self.mean = self.spread = None
-
-    def raw(self, states):
-        ways = [np.arcsinh((states[:, a] - states[:, b]) / NEAR) for a, b in self.pairs]
-        return np.concatenate([states[:, self.sees], *ways], axis=1)
-
-    def measure(self, states):
-        raw = self.raw(states)
-        self.mean, self.spread = raw.mean(0), np.maximum(raw.std(0), 0.01)  # what hardly changed is not blown up
-
-    def look(self, states):
-        return torch.as_tensor(np.clip((self.raw(states) - self.mean) / self.spread, -10, 10), dtype=torch.float32)
-
-    def stray(self, states, random):
-        """Copies with tips moved aside, and what they hold with them, spins and jaws, too; by how much tips were, (n, 2, 3) [m]."""
-        states = states.copy()
-        states[:, self.turns] += random.normal(0, 1, (len(states), 4)) * ([STRAY_SPIN, STRAY_JAW] * 2)
-        stray = random.normal(0, STRAY, (len(states), 2, 3))
-        states[:, self.tips] += stray.reshape(-1, 6)
-        for held, place in zip(self.held, self.things):
-            holds = states[:, held]
-            states[:, place] += (holds[..., None] * stray).sum(1) / np.maximum(holds.sum(1), 1)[:, None]
-        return states, stray
 
 
 class Clone:
@@ -130,7 +95,7 @@ class Clone:
         torch.manual_seed(seed)
         self.demonstrations, self.every, self.epochs = demonstrations, demonstrations.every, 0
         states, chunks = demonstrations.rows()
-        self.sight = Sight(demonstrations.fields["state"])
+        self.sight = Sight(demonstrations.fields["state"], demonstrations.states)
         self.sight.measure(states)
         self.centre = chunks.reshape(-1, 2, 5).mean(0)
         self.scale = np.abs(chunks - self.centre).reshape(-1, 2, 5).max((0, 1)) + 1e-6
@@ -180,59 +145,73 @@ class Clone:
 
 def settings(demonstrations, slack=3):
     return {"level": demonstrations.level, "actions": "tip", "actions_per_second": 1 / demonstrations.every,
-            "most_seconds": slack * demonstrations.longest, "tremble": TREMBLE}
+            "most_seconds": slack * demonstrations.longest}
 
 
-def finish(learnt, seed):
-    """(states, actions) of an expert who takes over from the clone at a time that the seed draws; None where that fails."""
+def take_turns(learnt, seed):
+    """[(states, actions, is whole)] of an expert who takes over from the clone at times that the seed draws.
+
+    With a goal or two the expert takes over once and finishes. With more they take turns, and what the expert did in one counts where a
+    step of a goal was done in it.
+    """
     shown = learnt.demonstrations
     random = np.random.default_rng(seed)
-    options = settings(shown, slack=6)
-    tremble = options.pop("tremble") * random.choice([1, 4])
-    with trocar.make(shown.task, seed=seed, **options) as environment:
+    tremble = TREMBLE * random.choice([1, 4])
+    shown_parts = []
+    with trocar.make(shown.task, seed=seed, **settings(shown, slack=6)) as environment:
+        goals = sum(field["name"].startswith("goal.") and field["name"].endswith(".done") for field in environment.state_fields)
+        turns = max(1, goals // GOALS_A_TURN)
+        longest = int(1.2 * shown.longest / shown.every / turns)
         policy = learnt.make_policy(environment, seed)
         state, _ = environment.reset(seed=seed)
-        for _ in range(random.integers(1, int(1.2 * shown.longest / shown.every))):
-            action = policy(state)
-            following, _, terminated, truncated, info = environment.step(
-                np.clip(action + tremble * random.standard_normal(action.shape), -1, 1))
-            if terminated or truncated:
-                break
-            state = following
-        if terminated or truncated:
-            return None
-        surgeon, states, actions = environment.surgeon("expert", seed=seed), [state], []
-        while not (terminated or truncated or surgeon.has_finished):
-            state, _, terminated, truncated, info = environment.step_by(surgeon)
-            states.append(state)
-            actions.append(info["action"])
-    return (np.array(states), np.array(actions, np.float32)) if info["is_success"] else None
+        is_over = False
+        for turn in range(turns):
+            for _ in range(random.integers(1, longest)):
+                if is_over:
+                    return shown_parts
+                action = policy(state)
+                action = np.clip(action + tremble * random.standard_normal(action.shape), -1, 1)
+                state, _, terminated, truncated, info = environment.step(action)
+                is_over = terminated or truncated
+            most = random.integers(1, longest) if turn + 1 < turns else np.inf
+            surgeon, states, actions, gained = environment.surgeon("expert", seed=seed), [state], [], 0.0
+            while not (is_over or surgeon.has_finished) and len(actions) < most:
+                state, _, terminated, truncated, info = environment.step_by(surgeon)
+                is_over = terminated or truncated
+                states.append(state)
+                actions.append(info["action"])
+                gained += info["features"]["step"]
+            succeeded = is_over and info["is_success"]
+            if gained > 0 and (turns > 1 or succeeded):
+                shown_parts.append((np.array(states), np.array(actions, np.float32), succeeded))
+            policy = learnt.make_policy(environment, seed)  # what it foretold is past
+    return shown_parts
 
 
-def clone(demonstrations, epochs, rounds=0, attempts=80, seeds=range(9_001, 9_021), show=lambda text: print(text, flush=True)):
-    """A clone, and its learning curve: epochs, and the share of goals and of successes over a few seeds."""
+def clone(demonstrations, epochs, rounds=0, attempts=80, seeds=range(9_001, 9_013), show=lambda text: print(text, flush=True)):
+    """A clone, and its learning curve: epochs, and the share of successes and of goals over a few seeds."""
     learnt = Clone(demonstrations)
     curve = ([], [], [])
 
     def judge():
-        success, goals = learning.judge(demonstrations.task, seeds, learnt.make_policy, **settings(demonstrations))
+        success, goals = learning.judge(demonstrations.task, seeds, learnt.make_policy, tremble=TREMBLE, patience=PATIENCE,
+                                        **settings(demonstrations))
         for row, value in zip(curve, (learnt.epochs, success, goals)):
             row.append(value)
         show(f"epoch {learnt.epochs}: {100 * success:.0f} % of {len(seeds)} attempts succeed, {100 * goals:.0f} % of the goals are done")
 
     def look(epoch):
-        if epoch % max(1, epochs // 2) == 0:
+        if epoch % epochs == 0 or epoch == epochs // 2:
             judge()
 
     learnt.learn(epochs, look)
     for number in range(rounds):
         first = ROUND_SEEDS + number * attempts
         with ThreadPoolExecutor(2) as pool:
-            finished = [one for one in pool.map(lambda seed: finish(learnt, seed), range(first, first + attempts)) if one]
-        for states, actions in finished:
-            demonstrations.states.append(states)
-            demonstrations.actions.append(actions)
-        show(f"round {number + 1}: the expert took over and finished {len(finished)} of {attempts} attempts")
+            parts = [part for some in pool.map(lambda seed: take_turns(learnt, seed), range(first, first + attempts)) for part in some]
+        for part in parts:
+            demonstrations.add(*part)
+        show(f"round {number + 1}: in {attempts} attempts the expert took over and got on {len(parts)} times, {sum(len(part[1]) for part in parts)} actions")
         learnt.learn(epochs, look)
     return learnt, curve
 
@@ -255,10 +234,14 @@ def main():
     learnt, curve = clone(demonstrations, arguments.epochs, arguments.rounds, arguments.attempts)
     learning.write_curve(arguments.curve, f"{demonstrations.task}, cloned from {shown} demonstrations",
                          "epochs", curve[0], {"success": curve[1], "goals done": curve[2]})
-    judge = lambda make_policy: learning.judge(demonstrations.task, unseen, make_policy, **settings(demonstrations))
-    learning.print_results({"cloned": judge(learnt.make_policy), "random": judge(learning.random_policy),
-                            "expert": learning.judge_expert(demonstrations.task, unseen, demonstrations.level)}, unseen)
-    print(f"learning curve: {arguments.curve}")
+    print(f"learning curve: {arguments.curve}", flush=True)
+
+    def judge(name, make_policy):
+        return learning.judge(demonstrations.task, unseen, make_policy, tremble=TREMBLE, patience=PATIENCE,
+                              show=lambda text: print(f"{name}: {text}", flush=True), **settings(demonstrations))
+    results = {"cloned": judge("cloned", learnt.make_policy), "random": judge("random", learning.random_policy),
+               "expert": learning.judge_expert(demonstrations.task, unseen, demonstrations.level, show=lambda text: print(f"expert: {text}", flush=True))}
+    learning.print_results(results, unseen)
 
 
 if __name__ == "__main__":

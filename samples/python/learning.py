@@ -26,32 +26,44 @@ def columns(fields, names):
     return [place for name in names for place in places[name]]
 
 
-def play(task, seed, make_policy, tremble=0.0, **settings):
+def play(task, seed, make_policy, tremble=0.0, patience=np.inf, **settings):
     """One episode of a layout: (success, share of the goals that were done, seconds).
 
     ``make_policy(environment, seed)`` gives a function from a state to an action. ``tremble`` is the spread of what is added to
-    actions, by the seed: some tasks have one layout only.
+    actions, by the seed: some tasks have one layout only. After ``patience`` seconds in which no step of a goal was done it is given up.
     """
     random = np.random.default_rng(seed)
     with trocar.make(task, seed=seed, **settings) as environment:
         policy = make_policy(environment, seed)
         state, _ = environment.reset(seed=seed)
-        done, steps, is_over = 0.0, 0, False
+        done, steps, is_over, last = 0.0, 0, False, 0
+        most_idle = patience * 120 / environment.model.ticks_per_action
         while not is_over:
             action = policy(state)
             action = np.clip(action + tremble * random.standard_normal(action.shape), -1, 1)
             state, _, terminated, truncated, info = environment.step(action)
             done += info["features"]["goal"]
             steps += 1
-            is_over = terminated or truncated
+            last = steps if info["features"]["step"] > 0 else last
+            is_over = terminated or truncated or steps - last >= most_idle
         return info["is_success"], done, steps * environment.model.ticks_per_action / 120
 
 
-def judge(task, seeds, make_policy, threads=2, **settings):
-    """(share of successes, mean share of goals done) over seeds; simulations step beside each other."""
+def _gather(attempt, seeds, threads, show):
+    """Shares of ``attempt``'s (success, goals done) over seeds; simulations step beside each other."""
+    played = []
     with ThreadPoolExecutor(threads) as pool:
-        played = list(pool.map(lambda seed: play(task, seed, make_policy, **settings), seeds))
-    return float(np.mean([success for success, _, _ in played])), float(np.mean([done for _, done, _ in played]))
+        for one in pool.map(attempt, seeds):
+            played.append(one[:2])
+            if len(played) % 20 == 0 or len(played) == len(seeds):
+                success, done = np.mean(played, axis=0)
+                show(f"{100 * success:.0f} % of {len(played)} attempts succeed, {100 * done:.1f} % of the goals are done")
+    return tuple(float(share) for share in np.mean(played, axis=0))
+
+
+def judge(task, seeds, make_policy, threads=2, show=lambda text: None, **settings):
+    """(share of successes, mean share of goals done) over seeds; says how it goes after each 20. ``settings`` as of ``play``."""
+    return _gather(lambda seed: play(task, seed, make_policy, **settings), seeds, threads, show)
 
 
 def random_policy(environment, seed):
@@ -59,7 +71,7 @@ def random_policy(environment, seed):
     return lambda state: environment.action_space.sample()
 
 
-def judge_expert(task, seeds, level="normal", most_seconds=600.0):
+def judge_expert(task, seeds, level="normal", most_seconds=600.0, threads=2, show=lambda text: None):
     """As ``judge`` of the scripted expert, which commands every tick; a seed is its hand's, too."""
     def attempt(seed):
         simulation = trocar.Simulation(task, level=level, seed=seed)
@@ -68,9 +80,7 @@ def judge_expert(task, seeds, level="normal", most_seconds=600.0):
             simulation.play(surgeon, 120)
         state = simulation.snapshot()["task"]
         return state["phase"] == "completed", np.mean([goal["is_done"] for goal in state["goals"].values()])
-    with ThreadPoolExecutor(2) as pool:
-        played = list(pool.map(attempt, seeds))
-    return float(np.mean([success for success, _ in played])), float(np.mean([done for _, done in played]))
+    return _gather(attempt, seeds, threads, show)
 
 
 def write_curve(path, title, x_label, x, curves):
