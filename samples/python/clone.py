@@ -3,8 +3,8 @@
 
   trocar dataset --layout trocar --no-pictures --task lift_and_grasp --seeds 1:120 --every 0.1 -o sets/lift
   build/python/bin/python samples/python/clone.py sets/lift
-  trocar dataset --layout trocar --no-pictures --task peg_transfer --seeds 1:60 --every 0.1 -o sets/peg
-  build/python/bin/python samples/python/clone.py sets/peg --rounds 2
+  trocar dataset --layout trocar --no-pictures --task peg_transfer --seeds 1:30 --every 0.1 -o sets/peg
+  build/python/bin/python samples/python/clone.py sets/peg --epochs 40 --attempts 14
 
 Behaviour cloning with chunks of actions (Zhao et al., "Learning fine-grained bimanual manipulation", RSS 2023): from what an
 environment observes, a network foretells where both tips will be during the next second, and how they are turned and opened. Some of it is

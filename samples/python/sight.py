@@ -25,7 +25,7 @@ def rotations(quaternions):
 
 
 class Next:
-    """Which thing is next, where it may go and where a hand takes it. A state says none of it: the demonstrations did.
+    """Which thing is next, where it may go and where a hand takes it. A state says none of it: whole demonstrations did.
 
     One ring is like another then: what was learnt of one is known of all.
     """
@@ -39,8 +39,9 @@ class Next:
         self.done = np.array([at[name][0] for name in at if name.startswith("goal.") and name.endswith(".done")])
         self.open = np.array([at[name][0] for name in at if name.startswith("goal.") and name.endswith(".is_open")])
         self.tips = np.array([at[f"{hand}.tip"] for hand in HANDS])
-        ends = [[(goal, np.argmax(seen[:, place] >= 1)) for goal, place in enumerate(self.done) if seen[-1, place] >= 1]
-                for seen in demonstrations]
+        # each was completed; the last goal is done after the last state that was recorded
+        ends = [[(goal, np.argmax(seen[:, place] >= 1) if seen[-1, place] >= 1 else len(seen) - 1)
+                 for goal, place in enumerate(self.done)] for seen in demonstrations]
         # a goal is about what hands held since the goal before it was done
         held = np.zeros((len(self.done), len(things)))
         for seen, done in zip(demonstrations, ends):
