@@ -21,29 +21,24 @@ struct Arguments {
   bool is_json = false;
 };
 
-std::string Format(const char* format, double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
-
-void PrintTable(const contours::LabelEdges& edges) {
+void PrintForPerson(const contours::LabelEdges& edges) {
   std::vector<std::vector<std::string>> rows = {{"organ", "labels", "places", "edge seen",
                                                  "mean distance [mm]", "median", "signed mean", "within 1 mm",
                                                  "drawn contours [mm]"}};
-  const auto add = [&](const std::vector<contours::LabelEdgeReport>& reports, const char* labels) {
+  const auto add = [&](const std::vector<contours::LabelEdgeReport>& reports, const std::string& labels) {
     for (const auto& report : reports) {
-      rows.push_back({report.name, labels, std::to_string(report.places), Format("%.2f", report.seen),
-                      Format("%.2f", report.mean_mm), Format("%.2f", report.median_mm),
-                      Format("%+.2f", report.signed_mean_mm), Format("%.2f", report.within_1mm),
-                      Format("%.2f", report.drawn_mm)});
+      rows.push_back({Translate(report.name), labels, std::to_string(report.places),
+                      ShownFixed(report.seen, 2), ShownFixed(report.mean_mm, 2),
+                      ShownFixed(report.median_mm, 2), ShownFixed(report.signed_mean_mm, 2, true),
+                      ShownFixed(report.within_1mm, 2), ShownFixed(report.drawn_mm, 2)});
     }
   };
-  add(edges.as_given, "as given");
-  add(edges.shifted, "shifted");
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf("\nShifted by %+.2f mm along columns, %+.2f mm along rows, %+.2f mm along slices.\n",
-              edges.shift_mm[0], edges.shift_mm[1], edges.shift_mm[2]);
+  add(edges.as_given, Translate("as given"));
+  add(edges.shifted, Translate("shifted"));
+  PrintTable(rows);
+  Say("\nShifted by {1} mm along columns, {2} mm along rows, {3} mm along slices.\n",
+      ShownFixed(edges.shift_mm[0], 2, true), ShownFixed(edges.shift_mm[1], 2, true),
+      ShownFixed(edges.shift_mm[2], 2, true));
 }
 
 void PrintJson(const contours::LabelEdges& edges) {
@@ -72,16 +67,13 @@ core::Status Measure(const Arguments& arguments) {
   options.images = arguments.images;
   options.reference = arguments.reference;
   ProgressBar bar("measuring", 1.0);
-  const auto edges = contours::MeasureLabelEdges(options, [&](std::string_view what, double fraction) {
-    bar.SetLabel(what);
-    bar.Show(fraction);
-  });
+  const auto edges = contours::MeasureLabelEdges(options, bar.Follow());
   bar.Finish();
   if (!edges) return edges.error();
   if (arguments.is_json) {
     PrintJson(*edges);
   } else {
-    PrintTable(*edges);
+    PrintForPerson(*edges);
   }
   return {};
 }

@@ -31,21 +31,16 @@ core::Status MakePhantom(const PhantomArguments& arguments) {
                                                  : anatomy::ReadPatient(arguments.patient);
   if (!patient) return patient.error();
   ProgressBar bar("drawing", 1.0);
-  const auto status = anatomy::WritePhantom(arguments.output, *patient, arguments.options,
-                                            [&](std::string_view what, double share) {
-                                              bar.SetLabel(what);
-                                              bar.Show(share);
-                                            });
+  const auto status = anatomy::WritePhantom(arguments.output, *patient, arguments.options, bar.Follow());
   bar.Finish();
   if (!status) return status;
   const std::string& o = arguments.output;
-  std::printf(
-      "Wrote %s: slices/ (the pictures), labels.nrrd (the truth), control_points.json, patient/ (the truth "
+  Say("Wrote {1}: slices/ (the pictures), labels.nrrd (the truth), control_points.json, patient/ (the truth "
       "as "
       "meshes)\n"
-      "Next: trocar anatomy build %s/control_points.json --images %s/slices --reference %s/labels.nrrd -o "
-      "%s-built\n",
-      o.c_str(), o.c_str(), o.c_str(), o.c_str(), o.c_str());
+      "Next: trocar anatomy build {1}/control_points.json --images {1}/slices --reference {1}/labels.nrrd -o "
+      "{1}-built\n",
+      o);
   return {};
 }
 

@@ -47,7 +47,7 @@ constexpr Measure kMeasures[] = {
     {"dice_placed", [](const contours::RehearsalRun& r) { return r.dice_placed; }},
     {"dice_adapted", [](const contours::RehearsalRun& r) { return r.dice_adapted; }}};
 
-void PrintTable(const std::vector<contours::OrganRehearsal>& organs) {
+void PrintForPerson(const std::vector<contours::OrganRehearsal>& organs) {
   std::vector<std::vector<std::string>> rows = {{"organ", "runs", "slices", "points", "inserted",
                                                  "point error placed [mm]", "adapted [mm]", "Dice placed",
                                                  "adapted"}};
@@ -55,17 +55,15 @@ void PrintTable(const std::vector<contours::OrganRehearsal>& organs) {
     std::size_t slices = 0, points = 0, inserted = 0;
     for (const auto& run : organ.runs) slices += run.slices, points += run.points, inserted += run.inserted;
     const std::size_t n = organ.runs.size();
-    std::vector<std::string> row = {organ.name, std::to_string(n), std::to_string(slices / n),
+    std::vector<std::string> row = {Translate(organ.name), std::to_string(n), std::to_string(slices / n),
                                     std::to_string(points / n), std::to_string(inserted / n)};
     for (const Measure& measure : kMeasures) {
       const Spread spread = CalcSpread(organ, measure.value);
-      char text[64];
-      std::snprintf(text, sizeof(text), "%.3f +- %.3f", spread.mean, spread.deviation);
-      row.push_back(text);
+      row.push_back(ShownFixed(spread.mean, 3) + " +- " + ShownFixed(spread.deviation, 3));
     }
     rows.push_back(std::move(row));
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
 }
 
 void PrintJson(const std::vector<contours::OrganRehearsal>& organs) {
@@ -108,16 +106,13 @@ core::Status Rehearse(const Arguments& arguments) {
   options.clicks.points = {arguments.points.front(), arguments.points.back()};
   if (!arguments.overlays.empty()) options.overlays = arguments.overlays;
   ProgressBar bar("rehearsing", 1.0);
-  const auto organs = contours::RehearseContours(options, [&](std::string_view what, double fraction) {
-    bar.SetLabel(what);
-    bar.Show(fraction);
-  });
+  const auto organs = contours::RehearseContours(options, bar.Follow());
   bar.Finish();
   if (!organs) return organs.error();
   if (arguments.is_json) {
     PrintJson(*organs);
   } else {
-    PrintTable(*organs);
+    PrintForPerson(*organs);
   }
   return {};
 }
