@@ -13,12 +13,18 @@
 #include <string_view>
 #include <vector>
 
+#include "trocar/agent/surgeon.h"
+#include "trocar/anatomy/patient_parameters.h"
+#include "trocar/assessment/course.h"
 #include "trocar/assessment/learning.h"
 #include "trocar/assessment/milestone.h"
+#include "trocar/bench/benchmark.h"
 #include "trocar/centre/centre_commands.h"
 #include "trocar/cli/run_command.h"
 #include "trocar/contours/contour_fit.h"
 #include "trocar/core/error_codes.h"
+#include "trocar/device/device_spec.h"
+#include "trocar/doctor/doctor_checks.h"
 #include "trocar/editor/contour_commands.h"
 #include "trocar/editor/patient_commands.h"
 #include "trocar/editor/series_form.h"
@@ -31,10 +37,13 @@
 #include "trocar/presenter/settings_form.h"
 #include "trocar/presenter/simulator_commands.h"
 #include "trocar/presenter/tutorial.h"
+#include "trocar/report/agreement.h"
 #include "trocar/scene/event.h"
+#include "trocar/scene/task.h"
 #include "trocar/simulation/snapshot.h"
 #include "trocar/training/metric_definition.h"
 #include "trocar/training/operation_error.h"
+#include "trocar/view/picture_series.h"
 
 namespace {
 
@@ -200,6 +209,53 @@ void PrintMedicine() {
     PrintWords(name);
 }
 
+/// What commands print of tables.
+void PrintTablesOfCommands() {
+  using namespace trocar;
+  for (const agent::SurgeonEntry& entry : agent::ListSurgeons()) Print(entry.about);
+  for (const anatomy::ParameterRule& rule : anatomy::ParameterRules()) {
+    Print(rule.about);
+  }
+  for (const bench::BenchmarkSuite& suite : bench::BenchmarkSuites()) Print(suite.description);
+  for (const device::DeviceKind& kind : device::DeviceKinds()) {
+    Print(kind.text);
+    if (kind.address.find(' ') != std::string_view::npos) Print(kind.address);
+  }
+  for (const view::SeriesSitting& sitting : view::ListPictureSeries()) {
+    for (const view::SeriesShot& shot : sitting.shots) Print(shot.about);
+  }
+  for (const doctor::Health health :
+       {doctor::Health::kGood, doctor::Health::kLimited, doctor::Health::kMissing})
+    PrintIn("health", doctor::HealthName(health));
+  for (const assessment::StepState state :
+       {assessment::StepState::kLocked, assessment::StepState::kOpen, assessment::StepState::kDone})
+    PrintIn("step", NameOf(state));
+  for (const double icc : {0.4, 0.6, 0.8, 0.95}) Print(report::DescribeAgreement(icc));
+  for (const training::BetterWhen better : {training::BetterWhen::kHigher, training::BetterWhen::kLower})
+    Print(NameOf(better));
+  for (const char* text : {"yes",
+                           "no",
+                           "NO",
+                           "unlimited",
+                           "not a number",
+                           "trainee",
+                           "instructor",
+                           "administrator",
+                           "time_over",
+                           "laparoscope",
+                           "safety",
+                           "economy",
+                           "quality",
+                           "divided",
+                           "free",
+                           "names",
+                           "file",
+                           "script",
+                           "; tissue is computed on the processor",
+                           "{1}, taking over from {2}"})
+    Print(text);
+}
+
 /// The help of all commands. Placeholders of one letter stay.
 void PrintHelpOfCommands() {
   trocar::cli::ListHelpTexts([](const std::string& text) {
@@ -317,6 +373,7 @@ int main(int count, char** arguments) {
         assessment::Milestone::kCompleted})
     Print(assessment::DescribeUntil(milestone));
   PrintHelpOfCommands();
+  PrintTablesOfCommands();
   PrintMedicine();
   PrintTasks(repository / "scenes");
   PrintAssets(repository / "assets");

@@ -9,6 +9,8 @@
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/contours/overlay.h"
+#include "trocar/core/console.h"
+#include "trocar/core/translate.h"
 #include "trocar/images/png_file.h"
 
 namespace trocar::anatomy {
@@ -98,61 +100,63 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const images
 }
 
 std::string FormatReport(const BuildReport& report) {
-  std::string text =
-      "organ        slices followed points shift mean/max px  triangles closed manifold outward genus cuts "
-      "min angle  "
-      "distance max/mean mm  volume  "
-      "reference ratio  Dice\n";
+  using core::ShownFixed;
+  const auto yes = [](bool is_so) { return core::Translate(is_so ? "yes" : "NO"); };
+  std::vector<std::vector<std::string>> rows = {
+      {"organ", "slices", "followed", "points", "shift mean/max [px]", "triangles", "closed", "manifold",
+       "outward", "genus", "cuts", "min angle [deg]", "distance max/mean [mm]", "volume [mL]",
+       "reference [mL]", "ratio", "Dice"}};
   for (const contours::OrganReport& organ : report.organs) {
-    char line[256];
-    std::snprintf(
-        line, sizeof(line),
-        "%-12s %6zu %8zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %11.2f / %-6.3f %5.0f mL",
-        organ.name.c_str(), organ.slices, organ.followed_slices, organ.control_points, organ.mean_shift_px,
-        organ.largest_shift_px, organ.triangles, organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO",
-        organ.outward ? "yes" : "NO", organ.genus, organ.self_intersections, organ.min_angle_deg,
-        organ.hausdorff_mm, organ.mean_distance_mm, organ.volume_ml);
-    text += line;
-    if (organ.judgement) {
-      std::snprintf(line, sizeof(line), " %7.1f mL %5.3f %5.3f", organ.judgement->reference_ml,
-                    organ.judgement->ratio, organ.judgement->dice);
-      text += line;
+    rows.push_back({core::Translate(organ.name), std::to_string(organ.slices),
+                    std::to_string(organ.followed_slices), std::to_string(organ.control_points),
+                    ShownFixed(organ.mean_shift_px, 2) + " / " + ShownFixed(organ.largest_shift_px, 2),
+                    std::to_string(organ.triangles), yes(organ.closed), yes(organ.manifold),
+                    yes(organ.outward), std::to_string(organ.genus), std::to_string(organ.self_intersections),
+                    ShownFixed(organ.min_angle_deg, 1),
+                    ShownFixed(organ.hausdorff_mm, 2) + " / " + ShownFixed(organ.mean_distance_mm, 3),
+                    ShownFixed(organ.volume_ml, 0)});
+    if (const auto& judgement = organ.judgement) {
+      for (const auto& [value, decimals] :
+           {std::pair{judgement->reference_ml, 1}, {judgement->ratio, 3}, {judgement->dice, 3}})
+        rows.back().push_back(ShownFixed(value, decimals));
     }
-    text += "\n";
   }
-  return text;
+  return core::FormatShownTable(std::move(rows));
 }
 
 std::string FormatSurroundings(const BuildReport& report) {
+  using core::ShownFixed;
   std::string text;
-  char line[320];
   if (!report.neighbours.empty()) {
-    text +=
-        "neighbour                     from      parts triangles  min angle   volume  of voxels  left out\n";
+    std::vector<std::vector<std::string>> rows = {{"neighbour", "from", "parts", "triangles",
+                                                   "min angle [deg]", "volume [mL]", "of voxels [mL]",
+                                                   "left out [mL]"}};
     for (const NeighbourReport& one : report.neighbours) {
-      std::snprintf(line, sizeof line, "%-29s %-9s %5d %9zu %6.1f deg %5.0f mL", one.name.c_str(),
-                    one.is_seen ? "map" : "template", one.is_seen ? one.parts : 1, one.triangles,
-                    one.min_angle_deg, one.volume_ml);
-      text += line;
-      if (one.is_seen) {
-        std::snprintf(line, sizeof line, "   %5.1f mL   %4.1f mL", one.voxels_ml, one.left_out_ml);
-        text += line;
-      }
-      text += "\n";
+      rows.push_back({core::Translate(roles::SpokenName(one.name)),
+                      core::Translate(one.is_seen ? core::Mark("map") : core::Mark("template")),
+                      std::to_string(one.is_seen ? one.parts : 1), std::to_string(one.triangles),
+                      ShownFixed(one.min_angle_deg, 1), ShownFixed(one.volume_ml, 0)});
+      if (!one.is_seen) continue;
+      rows.back().push_back(ShownFixed(one.voxels_ml, 1));
+      rows.back().push_back(ShownFixed(one.left_out_ml, 1));
     }
+    text += core::FormatShownTable(std::move(rows));
   }
-  for (const std::string& sentence : report.sinking) text += sentence + "\n";
+  for (const std::string& sentence : report.sinking) text += core::TranslateComposed(sentence) + "\n";
   for (const Port& port : report.patient.ports) {
-    const auto mm = [](double metres) { return std::lround(1000 * metres); };  // prints no "-0"
-    std::snprintf(line, sizeof line, "Port for %s at %ld, %ld, %ld mm (left, cranial, anterior). ",
-                  roles::SpokenName(NameOf(port.use)).c_str(), mm(port.position.x), mm(port.position.y),
-                  mm(port.position.z));
-    text += line + port.reason + "\n";
+    const auto mm = [](double metres) {
+      return std::to_string(std::lround(1000 * metres));
+    };  // prints no "-0"
+    text += core::TranslateWith("Port for {1} at {2}, {3}, {4} mm (left, cranial, anterior).",
+                                {core::Translate(roles::SpokenName(NameOf(port.use))), mm(port.position.x),
+                                 mm(port.position.y), mm(port.position.z)}) +
+            " " + core::TranslatePieces(port.reason) + "\n";
   }
   if (const auto& table = report.patient.table) {
-    std::snprintf(line, sizeof line, "Table %.0f degrees head up, %.0f degrees right side up. ",
-                  table->head_up * 180.0 / M_PI, table->right_up * 180.0 / M_PI);
-    text += line + table->reason + "\n";
+    text += core::TranslateWith("Table {1} degrees head up, {2} degrees right side up.",
+                                {ShownFixed(table->head_up * 180.0 / M_PI, 0),
+                                 ShownFixed(table->right_up * 180.0 / M_PI, 0)}) +
+            " " + core::TranslatePieces(table->reason) + "\n";
   }
   return text;
 }

@@ -38,20 +38,20 @@ void PrintForPerson(const anatomy::LintReport& report) {
   std::vector<std::vector<std::string>> rows = {
       {"organ", "triangles", "closed", "manifold", "self-intersections", "volume [mL]"}};
   for (const anatomy::MeshSummary& mesh : report.meshes) {
-    rows.push_back({mesh.name, std::to_string(mesh.triangles), mesh.closed ? "yes" : "no",
-                    mesh.manifold ? "yes" : "no", std::to_string(mesh.self_intersections),
-                    FormatNumber(mesh.volume_ml)});
+    rows.push_back({TranslateComposed(mesh.name), std::to_string(mesh.triangles),
+                    Translate(mesh.closed ? "yes" : "no"), Translate(mesh.manifold ? "yes" : "no"),
+                    std::to_string(mesh.self_intersections), ShownNumber(mesh.volume_ml)});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
   std::printf("\n");
   for (const anatomy::LintFinding& finding : report.findings) {
-    std::printf("%s  %s\n    %s\n", finding.code.c_str(), finding.where.c_str(), finding.text.c_str());
+    Print(finding.code + "  " + finding.where + "\n    " + TranslateComposed(finding.text) + "\n");
   }
   if (report.findings.empty()) {
-    std::printf("No findings.\n");
+    Say("No findings.\n");
   } else {
-    std::printf("\n%zu %s; docs/patient-check.md explains each code.\n", report.findings.size(),
-                report.findings.size() == 1 ? "finding" : "findings");
+    Print("\n" + TranslateCount("{1} finding", "{1} findings", report.findings.size()));
+    Say("; docs/patient-check.md explains each code.\n");
   }
 }
 

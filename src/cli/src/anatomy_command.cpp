@@ -40,39 +40,40 @@ core::Status Build(const BuildArguments& arguments) {
     options.overlays = arguments.overlays.empty() ? arguments.output + "-overlays" : arguments.overlays;
   }
   ProgressBar bar("building", 1.0);
-  const core::Result<anatomy::BuildReport> report = anatomy::BuildPatient(options, ShownBy(bar));
+  const core::Result<anatomy::BuildReport> report = anatomy::BuildPatient(options, bar.Follow());
   bar.Finish();
   if (!report) return report.error();
-  std::fputs(anatomy::FormatReport(*report).c_str(), stdout);
-  std::printf("\nWrote %s\n", arguments.output.c_str());
+  Print(anatomy::FormatReport(*report));
+  Say("\nWrote {1}\n", arguments.output);
   if (report->overlays > 0) {
-    std::printf("Wrote %zu pictures to check by eye into %s\n", report->overlays, options.overlays->c_str());
+    Say("Wrote {1} pictures to check by eye into {2}\n", report->overlays, options.overlays->c_str());
   }
   return {};
 }
 
 core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   ProgressBar bar("building", 1.0);
-  const core::Result<anatomy::BuildReport> report = anatomy::BuildPatientFromLabels(options, ShownBy(bar));
+  const core::Result<anatomy::BuildReport> report = anatomy::BuildPatientFromLabels(options, bar.Follow());
   bar.Finish();
   if (!report) return report.error();
   std::vector<std::vector<std::string>> rows = {{"organ", "slices", "triangles", "closed", "manifold",
                                                  "genus", "cuts", "min angle [deg]", "volume [mL]",
                                                  "volume change [%]", "distance [mm]", "mean [mm]"}};
   for (const contours::OrganReport& organ : report->organs) {
-    rows.push_back({organ.name, std::to_string(organ.slices), std::to_string(organ.triangles),
-                    organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO", std::to_string(organ.genus),
-                    std::to_string(organ.self_intersections), FormatNumber(organ.min_angle_deg, 3),
-                    FormatNumber(organ.volume_ml), FormatNumber(100 * organ.volume_change, 2),
-                    FormatNumber(organ.hausdorff_mm, 3), FormatNumber(organ.mean_distance_mm, 3)});
+    rows.push_back({Translate(organ.name), std::to_string(organ.slices), std::to_string(organ.triangles),
+                    Translate(organ.closed ? "yes" : "NO"), Translate(organ.manifold ? "yes" : "NO"),
+                    std::to_string(organ.genus), std::to_string(organ.self_intersections),
+                    ShownNumber(organ.min_angle_deg, 3), ShownNumber(organ.volume_ml),
+                    ShownNumber(100 * organ.volume_change, 2), ShownNumber(organ.hausdorff_mm, 3),
+                    ShownNumber(organ.mean_distance_mm, 3)});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf(
-      "Distance: of mesh and label surface from each other, the largest both ways, and the mesh's mean.\n");
-  std::printf("\n%s", anatomy::FormatSurroundings(*report).c_str());
+  PrintTable(rows);
+  Say("Distance: of mesh and label surface from each other, the largest both ways, and the mesh's mean.\n");
+  Print("\n" + anatomy::FormatSurroundings(*report));
   if (!report->notes.empty()) std::printf("\n");
-  for (const std::string& note : report->notes) std::printf("%s\n", note.c_str());
-  std::printf("\n%s.\nWrote %s\n", report->patient.provenance.c_str(), options.output.c_str());
+  for (const std::string& note : report->notes) Print(TranslateComposed(note) + "\n");
+  Print("\n" + TranslateComposed(report->patient.provenance) + ".\n");
+  Say("Wrote {1}\n", options.output);
   return {};
 }
 

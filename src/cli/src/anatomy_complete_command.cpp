@@ -45,7 +45,7 @@ struct Completion {
 
 std::string FormatParameter(const anatomy::Parameter& parameter) {
   const double* number = std::get_if<double>(&parameter.value);
-  return number != nullptr ? FormatNumber(*number) : std::get<std::string>(parameter.value);
+  return number != nullptr ? ShownNumber(*number) : std::get<std::string>(parameter.value);
 }
 
 core::Result<std::vector<Completion>> Plan(const CompleteArguments& arguments,
@@ -120,29 +120,30 @@ void PrintForPerson(const std::vector<Completion>& all, bool keeps_tubes) {
     for (const anatomy::VariationShare& share : all.front().variant.shares)
       rows.front().push_back(share.name);
     for (const Completion& one : all) {
-      rows.push_back({one.folder.filename().string(), FormatNumber(100 * one.variant.probability, 3)});
+      rows.push_back({one.folder.filename().string(), ShownNumber(100 * one.variant.probability, 3)});
       for (const anatomy::VariationShare& share : one.variant.shares) rows.back().push_back(share.value);
     }
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
   std::printf("\n");
   double sum = 0;
   for (const Completion& one : all) {
     sum += one.variant.probability;
     for (const anatomy::LintFinding& finding : one.findings) {
-      std::printf("%s: %s  %s\n    %s\n", one.folder.c_str(), finding.code.c_str(), finding.where.c_str(),
-                  finding.text.c_str());
+      Print(one.folder.string() + ": " + finding.code + "  " + finding.where + "\n    " +
+            TranslateComposed(finding.text) + "\n");
     }
   }
   if (keeps_tubes) {
-    std::printf("Ducts and arteries are seen in the images and stay as they are: only the rest was set.\n");
+    Say("Ducts and arteries are seen in the images and stay as they are: only the rest was set.\n");
   } else {
-    std::printf("%s people in a hundred are like %s, by the series named and as if they were independent.\n",
-                FormatNumber(100 * sum, 3).c_str(), all.size() == 1 ? "this one" : "one of these");
+    Say("{1} people in a hundred are like {2}, by the series named and as if they were independent.\n",
+        ShownNumber(100 * sum, 3), all.size() == 1 ? Translate("this one") : Translate("one of these"));
   }
-  std::printf("Nobody knows it of this patient: rehearse more than one.\nWrote ");
-  for (std::size_t i = 0; i < all.size(); ++i) std::printf("%s%s", i == 0 ? "" : ", ", all[i].folder.c_str());
-  std::printf("\n");
+  Say("Nobody knows it of this patient: rehearse more than one.\n");
+  std::string folders;
+  for (const Completion& one : all) folders += (folders.empty() ? "" : ", ") + one.folder.string();
+  Say("Wrote {1}\n", folders);
 }
 
 core::Status Complete(const CompleteArguments& arguments, Outcome& outcome) {

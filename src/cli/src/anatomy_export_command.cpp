@@ -7,6 +7,7 @@
 #include <string>
 
 #include "command.h"
+#include "console.h"
 #include "trocar/anatomy/patient_export.h"
 
 namespace trocar::cli {
@@ -28,7 +29,7 @@ core::Status Export(const ExportArguments& arguments) {
   if (!patient) return patient.error();
   const auto paths = anatomy::ExportPatient(*patient, arguments.output, {*format, arguments.is_ascii});
   if (!paths) return paths.error();
-  for (const auto& path : *paths) std::printf("Wrote %s\n", path.c_str());
+  for (const auto& path : *paths) Say("Wrote {1}\n", path);
   return {};
 }
 

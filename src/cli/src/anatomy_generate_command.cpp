@@ -33,33 +33,34 @@ struct GenerateArguments {
 
 std::string FormatValue(const std::variant<double, std::string>& value) {
   const double* number = std::get_if<double>(&value);
-  return number != nullptr ? FormatNumber(*number) : std::get<std::string>(value);
+  return number != nullptr ? ShownNumber(*number) : std::get<std::string>(value);
 }
 
 /// What a parameter is drawn from, in words.
 std::string FormatRule(const anatomy::ParameterRule& rule) {
-  const auto number = [](double value) { return FormatNumber(value); };
+  const auto number = [](double value) { return ShownNumber(value); };
   switch (rule.distribution) {
     case anatomy::Distribution::kNormal:
-      return number(rule.centre) + " +- " + number(rule.spread) + ", " + number(rule.low) + " to " +
-             number(rule.high);
+      return TranslateWith("{1} +- {2}, {3} to {4}",
+                           {number(rule.centre), number(rule.spread), number(rule.low), number(rule.high)});
     case anatomy::Distribution::kLognormal:
-      return "median " + number(rule.centre) + ", log deviation " + number(rule.spread) + ", " +
-             number(rule.low) + " to " + number(rule.high);
+      return TranslateWith("median {1}, log deviation {2}, {3} to {4}",
+                           {number(rule.centre), number(rule.spread), number(rule.low), number(rule.high)});
     case anatomy::Distribution::kChance:
-      return "yes in " + number(100 * rule.centre) + " %";
+      return TranslateWith("yes in {1} %", {number(100 * rule.centre)});
     case anatomy::Distribution::kChoice: {
       double total = 0;
       for (const anatomy::Choice& choice : rule.choices) total += choice.weight;
       std::string text;
       for (const anatomy::Choice& choice : rule.choices) {
         text += (text.empty() ? "" : ", ") + std::string(choice.name) + " " +
-                FormatNumber(100 * choice.weight / total, 3) + " %";
+                ShownNumber(100 * choice.weight / total, 3) + " %";
       }
       return text;
     }
     case anatomy::Distribution::kFixed:
-      return number(rule.centre) + " unless set, " + number(rule.set_low) + " to " + number(rule.set_high);
+      return TranslateWith("{1} unless set, {2} to {3}",
+                           {number(rule.centre), number(rule.set_low), number(rule.set_high)});
   }
   return {};
 }
@@ -67,10 +68,10 @@ std::string FormatRule(const anatomy::ParameterRule& rule) {
 void PrintRules() {
   std::vector<std::vector<std::string>> rows = {{"name", "unit", "drawn from", "what it is", "source"}};
   for (const anatomy::ParameterRule& rule : anatomy::ParameterRules()) {
-    rows.push_back({std::string(rule.name), std::string(rule.unit), FormatRule(rule), std::string(rule.about),
+    rows.push_back({std::string(rule.name), std::string(rule.unit), FormatRule(rule), Translate(rule.about),
                     std::string(rule.source)});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
 }
 
 void PrintParameters(const anatomy::Patient& patient) {
@@ -78,7 +79,7 @@ void PrintParameters(const anatomy::Patient& patient) {
   for (const anatomy::Parameter& parameter : patient.parameters) {
     rows.push_back({parameter.name, FormatValue(parameter.value), parameter.unit, parameter.source});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
 }
 
 void PrintVariations(const std::vector<anatomy::VariationCount>& variations) {
@@ -93,51 +94,46 @@ void PrintVariations(const std::vector<anatomy::VariationCount>& variations) {
       const double share = static_cast<double>(value.observed) / static_cast<double>(variation.patients);
       const double deviation =
           anatomy::CalcBinomialDeviation(value.configured, value.observed, variation.patients);
-      char text[32];
-      std::snprintf(text, sizeof text, "%+.2f", deviation);
-      rows.push_back({i == 0 ? variation.parameter : "", value.value, FormatNumber(100 * value.configured, 3),
-                      FormatNumber(100 * share, 3), std::to_string(value.observed),
-                      std::to_string(variation.patients), text});
+      rows.push_back({i == 0 ? variation.parameter : "", value.value, ShownNumber(100 * value.configured, 3),
+                      ShownNumber(100 * share, 3), std::to_string(value.observed),
+                      std::to_string(variation.patients), ShownFixed(deviation, 2, true)});
       if (i == 0) {
-        rows.back().push_back(FormatNumber(variation.chi_square, 3));
-        rows.back().push_back(FormatNumber(variation.p_value, 3));
+        rows.back().push_back(ShownNumber(variation.chi_square, 3));
+        rows.back().push_back(ShownNumber(variation.p_value, 3));
       }
     }
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf(
-      "\nDeviation: in standard deviations of the binomial distribution. p: how often chance alone gives a\n"
+  PrintTable(rows);
+  Say("\nDeviation: in standard deviations of the binomial distribution. p: how often chance alone gives a\n"
       "chi-square at least as large. ");
   if (deviating == 0) {
-    std::printf(
-        "All frequencies are within the sampling error of the configured ones\n(no p below %g over %zu "
+    Say("All frequencies are within the sampling error of the configured ones\n(no p below {1} over {2} "
         "tests).\n",
-        kSignificance, variations.size());
+        ShownNumber(kSignificance), variations.size());
   } else {
-    std::printf("%zu of %zu variations deviate (p below %g over the number of tests).\n", deviating,
-                variations.size(), kSignificance);
+    Say("{1} of {2} variations deviate (p below {3} over the number of tests).\n", deviating,
+        variations.size(), ShownNumber(kSignificance));
   }
 }
 
 void PrintPopulation(const anatomy::PopulationReport& report, double seconds) {
   constexpr std::size_t kNamed = 10;  // seeds listed at most
-  std::printf("%zu patients in %.0f s, %zu seeds failed\n", report.patients, seconds, report.failures.size());
-  std::printf("meshes: %zu, closed %zu, manifold %zu, self-intersections %zu, smallest angle %s degrees\n",
-              report.meshes, report.closed_meshes, report.manifold_meshes, report.self_intersections,
-              FormatNumber(report.smallest_angle_deg, 3).c_str());
-  std::printf("linter: ");
-  if (report.findings.empty()) std::printf("silent for every patient");
-  for (const auto& [code, count] : report.findings) std::printf("%s %zu  ", code.c_str(), count);
-  std::printf("\n");
+  Say("{1} patients in {2} s, {3} seeds failed\n", report.patients, ShownFixed(seconds, 0),
+      report.failures.size());
+  Say("meshes: {1}, closed {2}, manifold {3}, self-intersections {4}, smallest angle {5} degrees\n",
+      report.meshes, report.closed_meshes, report.manifold_meshes, report.self_intersections,
+      ShownNumber(report.smallest_angle_deg, 3));
+  std::string findings;
+  for (const auto& [code, count] : report.findings) findings += code + " " + std::to_string(count) + "  ";
+  Say("linter: {1}\n", findings.empty() ? Translate("silent for every patient") : findings);
   if (!report.seeds_with_findings.empty()) {
-    std::printf("seeds with findings:");
+    Say("seeds with findings:");
     for (std::size_t i = 0; i < report.seeds_with_findings.size() && i < kNamed; ++i)
       std::printf(" %llu", static_cast<unsigned long long>(report.seeds_with_findings[i]));
     std::printf("%s\n", report.seeds_with_findings.size() > kNamed ? " ..." : "");
   }
   for (std::size_t i = 0; i < report.failures.size() && i < kNamed; ++i) {
-    std::printf("seed %llu: %s\n", static_cast<unsigned long long>(report.failures[i].first),
-                report.failures[i].second.Text().c_str());
+    Say("seed {1}: {2}\n", report.failures[i].first, core::ShownText(report.failures[i].second));
   }
   std::printf("\n");
   if (!report.variations.empty()) PrintVariations(report.variations);
@@ -164,8 +160,7 @@ core::Status GenerateMany(const GenerateArguments& arguments,
   bar.Finish();
   if (!report) return report.error();
   PrintPopulation(*report, stopwatch.Seconds());
-  if (!arguments.output.empty())
-    std::printf("\nWrote %zu patients into %s\n", report->patients, arguments.output.c_str());
+  if (!arguments.output.empty()) Say("\nWrote {1} patients into {2}\n", report->patients, arguments.output);
   if (report->IsSound()) return {};
   return core::Error{core::ErrorCode::kPatientInvalid,
                      std::to_string(report->failures.size() + report->seeds_with_findings.size()) +
@@ -189,7 +184,7 @@ core::Status Generate(const GenerateArguments& arguments) {
   if (!patient) return patient.error();
   if (auto status = anatomy::WritePatient(arguments.output, *patient); !status) return status;
   PrintParameters(*patient);
-  std::printf("\nWrote %s\n", arguments.output.c_str());
+  Say("\nWrote {1}\n", arguments.output);
   return {};
 }
 

@@ -25,7 +25,7 @@ struct GrowArguments {
 
 core::Status Grow(const GrowArguments& arguments) {
   ProgressBar bar("opening", 1.0);
-  auto workspace = contours::ContourWorkspace::Open(arguments.options, ShownBy(bar));
+  auto workspace = contours::ContourWorkspace::Open(arguments.options, bar.Follow());
   if (!workspace) return workspace.error();
   auto& document = workspace->Document();
   const auto& structures = document.Points().structures;
@@ -39,14 +39,14 @@ core::Status Grow(const GrowArguments& arguments) {
   const auto request = workspace->MakeGrowthRequest(static_cast<int>(organ - structures.begin()),
                                                     static_cast<int>(std::lround(arguments.at[2])),
                                                     {arguments.at[0], arguments.at[1]});
-  const auto grown = contours::GrowOrgan(request, {}, ShownBy(bar));
+  const auto grown = contours::GrowOrgan(request, {}, bar.Follow());
   bar.Finish();
   if (!grown) return grown.error();
   if (auto status = contours::ApplyGrowth(document, *grown); !status) return status;
   if (auto status = workspace->Save(arguments.output); !status) return status;
-  std::printf("%s: %.0f mL, %zu points on %zu slices, %d to %d\nWrote %s\n", grown->name.c_str(),
-              grown->volume_ml, grown->points, grown->slices.size(), grown->slices.front().slice,
-              grown->slices.back().slice, arguments.output.c_str());
+  Say("{1}: {2} mL, {3} points on {4} slices, {5} to {6}\nWrote {7}\n", Translate(grown->name),
+      ShownFixed(grown->volume_ml, 0), grown->points, grown->slices.size(), grown->slices.front().slice,
+      grown->slices.back().slice, arguments.output);
   return {};
 }
 

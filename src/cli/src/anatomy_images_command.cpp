@@ -13,6 +13,7 @@
 #include "console.h"
 #include "image_options.h"
 #include "trocar/core/printable.h"
+#include "trocar/core/text_table.h"
 #include "trocar/images/contact_sheet.h"
 #include "trocar/images/image_series.h"
 #include "trocar/images/png_file.h"
@@ -29,36 +30,46 @@ struct ImagesArguments {
 
 std::string FormatSlices(const images::ImageSeriesInfo& info) {
   const int first = info.slice_numbers.front(), last = info.slice_numbers.back();
-  std::string text = std::to_string(info.slice_numbers.size()) + ", number " + std::to_string(first);
-  if (last == first) return text;
-  text += " to " + std::to_string(last);
+  const std::string count = std::to_string(info.slice_numbers.size()), from = std::to_string(first);
+  if (last == first) return TranslateWith("{1}, number {2}", {count, from});
   const int step = info.slice_numbers[1] - first;
-  return step == 1 ? text : text + " in steps of " + std::to_string(step);
+  return TranslateWith(
+      step == 1 ? Mark("{1}, number {2} to {3}") : Mark("{1}, number {2} to {3} in steps of {4}"),
+      {count, from, std::to_string(last), std::to_string(step)});
 }
 
 void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
+  const auto number = [](double value) { return ShownNumber(value); };
   std::vector<std::vector<std::string>> rows = {{"what", "found"}};
-  rows.push_back(
-      {"format", info.format + (info.pattern.empty() ? "" : ", files " + core::Printable(info.pattern))});
-  rows.push_back({"slices", FormatSlices(info)});
-  rows.push_back({"size", std::to_string(info.width) + " x " + std::to_string(info.height) + " pixels"});
-  rows.push_back({"pixel", FormatNumber(info.pixel_mm) + " mm"});
-  rows.push_back({"slice distance", FormatNumber(info.slice_mm) + " mm from one number to the next"});
-  rows.push_back({"columns grow to", info.axes[0]});
-  rows.push_back({"rows grow to", info.axes[1]});
-  rows.push_back({"slice numbers grow to", info.axes[2]});
-  rows.push_back({"frame in the file", info.file_frame.empty() ? "not said" : info.file_frame});
-  if (info.tilt_deg > 0.05) rows.push_back({"oblique by", FormatNumber(info.tilt_deg, 3) + " degrees"});
-  rows.push_back({"samples", std::string(info.is_color ? "colour" : "grey") + ", " +
-                                 std::to_string(info.bits) + " bits"});
+  const auto add = [&rows](const std::string& what, const std::string& found) {
+    rows.push_back({what, found});
+  };
+  add(Translate("format"),
+      info.pattern.empty() ? info.format
+                           : TranslateWith("{1}, files {2}", {info.format, core::Printable(info.pattern)}));
+  add(Translate("slices"), FormatSlices(info));
+  add(Translate("size"),
+      TranslateWith("{1} x {2} pixels", {std::to_string(info.width), std::to_string(info.height)}));
+  add(Translate("pixel"), number(info.pixel_mm) + " mm");
+  add(Translate("slice distance"),
+      TranslateWith("{1} mm from one number to the next", {number(info.slice_mm)}));
+  add(Translate("columns grow to"), Translate(info.axes[0]));
+  add(Translate("rows grow to"), Translate(info.axes[1]));
+  add(Translate("slice numbers grow to"), Translate(info.axes[2]));
+  add(Translate("frame in the file"), info.file_frame.empty() ? Translate("not said") : info.file_frame);
+  if (info.tilt_deg > 0.05)
+    add(Translate("oblique by"), TranslateWith("{1} degrees", {ShownNumber(info.tilt_deg, 3)}));
+  add(Translate("samples"), TranslateWith(info.is_color ? Mark("colour, {1} bits") : Mark("grey, {1} bits"),
+                                          {std::to_string(info.bits)}));
   if (!info.is_color) {
-    rows.push_back(
-        {"grey values", FormatNumber(info.grey_range[0]) + " to " + FormatNumber(info.grey_range[1])});
-    rows.push_back(
-        {"window", FormatNumber(window.centre) + "," + FormatNumber(window.width) + " (centre,width)"});
+    add(Translate("grey values"),
+        TranslateWith("{1} to {2}", {number(info.grey_range[0]), number(info.grey_range[1])}));
+    // as --window wants it
+    add(Translate("window"), TranslateWith("{1} (centre,width)", {core::FormatNumber(window.centre) + "," +
+                                                                  core::FormatNumber(window.width)}));
   }
-  if (info.ignored_files > 0) rows.push_back({"other files, ignored", std::to_string(info.ignored_files)});
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  if (info.ignored_files > 0) add(Translate("other files, ignored"), std::to_string(info.ignored_files));
+  PrintTable(rows);
 }
 
 void PrintJson(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
@@ -98,7 +109,7 @@ core::Status Show(ImagesArguments arguments) {
   }
   arguments.options.memory_bytes = static_cast<std::size_t>(arguments.memory_mb) << 20;
   ProgressBar bar("opening", 1.0);
-  const images::Progress progress = ShownBy(bar);
+  const images::Progress progress = bar.Follow();
   const auto series = images::ImageSeries::Open(arguments.path, arguments.options, progress);
   if (!series) {
     bar.Finish();
@@ -114,8 +125,7 @@ core::Status Show(ImagesArguments arguments) {
   }
   bar.Finish();
   arguments.is_json ? PrintJson(info, shown) : PrintForPerson(info, shown);
-  if (!arguments.preview.empty() && !arguments.is_json)
-    std::printf("\nWrote %s\n", arguments.preview.c_str());
+  if (!arguments.preview.empty() && !arguments.is_json) Say("\nWrote {1}\n", arguments.preview);
   return {};
 }
 

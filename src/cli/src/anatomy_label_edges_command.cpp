@@ -25,16 +25,17 @@ core::Status Measure(const Arguments& arguments) {
   options.images = arguments.images;
   options.reference = arguments.reference;
   ProgressBar bar("measuring", 1.0);
-  const auto edges = contours::MeasureLabelEdges(options, ShownBy(bar));
+  const auto edges = contours::MeasureLabelEdges(options, bar.Follow());
   bar.Finish();
   if (!edges) return edges.error();
   if (arguments.is_json) {
     std::fputs(contours::FormatJson(*edges).c_str(), stdout);
     return {};
   }
-  std::fputs(FormatTable(contours::Tabulate(*edges)).c_str(), stdout);
-  std::printf("\nShifted by %+.2f mm along columns, %+.2f mm along rows, %+.2f mm along slices.\n",
-              edges->shift_mm[0], edges->shift_mm[1], edges->shift_mm[2]);
+  PrintTable(contours::Tabulate(*edges));
+  Say("\nShifted by {1} mm along columns, {2} mm along rows, {3} mm along slices.\n",
+      ShownFixed(edges->shift_mm[0], 2, true), ShownFixed(edges->shift_mm[1], 2, true),
+      ShownFixed(edges->shift_mm[2], 2, true));
   return {};
 }
 

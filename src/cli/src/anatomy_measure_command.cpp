@@ -52,7 +52,7 @@ ordered_json MakeJson(const std::vector<Measured>& all) {
 
 std::string FormatCell(const Measured& one, std::string_view name) {
   for (const ShapeMeasure& measure : one.measures) {
-    if (measure.name == name) return FormatNumber(measure.value, 3) + (measure.is_seen ? "" : " *");
+    if (measure.name == name) return ShownNumber(measure.value, 3) + (measure.is_seen ? "" : " *");
   }
   return "-";
 }
@@ -63,17 +63,18 @@ void PrintForPerson(const std::vector<Measured>& all) {
     const std::filesystem::path folder = one.folder;
     rows.front().push_back((folder.has_filename() ? folder : folder.parent_path()).filename().string());
   }
-  rows.front().insert(rows.front().end(), {"literature", "how"});
+  rows.front().insert(rows.front().end(), {Mark("literature"), Mark("how")});
   for (const ShapeMeasure& measure : all.front().measures) {
     rows.push_back({std::string(measure.name), std::string(measure.unit)});
     for (const Measured& one : all) rows.back().push_back(FormatCell(one, measure.name));
     const anatomy::ShapeRange* range = FindRange(measure.name);
-    rows.back().push_back(range == nullptr ? ""
-                                           : FormatNumber(range->low) + " to " + FormatNumber(range->high));
-    rows.back().push_back(std::string(measure.about));
+    rows.back().push_back(
+        range == nullptr ? ""
+                         : TranslateWith("{1} to {2}", {ShownNumber(range->low), ShownNumber(range->high)}));
+    rows.back().push_back(Translate(measure.about));
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf("\n*: hangs on a duct that was placed by landmarks, not seen.\n");
+  PrintTable(rows);
+  Say("\n*: hangs on a duct that was placed by landmarks, not seen.\n");
 }
 
 core::Status Measure(const std::vector<std::string>& folders, bool is_json) {

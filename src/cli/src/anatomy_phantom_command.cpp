@@ -27,19 +27,18 @@ core::Status MakeCt(const PhantomArguments& arguments, const core::Result<anatom
   const auto phase = images::FindCtPhase(arguments.phase);
   if (!phase) return core::Error{core::ErrorCode::kUsage, "--ct none, arterial or portal"};
   ProgressBar bar("drawing", 1.0);
-  const auto labels = arguments.labels.empty() ? anatomy::DrawLabels(*patient, ShownBy(bar))
+  const auto labels = arguments.labels.empty() ? anatomy::DrawLabels(*patient, bar.Follow())
                                                : images::ReadLabelVolume(arguments.labels);
   if (!labels) return labels.error();
   const anatomy::PhantomOptions& o = arguments.options;
   const auto phantom = anatomy::MakeCtPhantom(
       *labels, {*phase, o.pixel_mm, o.slice_mm, o.blur_px * o.pixel_mm, arguments.noise_hu, o.seed}, {},
-      ShownBy(bar));
+      bar.Follow());
   if (!phantom) return phantom.error();
-  if (auto status = anatomy::WriteCtPhantom(arguments.output, *phantom, ShownBy(bar)); !status) return status;
+  if (auto status = anatomy::WriteCtPhantom(arguments.output, *phantom, bar.Follow()); !status) return status;
   bar.Finish();
-  std::printf(
-      "Wrote %s: slices/ (a CT series), labels.nrrd (the truth)\nNext: trocar anatomy contours %s/slices\n",
-      arguments.output.c_str(), arguments.output.c_str());
+  Say("Wrote {1}: slices/ (a CT series), labels.nrrd (the truth)\nNext: trocar anatomy contours {1}/slices\n",
+      arguments.output);
   return {};
 }
 
@@ -55,17 +54,16 @@ core::Status MakePhantom(const PhantomArguments& arguments) {
   if (!arguments.phase.empty()) return MakeCt(arguments, patient);
   if (!arguments.labels.empty()) return core::Error{core::ErrorCode::kUsage, "--labels belongs to --ct"};
   ProgressBar bar("drawing", 1.0);
-  const auto status = anatomy::WritePhantom(arguments.output, *patient, arguments.options, ShownBy(bar));
+  const auto status = anatomy::WritePhantom(arguments.output, *patient, arguments.options, bar.Follow());
   bar.Finish();
   if (!status) return status;
   const std::string& o = arguments.output;
-  std::printf(
-      "Wrote %s: slices/ (the pictures), labels.nrrd (the truth), control_points.json, patient/ (the truth "
+  Say("Wrote {1}: slices/ (the pictures), labels.nrrd (the truth), control_points.json, patient/ (the truth "
       "as "
       "meshes)\n"
-      "Next: trocar anatomy build %s/control_points.json --images %s/slices --reference %s/labels.nrrd -o "
-      "%s-built\n",
-      o.c_str(), o.c_str(), o.c_str(), o.c_str(), o.c_str());
+      "Next: trocar anatomy build {1}/control_points.json --images {1}/slices --reference {1}/labels.nrrd -o "
+      "{1}-built\n",
+      o);
   return {};
 }
 

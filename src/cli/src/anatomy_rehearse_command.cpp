@@ -29,12 +29,14 @@ core::Status Rehearse(const Arguments& arguments) {
   options.clicks.points = {arguments.points.front(), arguments.points.back()};
   if (!arguments.overlays.empty()) options.overlays = arguments.overlays;
   ProgressBar bar("rehearsing", 1.0);
-  const auto organs = contours::RehearseContours(options, ShownBy(bar));
+  const auto organs = contours::RehearseContours(options, bar.Follow());
   bar.Finish();
   if (!organs) return organs.error();
-  std::fputs(arguments.is_json ? contours::FormatJson(*organs).c_str()
-                               : FormatTable(contours::Tabulate(*organs)).c_str(),
-             stdout);
+  if (arguments.is_json) {
+    std::fputs(contours::FormatJson(*organs).c_str(), stdout);
+  } else {
+    PrintTable(contours::Tabulate(*organs));
+  }
   return {};
 }
 

@@ -47,13 +47,15 @@ void PrintLegend(const anatomy::Patient& patient, const view::PatientFigureOptio
   };
   std::vector<std::vector<std::string>> rows = {{"in the picture", "colour"}};
   for (const anatomy::Organ& organ : patient.organs) {
-    rows.push_back(row(organ.name, options.colours.Of(organ.role)));
+    rows.push_back(row(ShownName(organ.name), options.colours.Of(organ.role)));
     if (!options.has_regions) continue;
     for (const anatomy::Region& region : organ.regions)
-      rows.push_back(row(organ.name + "/" + region.name, options.colours.Of(region.role)));
+      rows.push_back(
+          row(ShownName(organ.name) + "/" + ShownName(region.name), options.colours.Of(region.role)));
   }
-  for (const anatomy::Tube& tube : patient.tubes) rows.push_back(row(tube.name, options.colours.Of(tube)));
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  for (const anatomy::Tube& tube : patient.tubes)
+    rows.push_back(row(ShownName(tube.name), options.colours.Of(tube)));
+  PrintTable(rows);
 }
 
 core::Status View(const ViewArguments& arguments) {
@@ -96,7 +98,7 @@ core::Status View(const ViewArguments& arguments) {
   if (auto status = render::WritePng(arguments.picture, render::TilePictures(*pictures, kColumns)); !status)
     return status;
   PrintLegend(*patient, options);
-  std::printf("\nWrote %s\n", arguments.picture.c_str());
+  Say("\nWrote {1}\n", arguments.picture);
   return {};
 }
 

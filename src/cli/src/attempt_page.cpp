@@ -25,13 +25,14 @@ namespace {
 constexpr int kPictureWidth = 800, kPictureHeight = 450;  // of the critical view [px]
 
 core::Error WrongEnding(const std::string& path, const std::string& endings) {
-  return {core::ErrorCode::kUsage, "\"" + core::Printable(path) + "\": a report ends in " + endings};
+  return core::Error{core::ErrorCode::kUsage,
+                     "\"" + core::Printable(path) + "\": a report ends in " + endings};
 }
 
 /// What the published score says of each criterion (0 to 2).
 std::string DescribeScore(const training::CriticalViewScore& score) {
-  const auto of = [](int points) { return core::TranslateWith("{1} of {2}", {std::to_string(points), "2"}); };
-  return core::TranslateWith(
+  const auto of = [](int points) { return TranslateWith("{1} of {2}", {std::to_string(points), "2"}); };
+  return TranslateWith(
       "hepatocystic triangle cleared {1}, lower gallbladder off the liver {2}, two and only two structures "
       "{3}",
       {of(score.criteria[0]), of(score.criteria[1]), of(score.criteria[2])});
@@ -59,8 +60,8 @@ core::Result<report::DoubletView> DrawDoublet(const scene::Scene& scene,
   if (!back.ok()) return back.error();
   const auto doublet = view::RenderCriticalViewDoublet(*front, *back, kPictureWidth, kPictureHeight);
   if (!doublet.ok()) {
-    view.verdict = core::TranslateWith("It was achieved. It could not be drawn here: {1}",
-                                       {core::ShownText(doublet.error())});
+    view.verdict =
+        TranslateWith("It was achieved. It could not be drawn here: {1}", {core::ShownText(doublet.error())});
     return view;
   }
   const auto front_png = render::FormatPng(doublet->front.image),
@@ -69,7 +70,7 @@ core::Result<report::DoubletView> DrawDoublet(const scene::Scene& scene,
     view.front_png = *front_png;
     view.back_png = *back_png;
   }
-  view.verdict = core::TranslateWith(
+  view.verdict = TranslateWith(
       "Achieved: {1}; seen from the front and from behind. Each picture shows the moment at which that view "
       "came to count, for a person to judge.",
       {DescribeScore(score)});
@@ -106,7 +107,7 @@ core::Result<ReportKind> FindReportKind(const std::string& path) {
   if (ending == ".pdf") return ReportKind::kPdf;
   if (ending == ".csv") return ReportKind::kCsv;
   if (ending == ".json") return ReportKind::kJson;
-  return WrongEnding(path, ".html, .pdf, .csv or .json");
+  return WrongEnding(path, Mark(".html, .pdf, .csv or .json"));
 }
 
 core::Status WriteReport(const report::AttemptReport& report, const std::string& path) {
@@ -130,7 +131,7 @@ core::Status WriteReport(const report::TraineeReport& report, const std::string&
   if (!kind.ok()) return kind.error();
   if (*kind == ReportKind::kHtml) return core::WriteFile(path, report::FormatHtml(MakeDocument(report)));
   if (*kind == ReportKind::kPdf) return core::WriteFile(path, report::FormatPdf(MakeDocument(report)));
-  return WrongEnding(path, ".html or .pdf where it is of several attempts; CSV and JSON are of one");
+  return WrongEnding(path, Mark(".html or .pdf where it is of several attempts; CSV and JSON are of one"));
 }
 
 core::Result<report::AttemptReport> ReportTrace(const training::AttemptTrace& trace,
@@ -171,9 +172,9 @@ core::Result<report::AttemptReport> ReportWatch::MakeReport(report::AttemptFacts
     if (!doublet.ok()) return doublet.error();
     report.doublet = std::move(*doublet);
   } else if (report.is_operation) {
-    report.doublet = report::DoubletView{
-        "", "", report.seconds, report.seconds,
-        core::TranslateWith("Not achieved. At the end: {1}.", {DescribeScore(last_score_)})};
+    report.doublet =
+        report::DoubletView{"", "", report.seconds, report.seconds,
+                            TranslateWith("Not achieved. At the end: {1}.", {DescribeScore(last_score_)})};
   }
   return report;
 }
@@ -244,8 +245,7 @@ core::Status RunReport::Write(const std::vector<view::DemoPicture>& pictures) co
     auto png = core::ReadFile(picture.path);
     if (!png.ok()) return png.error();
     report->pictures.push_back(
-        {std::move(*png),
-         core::TranslateWith("after {1} s", {core::LocalNumber(FormatNumber(picture.time, 3))})});
+        {std::move(*png), TranslateWith("after {1} s", {ShownNumber(picture.time, 3)})});
   }
   return WriteReport(*report, path_);
 }

@@ -24,9 +24,9 @@ struct BenchArguments {
 std::string ListSuites() {
   std::vector<std::vector<std::string>> rows;
   for (const bench::BenchmarkSuite& suite : bench::BenchmarkSuites()) {
-    rows.push_back({std::string(suite.name), std::string(suite.description)});
+    rows.push_back({std::string(suite.name), Translate(suite.description)});
   }
-  return FormatTable(rows);
+  return core::FormatTable(rows);
 }
 
 void PrintJson(const std::string& suite, const bench::BenchmarkResult& result) {
@@ -45,16 +45,15 @@ void PrintJson(const std::string& suite, const bench::BenchmarkResult& result) {
 }
 
 void PrintForPerson(const std::string& suite, const bench::BenchmarkResult& result) {
-  std::printf("%s on %s\n\n", suite.c_str(),
-              (result.machine.empty() ? bench::DescribeMachine() : result.machine).c_str());
-  for (const std::string& note : result.notes) std::printf("%s\n", note.c_str());
+  Say("{1} on {2}\n\n", suite, result.machine.empty() ? bench::DescribeMachine() : result.machine);
+  for (const std::string& note : result.notes) Print(note + "\n");
   std::vector<std::vector<std::string>> rows = {{"case", "value", "unit"}};
   for (const bench::BenchmarkCase& entry : result.cases) {
-    rows.push_back({entry.name, FormatNumber(entry.value), entry.unit == "1" ? "" : entry.unit});
+    rows.push_back({entry.name, ShownNumber(entry.value), entry.unit == "1" ? "" : entry.unit});
   }
   for (const bench::BenchmarkRatio& ratio : result.ratios)
-    rows.push_back({ratio.name, FormatNumber(ratio.value), "times"});
-  std::fputs(FormatTable(rows).c_str(), stdout);
+    rows.push_back({ratio.name, ShownNumber(ratio.value), Translate("times")});
+  PrintTable(rows);
 }
 
 core::Status Run(const BenchArguments& arguments) {

@@ -35,14 +35,13 @@ core::Status MakeKeys(const std::string& name) {
   const auto passphrase = FindNewPassphrase(name + ".key");
   if (!passphrase.ok()) return passphrase.error();
   if (const auto made = assessment::MakeKeys(name, *passphrase); !made.ok()) return made;
-  std::printf("%s.key: keep it secret, and a copy in a safe place\n%s.pub: publish it\n", name.c_str(),
-              name.c_str());
+  Say("{1}.key: keep it secret, and a copy in a safe place\n{1}.pub: publish it\n", name);
   if (passphrase->empty()) {
-    std::fprintf(
-        stderr,
-        "warning: %s.key is not encrypted; whoever reads it can sign in your name. For an encrypted "
-        "one delete both files, set TROCAR_KEY_PASSPHRASE or begin at a terminal, and make them again\n",
-        name.c_str());
+    const std::string warning = TranslateWith(
+        "warning: {1}.key is not encrypted; whoever reads it can sign in your name. For an encrypted "
+        "one delete both files, set TROCAR_KEY_PASSPHRASE or begin at a terminal, and make them again",
+        {name});
+    std::fprintf(stderr, "%s\n", warning.c_str());
   }
   return {};
 }
@@ -59,8 +58,8 @@ core::Status Issue(const CertificateArguments& arguments) {
   bar.Finish();
   if (!text.ok()) return text.error();
   if (const auto written = core::WriteFile(arguments.output, *text); !written.ok()) return written;
-  std::printf("%s: certificate for %s; give it away together with %s\n", arguments.output.c_str(),
-              arguments.examinee.c_str(), arguments.recording.c_str());
+  Say("{1}: certificate for {2}; give it away together with {3}\n", arguments.output, arguments.examinee,
+      arguments.recording);
   return {};
 }
 
@@ -77,24 +76,24 @@ core::Status Verify(const CertificateArguments& arguments) {
   bar.Finish();
   if (!verified.ok()) return verified.error();
   const auto& exam = verified->exam;
-  std::printf("VERIFIED: signature, recording and outcome are as they were issued\n");
-  const std::vector<std::vector<std::string>> rows = {
-      {"exam",
-       exam.name + ": " + (exam.IsOperation() ? exam.operation : exam.task + ", level " + exam.level)},
-      {"seed", std::to_string(exam.seed)},
-      {"commitment", exam.commitment},
-      {"examinee", verified->examinee},
-      {"begun", verified->started},
-      {"issued", verified->issued},
-      {"completed", verified->is_completed ? "yes" : "no"},
-      {"passed", verified->is_passed ? "yes" : "no"},
-      {"signed with", verified->public_key}};
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  Say("VERIFIED: signature, recording and outcome are as they were issued\n");
+  const auto yes = [](bool is_so) { return Translate(is_so ? "yes" : "no"); };
+  Print(FormatFields(
+      {{"exam",
+        exam.name + ": " +
+            (exam.IsOperation() ? exam.operation : TranslateWith("{1}, level {2}", {exam.task, exam.level}))},
+       {"seed", std::to_string(exam.seed)},
+       {"commitment", exam.commitment},
+       {"examinee", verified->examinee},
+       {"begun", verified->started},
+       {"issued", verified->issued},
+       {"completed", yes(verified->is_completed)},
+       {"passed", yes(verified->is_passed)},
+       {"signed with", verified->public_key}}));
   if (signer.empty())
-    std::printf(
-        "Whose key that is, only its owner can tell: compare it with the one that the centre publishes "
+    Say("Whose key that is, only its owner can tell: compare it with the one that the centre publishes "
         "(--key).\n");
-  std::fputs(WrapText(std::string(assessment::CertificateStatement()), 100, "").c_str(), stdout);
+  Print(WrapText(Translate(assessment::CertificateStatement()), 100, ""));
   return {};
 }
 

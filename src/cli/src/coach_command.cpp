@@ -83,21 +83,21 @@ core::Status Coach(const CoachArguments& arguments) {
     std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
     return {};
   }
-  if (advice.empty()) std::printf("Nothing stands out against what the coach knows of this task.\n");
+  if (advice.empty()) Say("Nothing stands out against what the coach knows of this task.\n");
   for (std::size_t i = 0; i < advice.size(); ++i) {
     const training::Advice& one = advice[i];
-    std::printf("%zu. %s%s%s\n", i + 1, one.sentence.c_str(), one.look.empty() ? "" : " ", one.look.c_str());
-    std::printf("   Why: %s\n   Practise: %s (trocar play expert --task %s shows it)\n", one.why.c_str(),
-                one.practise.c_str(), one.exercise.c_str());
-    std::printf(
-        "   Rule %s: %s %s, threshold %s.\n", one.rule.c_str(),
-        FormatNumber(one.numbers.deviation, 3).c_str(),
-        one.numbers.expert_mean ? "standard deviations beyond scripted experts" : "times what is let pass",
-        FormatNumber(one.numbers.threshold, 3).c_str());
+    Print(std::to_string(i + 1) + ". " + TranslateComposed(one.sentence) +
+          (one.look.empty() ? "" : " " + TranslateComposed(one.look)) + "\n");
+    Say("   Why: {1}\n   Practise: {2} (trocar play expert --task {3} shows it)\n",
+        TranslateComposed(one.why), TranslateComposed(one.practise), one.exercise);
+    Say("   Rule {1}: {2} {3}, threshold {4}.\n", one.rule, ShownNumber(one.numbers.deviation, 3),
+        one.numbers.expert_mean ? Translate("standard deviations beyond scripted experts")
+                                : Translate("times what is let pass"),
+        ShownNumber(one.numbers.threshold, 3));
   }
   if (reference == nullptr)
-    std::printf("No expert set is known for \"%s\": only absolute rules were asked.\n", task.c_str());
-  std::printf("Training feedback, not certified assessment.\n");
+    Say("No expert set is known for \"{1}\": only absolute rules were asked.\n", task);
+  Say("Training feedback, not certified assessment.\n");
   return {};
 }
 

@@ -1,24 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file console.h  What the commands print with: tables and progress.
+/// \file console.h  What the commands print with, for people: texts, numbers, tables and progress.
 #pragma once
 
+#include <algorithm>
+#include <string>
 #include <string_view>
 
+#include "trocar/core/console.h"
 #include "trocar/core/progress_bar.h"
 #include "trocar/core/text_table.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::cli {
 
-using core::FormatNumber;
-using core::FormatTable;
-using core::ProgressBar;
-
-/// What libraries tell of their progress [0, 1], shown by a bar that outlives it.
-inline auto ShownBy(ProgressBar& bar) {
-  return [&bar](std::string_view what, double part) {
-    bar.SetLabel(what);
-    bar.Show(part);
-  };
+/// A key as a person reads it: "cystic duct" of "cystic_duct", in the chosen language.
+inline std::string ShownName(std::string_view key) {
+  std::string name(key);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return core::Translate(name);
 }
+
+using core::FormatFields;
+using core::FormatShownTable;
+using core::Mark;
+using core::Print;
+using core::PrintTable;
+using core::ProgressBar;
+using core::Say;
+using core::ShownFixed;
+using core::ShownNumber;
+using core::Translate;
+using core::TranslateComposed;
+using core::TranslateCount;
+using core::TranslateWith;
+using core::WrapText;
 
 }  // namespace trocar::cli

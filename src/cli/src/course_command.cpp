@@ -30,21 +30,23 @@ using nlohmann::ordered_json;
 constexpr std::size_t kWidth = 100;  // of printed words [columns]
 
 void PrintParagraph(const std::string& text, const std::string& indent) {
-  std::fputs(WrapText(text, kWidth, indent).c_str(), stdout);
+  Print(WrapText(Translate(text), kWidth, indent));
 }
 
 std::string WhatOf(const Step& step) {
-  if (!step.IsOperation()) return step.task + ", level " + step.level;
+  if (!step.IsOperation()) return TranslateWith("{1}, level {2}", {step.task, step.level});
   std::string text = step.operation;
-  if (!step.patient.Text().empty()) text += ", patient " + step.patient.Text();
-  if (step.from != assessment::Milestone::kStart) text += ", from " + std::string(NameOf(step.from));
-  return text + ", " + std::string(DescribeUntil(step.until));
+  if (!step.patient.Text().empty()) text += TranslateWith(", patient {1}", {step.patient.Text()});
+  if (step.from != assessment::Milestone::kStart)
+    text += TranslateWith(", from {1}", {ShownName(NameOf(step.from))});
+  return text + ", " + Translate(DescribeUntil(step.until));
 }
 
 std::string PassesOf(const Step& step) {
   std::string text =
-      std::to_string(step.consecutive_passes) + (step.consecutive_passes == 1 ? " pass" : " passes in a row");
-  if (step.passes > step.consecutive_passes) text += ", " + std::to_string(step.passes) + " in all";
+      TranslateCount("{1} pass", "{1} passes in a row", static_cast<std::size_t>(step.consecutive_passes));
+  if (step.passes > step.consecutive_passes)
+    text += TranslateWith(", {1} in all", {std::to_string(step.passes)});
   return text;
 }
 
@@ -53,22 +55,21 @@ core::Status List() {
   if (!courses.ok()) return courses.error();
   std::vector<std::vector<std::string>> rows = {{"course", "steps", "name"}};
   for (const Course& course : *courses)
-    rows.push_back({course.key, std::to_string(course.steps.size()), course.name});
-  std::fputs(FormatTable(rows).c_str(), stdout);
+    rows.push_back({course.key, std::to_string(course.steps.size()), Translate(course.name)});
+  PrintTable(rows);
   return {};
 }
 
 void PrintStep(const Step& step) {
-  std::printf("%s: %s\n", step.key.c_str(), step.name.c_str());
+  Print(step.key + ": " + Translate(step.name) + "\n");
   PrintParagraph(step.goal, "  ");
-  std::printf("  %s; %s\n", WhatOf(step).c_str(), PassesOf(step).c_str());
+  Print("  " + WhatOf(step) + "; " + PassesOf(step) + "\n");
   if (!step.prerequisites.empty()) {
     std::string text;
     for (const std::string& key : step.prerequisites) text += (text.empty() ? "" : ", ") + key;
-    std::printf("  after %s\n", text.c_str());
+    Say("  after {1}\n", text);
   }
-  for (const auto& threshold : step.proficiency.thresholds)
-    std::printf("  %s\n", DescribeThreshold(threshold).c_str());
+  for (const auto& threshold : step.proficiency.thresholds) Print("  " + DescribeThreshold(threshold) + "\n");
 }
 
 core::Status Show(const std::string& name, const std::string& step_key) {
@@ -79,14 +80,14 @@ core::Status Show(const std::string& name, const std::string& step_key) {
     if (!step.ok()) return step.error();
     PrintStep(*step);
     for (const auto& [heading, text] :
-         {std::pair{"Before", &step->briefing}, std::pair{"Passed", &step->after_pass},
-          std::pair{"Not passed", &step->after_fail}}) {
-      std::printf("\n%s\n", heading);
+         {std::pair{Translate("Before"), &step->briefing}, std::pair{Translate("Passed"), &step->after_pass},
+          std::pair{Translate("Not passed"), &step->after_fail}}) {
+      Print("\n" + heading + "\n");
       PrintParagraph(*text, "  ");
     }
     return {};
   }
-  std::printf("%s\n", course->name.c_str());
+  Print(Translate(course->name) + "\n");
   PrintParagraph(course->about, "");
   for (const Step& step : course->steps) {
     std::printf("\n");
@@ -106,29 +107,27 @@ core::Status Start(const std::string& name, const std::string& step_key, const s
   settings.threads = threads;
   ProgressBar bar("the expert operates up to this step", 600.0);
   settings.progress = [&](double seconds, const std::string& doing) {
-    bar.SetLabel(FormatNumber(seconds, 3) + " s, " + doing);
+    bar.SetLabel(ShownNumber(seconds, 3) + " s, " + Translate(doing));
     bar.Show(seconds);
     return true;
   };
   const auto prepared = assessment::PrepareStep(*step, settings);
   bar.Finish();
   if (!prepared.ok()) return prepared.error();
-  std::printf("%s\n", step->name.c_str());
+  Print(Translate(step->name) + "\n");
   PrintParagraph(step->briefing, "");
   std::string command =
       " --task " + (step->IsOperation() ? step->operation : step->task + " --level " + step->level);
   if (step->seed) command += " --seed " + std::to_string(*step->seed);
   if (!prepared->patient.empty()) command += " --patient " + prepared->patient.string();
   if (!prepared->state.empty()) {
-    std::printf("\nThe operation stands at \"%s\", %s s on%s:\n  %s\n",
-                std::string(NameOf(step->from)).c_str(), FormatNumber(prepared->seconds, 4).c_str(),
-                prepared->was_cached ? " (kept from before)" : "", prepared->state.c_str());
+    Say("\nThe operation stands at \"{1}\", {2} s on{3}:\n  {4}\n", NameOf(step->from),
+        ShownNumber(prepared->seconds, 4),
+        prepared->was_cached ? Translate(" (kept from before)") : std::string(), prepared->state);
     command += " --restore " + prepared->state.string();
   }
-  std::printf("\nLet the scripted expert do it:\n  trocar play expert%s --record attempt.trocar\n",
-              command.c_str());
-  std::printf("Judge a recording of it:\n  trocar course judge %s %s attempt.trocar\n", name.c_str(),
-              step_key.c_str());
+  Say("\nLet the scripted expert do it:\n  trocar play expert{1} --record attempt.trocar\n", command);
+  Say("Judge a recording of it:\n  trocar course judge {1} {2} attempt.trocar\n", name, step_key);
   return {};
 }
 
@@ -178,11 +177,12 @@ core::Status Judge(const JudgeArguments& arguments, Outcome& outcome) {
     std::printf("%s\n", VerdictJson(verdict).dump(2).c_str());
     return {};
   }
-  std::printf("%s: %s\n", step->name.c_str(), verdict.is_passed ? "PASSED" : "not passed");
+  Print(Translate(step->name) + ": " + Translate(verdict.is_passed ? Mark("PASSED") : Mark("not passed")) +
+        "\n");
   PrintVerdict(verdict);
   std::printf("\n");
   PrintParagraph(verdict.is_passed ? step->after_pass : step->after_fail, "");
-  std::printf("Training feedback, not certified assessment.\n");
+  Say("Training feedback, not certified assessment.\n");
   return {};
 }
 
@@ -209,25 +209,28 @@ std::vector<std::string> DescribeLearning(const Course& course, const Step& step
   if (const auto curve = assessment::FitLearningCurve(times); curve.ok()) {
     lines.push_back(
         curve->gain == 0
-            ? "time: no learning to be seen in " + std::to_string(times.size()) + " completed attempts"
-            : "time: " + FormatNumber(curve->plateau, 3) + " + " + FormatNumber(curve->gain, 3) + " n^-" +
-                  FormatNumber(curve->rate, 3) + " s, " + FormatNumber(curve->rms, 2) + " s unexplained" +
-                  (curve->is_rate_at_bound ? "; too few attempts to tell where it leads" : ""));
+            ? TranslateWith("time: no learning to be seen in {1} completed attempts",
+                            {std::to_string(times.size())})
+            : TranslateWith("time: {1} + {2} n^-{3} s, {4} s unexplained",
+                            {ShownNumber(curve->plateau, 3), ShownNumber(curve->gain, 3),
+                             ShownNumber(curve->rate, 3), ShownNumber(curve->rms, 2)}) +
+                  (curve->is_rate_at_bound ? Translate("; too few attempts to tell where it leads") : ""));
   } else {
-    lines.push_back("time: " + curve.error().message);
+    lines.push_back(TranslateWith("time: {1}", {TranslateComposed(curve.error().message)}));
   }
   if (const auto trend = assessment::CalcTrend(times, assessment::Better::kLower); trend.ok()) {
-    const char* const words[] = {"no trend", "getting faster", "getting slower"};
-    lines.push_back("trend: " + std::string(words[static_cast<int>(trend->verdict)]) + ", " +
-                    FormatNumber(trend->slope, 2) +
-                    " s an attempt (p = " + FormatNumber(trend->probability, 2) + ")");
+    const char* const words[] = {Mark("no trend"), Mark("getting faster"), Mark("getting slower")};
+    lines.push_back(TranslateWith("trend: {1}, {2} s an attempt (p = {3})",
+                                  {Translate(words[static_cast<int>(trend->verdict)]),
+                                   ShownNumber(trend->slope, 2), ShownNumber(trend->probability, 2)}));
   }
   if (const auto cusum = assessment::CalcCusum(failed); cusum.ok()) {
-    const char* const words[] = {"undecided", "the failure rate is acceptable",
-                                 "the failure rate is too high"};
-    lines.push_back("CUSUM: " + FormatNumber(cusum->values.back(), 3) + " between " +
-                    FormatNumber(cusum->h0, 3) + " and " + FormatNumber(cusum->h1, 3) + ": " +
-                    words[static_cast<int>(cusum->verdict)]);
+    const char* const words[] = {Mark("undecided"), Mark("the failure rate is acceptable"),
+                                 Mark("the failure rate is too high")};
+    lines.push_back(
+        TranslateWith("CUSUM: {1} between {2} and {3}: {4}",
+                      {ShownNumber(cusum->values.back(), 3), ShownNumber(cusum->h0, 3),
+                       ShownNumber(cusum->h1, 3), Translate(words[static_cast<int>(cusum->verdict)])}));
   }
   return lines;
 }
@@ -291,21 +294,24 @@ core::Status Progress(const ProgressArguments& arguments) {
   for (std::size_t i = 0; i < progress.steps.size(); ++i) {
     const auto& now = progress.steps[i];
     const Step& step = course->steps[i];
-    rows.push_back({now.key, std::string(NameOf(now.state)), std::to_string(now.attempts),
-                    std::to_string(now.passes) + " of " + std::to_string(step.passes),
-                    std::to_string(now.longest_run) + " of " + std::to_string(step.consecutive_passes),
-                    now.due ? assessment::FormatDay(*now.due) + (now.is_overdue ? ", overdue" : "") : "-"});
+    const auto of = [](int done, int all) {
+      return TranslateWith("{1} of {2}", {std::to_string(done), std::to_string(all)});
+    };
+    rows.push_back(
+        {now.key, core::TranslateIn("step", NameOf(now.state)), std::to_string(now.attempts),
+         of(now.passes, step.passes), of(now.longest_run, step.consecutive_passes),
+         now.due ? assessment::FormatDay(*now.due) + (now.is_overdue ? Translate(", overdue") : "") : "-"});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
   for (const Step& step : course->steps) {
     const auto lines = DescribeLearning(*course, step, *attempts);
-    if (!lines.empty()) std::printf("\n%s\n", step.name.c_str());
-    for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
+    if (!lines.empty()) Print("\n" + Translate(step.name) + "\n");
+    for (const std::string& line : lines) Print("  " + line + "\n");
   }
   if (progress.next) {
-    std::printf("\nNext: %s\n", course->steps[*progress.next].name.c_str());
+    Say("\nNext: {1}\n", Translate(course->steps[*progress.next].name));
   } else {
-    std::printf("\nThe course is done.\n");
+    Say("\nThe course is done.\n");
   }
   return {};
 }
@@ -393,10 +399,10 @@ void AddCourseCommand(CLI::App& app, Outcome& outcome) {
     const auto course = assessment::ReadCourse(*file);
     outcome.status = course.ok() ? core::Status() : core::Status(course.error());
     if (!course.ok()) return;
-    std::printf("%s: %zu steps, usable\n", file->c_str(), course->steps.size());
+    Say("{1}: {2} steps, usable\n", file->c_str(), course->steps.size());
     for (const Step& one : course->steps) {
       if (one.proficiency.thresholds.empty())
-        std::printf("  %s has no thresholds: whoever completes it passes\n", one.key.c_str());
+        Say("  {1} has no thresholds: whoever completes it passes\n", one.key);
     }
   });
   AddStart(*command, outcome);

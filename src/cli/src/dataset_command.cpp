@@ -72,10 +72,10 @@ core::Status Make(const DatasetArguments& arguments) {
   });
   progress.Finish();
   if (!made) return made.error();
-  std::printf("%s holds %zu videos, %zu labelled frames, %zu files; %s frames a second\n",
-              arguments.output.c_str(), made->videos, made->frames, made->files,
-              FormatNumber(static_cast<double>(made->frames) / made->seconds, 3).c_str());
-  std::printf("SHA-256 of SHA256SUMS: %s\n", made->hash.c_str());
+  Say("{1} holds {2} videos, {3} labelled frames, {4} files; {5} frames a second\n", arguments.output,
+      made->videos, made->frames, made->files,
+      ShownNumber(static_cast<double>(made->frames) / made->seconds, 3));
+  Say("SHA-256 of SHA256SUMS: {1}\n", made->hash);
   return {};
 }
 

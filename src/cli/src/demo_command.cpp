@@ -94,32 +94,32 @@ core::Result<std::string> MakePage(const scene::Scene& scene, const view::DemoRe
   for (const view::DemoPicture& picture : played.pictures) {
     core::Result<std::string> png = core::ReadFile(picture.path);
     if (!png) return png.error();
-    report.pictures.push_back({std::move(png).value(), "after " + FormatNumber(picture.time, 3) + " s"});
+    report.pictures.push_back(
+        {std::move(png).value(), TranslateWith("after {1} s", {ShownNumber(picture.time, 3)})});
   }
   report.origin = {
-      {"State hash", core::HashText(played.state_hash)},
-      {"Ticks", std::to_string(played.ticks) + " of " + FormatNumber(1e3 * scene.tick_seconds) + " ms"},
-      {"Where the patient comes from", scene.patient.provenance}};
+      {Translate("State hash"), core::HashText(played.state_hash)},
+      {Translate("Ticks"),
+       TranslateWith("{1} of {2} ms", {std::to_string(played.ticks), ShownNumber(1e3 * scene.tick_seconds)})},
+      {Translate("Where the patient comes from"), TranslateComposed(scene.patient.provenance)}};
   if (haptics == nullptr) {
-    report.origin.emplace_back("Force feedback", "No haptic device took part.");
+    report.origin.emplace_back(Translate("Force feedback"), Translate("No haptic device took part."));
   } else {
     for (const auto& [what, how] : session::DescribeSummary(haptics->Record().CalcSummary()))
-      report.origin.emplace_back("Force feedback: " + what, how);
+      report.origin.emplace_back(TranslateWith("Force feedback: {1}", {Translate(what)}),
+                                 TranslateComposed(how));
   }
   return report::FormatHtml(MakeDocument(report));
 }
 
 void PrintSummary(const view::DemoReport& played, const scene::Scene& scene, const fs::path& output) {
-  std::printf("Played %s s of \"%s\": %llu ticks, state hash %s\n",
-              FormatNumber(static_cast<double>(played.ticks) * scene.tick_seconds).c_str(),
-              scene.name.c_str(), static_cast<unsigned long long>(played.ticks),
-              core::HashText(played.state_hash).c_str());
-  std::printf("Drew %llu frames with %s: median %s ms, p99 %s ms a frame\n",
-              static_cast<unsigned long long>(played.frames), played.graphics.c_str(),
-              FormatNumber(1e3 * played.draw_median, 3).c_str(),
-              FormatNumber(1e3 * played.draw_p99, 3).c_str());
-  std::printf("Wrote %s: %zu pictures, %s, metrics.json, report.html\n", output.c_str(),
-              played.pictures.size(), played.video.filename().c_str());
+  Say("Played {1} s of \"{2}\": {3} ticks, state hash {4}\n",
+      ShownNumber(static_cast<double>(played.ticks) * scene.tick_seconds), TranslateComposed(scene.name),
+      played.ticks, core::HashText(played.state_hash));
+  Say("Drew {1} frames with {2}: median {3} ms, p99 {4} ms a frame\n", played.frames, played.graphics,
+      ShownNumber(1e3 * played.draw_median, 3), ShownNumber(1e3 * played.draw_p99, 3));
+  Say("Wrote {1}: {2} pictures, {3}, metrics.json, report.html\n", output, played.pictures.size(),
+      played.video.filename());
 }
 
 core::Status Play(const DemoArguments& arguments) {

@@ -105,19 +105,24 @@ std::string FormatHands(const HandSamples& samples) {
   std::string text;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const device::HandSample& hand = samples[i];
-    char line[240];
-    if (hand.is_valid) {
-      std::snprintf(line, sizeof line,
-                    "%-11s pan %6.1f %s  tilt %6.1f %s  spin %7.1f  depth %6.1f mm %s  jaw %5.1f %s  "
-                    "buttons %s\n",
-                    kNames[i], kDegrees * hand.pan, Bar(hand.pan, -1.4, 1.4).c_str(), kDegrees * hand.tilt,
-                    Bar(hand.tilt, -1.4, 1.4).c_str(), kDegrees * hand.spin, 1e3 * hand.depth,
-                    Bar(hand.depth, 0.0, 0.28).c_str(), kDegrees * hand.jaw, Bar(hand.jaw, 0.0, 1.05).c_str(),
-                    FormatButtons(hand.buttons).c_str());
-    } else {
-      std::snprintf(line, sizeof line, "%-11s not seen\n", kNames[i]);
+    const auto number = [](double value, std::size_t width) {
+      const std::string shown = ShownFixed(value, 1);
+      return std::string(width - std::min(width, shown.size()), ' ') + shown;
+    };
+    std::string name = Translate(kNames[i]);
+    name.resize(std::max<std::size_t>(name.size(), 11), ' ');
+    if (!hand.is_valid) {
+      text += name + " " + Translate("not seen") + "\n";
+      continue;
     }
-    text += line;
+    text += core::TranslateWith("{1} pan {2}  tilt {3}  spin {4}  depth {5}  jaw {6}  buttons {7}",
+                                {name, number(kDegrees * hand.pan, 6) + " " + Bar(hand.pan, -1.4, 1.4),
+                                 number(kDegrees * hand.tilt, 6) + " " + Bar(hand.tilt, -1.4, 1.4),
+                                 number(kDegrees * hand.spin, 7),
+                                 number(1e3 * hand.depth, 6) + " mm " + Bar(hand.depth, 0.0, 0.28),
+                                 number(kDegrees * hand.jaw, 5) + " " + Bar(hand.jaw, 0.0, 1.05),
+                                 FormatButtons(hand.buttons)}) +
+            "\n";
   }
   return text;
 }
@@ -128,7 +133,7 @@ void HandPlot::Show(const HandSamples& samples, double time) {
   if (!is_terminal_) {
     if (time < next_) return;
     next_ = time + kPrintPeriod;
-    std::printf("%.1f s\n%s", time, FormatHands(samples).c_str());
+    Print(ShownFixed(time, 1) + " s\n" + FormatHands(samples));
     std::fflush(stdout);
     return;
   }
@@ -138,7 +143,7 @@ void HandPlot::Show(const HandSamples& samples, double time) {
   std::string text = FormatHands(samples);
   for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 4))
     text.insert(at, "\033[K");
-  std::fputs(text.c_str(), stdout);
+  Print(text);
   std::fflush(stdout);
 }
 

@@ -30,9 +30,9 @@ int FindHand(const std::string& name) {
 }
 
 void Announce(const std::string& text, double wait) {
-  std::printf("%s\n", text.c_str());
+  Print(text + "\n");
   for (int left = static_cast<int>(wait); left > 0; --left) {
-    std::printf("  starting in %d s\n", left);
+    Say("  starting in {1} s\n", left);
     std::fflush(stdout);
     device::SystemClock().Sleep(1.0);
   }
@@ -62,13 +62,13 @@ core::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int han
 }
 
 void PrintQuality(const char* what, const device::FitQuality& quality, std::size_t poses) {
-  std::printf("  %s %s\n", what, device::FormatQuality(quality, poses).c_str());
+  Print("  " + Translate(what) + " " + device::FormatQuality(quality, poses) + "\n");
 }
 
 core::Status Keep(const device::DeviceStore& store) {
   const auto path = device::FindDeviceStore();
   core::Status saved = device::SaveDeviceStore(path, store);
-  if (saved) std::printf("Wrote %s\n", path.c_str());
+  if (saved) Say("Wrote {1}\n", path);
   return saved;
 }
 
@@ -80,13 +80,14 @@ core::Status CalibrateTracker(const CalibrateOptions& options, bool is_tip) {
   const auto driver = device::MakeTracker(options.spec, store, device::SystemClock());
   if (!driver) return driver.error();
   const int hand = FindHand(options.hand);
-  Announce(is_tip ? "Put the " + options.hand +
-                        " instrument's tip into a small hole and keep it there; swing the handle "
-                        "round in all directions, by more than 30 degrees."
-                  : "Leave the " + options.hand +
-                        " instrument in its trocar; swing it in all directions by more than 30 "
-                        "degrees, and move it in and out.",
-           options.wait);
+  Announce(
+      TranslateWith(
+          is_tip ? Mark("Put the {1} instrument's tip into a small hole and keep it there; swing the "
+                        "handle round in all directions, by more than 30 degrees.")
+                 : Mark("Leave the {1} instrument in its trocar; swing it in all directions by more than 30 "
+                        "degrees, and move it in and out."),
+          {Translate(options.hand)}),
+      options.wait);
   const auto poses = CollectPoses(**driver, hand, options.seconds);
   if (!poses) return poses.error();
 
@@ -96,16 +97,15 @@ core::Status CalibrateTracker(const CalibrateOptions& options, bool is_tip) {
     const auto fit = device::FitPivot(*poses);
     if (!fit) return fit.error();
     calibration.p_sensor_tip = fit->p_sensor_pivot;
-    PrintQuality("tip", fit->quality, poses->size());
-    std::printf("Next: trocar devices calibrate trocar %s --hand %s\n", options.spec.c_str(),
-                options.hand.c_str());
+    PrintQuality(Mark("tip"), fit->quality, poses->size());
+    Say("Next: trocar devices calibrate trocar {1} --hand {2}\n", options.spec, options.hand);
   } else {
     const auto fit = device::FitTrocar(*poses, calibration.p_sensor_tip);
     if (!fit) return fit.error();
     calibration.p_source_trocar = fit->p_source_trocar;
     calibration.axis_sensor = fit->axis_sensor;
     calibration.is_measured = true;
-    PrintQuality("trocar", fit->quality, poses->size());
+    PrintQuality(Mark("trocar"), fit->quality, poses->size());
   }
   store.trackers[spec->kind] = entry;
   return Keep(store);
@@ -127,10 +127,12 @@ core::Status CalibrateJaw(const CalibrateOptions& options) {
   if (tool >= device::kJawTools)
     return core::Error{core::ErrorCode::kUsage, "a laparoscope has no jaws; --hand is left or right"};
   const double seconds = options.seconds / 2;
-  Announce("Close the " + options.hand + " jaws and hold them closed.", options.wait);
+  Announce(TranslateWith("Close the {1} jaws and hold them closed.", {Translate(options.hand)}),
+           options.wait);
   const auto closed = CollectRaw(options.spec, tool, seconds);
   if (!closed) return closed.error();
-  Announce("Open the " + options.hand + " jaws fully and hold them open.", options.wait);
+  Announce(TranslateWith("Open the {1} jaws fully and hold them open.", {Translate(options.hand)}),
+           options.wait);
   const auto open = CollectRaw(options.spec, tool, seconds);
   if (!open) return open.error();
   auto fit = device::FitJaw(*closed, *open);
@@ -139,7 +141,7 @@ core::Status CalibrateJaw(const CalibrateOptions& options) {
   device::JawCalibration& kept = store.jaws[static_cast<std::size_t>(tool)];
   fit->max_jaw = kept.max_jaw;
   kept = *fit;
-  std::printf("  closed %d, open %d of 0 to 1023\n", kept.closed, kept.open);
+  Say("  closed {1}, open {2} of 0 to 1023\n", kept.closed, kept.open);
   return Keep(store);
 }
 

@@ -46,20 +46,21 @@ nlohmann::ordered_json ButtonsJson(const device::DeviceStore& store) {
 }
 
 void PrintButtons(const device::DeviceStore& store) {
-  std::printf(
-      "\nButtons of each hand, from the first (change them in the settings file: docs/devices.md):\n");
+  Say("\nButtons of each hand, from the first (change them in the settings file: docs/devices.md):\n");
   std::vector<std::vector<std::string>> rows;
   for (const char* kind : kButtonKinds) {
     const device::ButtonMap map = store.Buttons(kind);
     for (std::size_t hand = 0; hand < map.size(); ++hand) {
       std::string acts;
       for (const std::string& name : ActNames(map[hand])) acts += (acts.empty() ? "" : ", ") + name;
-      rows.push_back({std::string("  ") + kind, kHands[hand], acts.empty() ? "nothing" : acts});
+      rows.push_back(
+          {std::string("  ") + kind, Translate(kHands[hand]), acts.empty() ? Translate("nothing") : acts});
     }
   }
   for (const auto& [key, act] : store.keys)
-    rows.push_back({"  key " + key, "chosen", std::string(device::ActName(act))});
-  std::fputs(FormatTable(rows).c_str(), stdout);
+    rows.push_back({"  " + TranslateWith("keyboard key {1}", {key}), Translate("chosen"),
+                    std::string(device::ActName(act))});
+  Print(core::FormatTable(rows));
 }
 
 void List(bool is_json) {
@@ -77,18 +78,18 @@ void List(bool is_json) {
     std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
-  std::printf("Found:\n");
+  Say("Found:\n");
   for (const device::FoundDevice& one : found)
-    std::printf("  %s   %s\n", one.spec.c_str(), one.description.c_str());
-  if (found.empty()) std::printf("  nothing but mouse and keyboard\n");
-  std::printf("\nKinds of device (write KIND:ADDRESS):\n");
+    Print("  " + one.spec + "   " + TranslateComposed(one.description) + "\n");
+  if (found.empty()) Say("  nothing but mouse and keyboard\n");
+  Say("\nKinds of device (write KIND:ADDRESS):\n");
   std::vector<std::vector<std::string>> rows;
   for (const device::DeviceKind& kind : device::DeviceKinds())
-    rows.push_back({"  " + std::string(kind.name), std::string(kind.address), std::string(kind.text)});
-  std::fputs(FormatTable(rows).c_str(), stdout);
+    rows.push_back({"  " + std::string(kind.name), Translate(kind.address), Translate(kind.text)});
+  Print(core::FormatTable(rows));
   PrintButtons(store);
-  std::printf("\nHaptic devices (--haptics): %s\n", device::ListForceDrivers().c_str());
-  std::printf("Settings and calibrations: %s\n", device::FindDeviceStore().c_str());
+  Say("\nHaptic devices (--haptics): {1}\n", device::ListForceDrivers());
+  Say("Settings and calibrations: {1}\n", device::FindDeviceStore());
 }
 
 core::Result<std::unique_ptr<device::Driver>> OpenDevice(const std::string& spec) {
@@ -99,12 +100,12 @@ void PrintReport(const WatchReport& report) {
   static constexpr const char* kNames[] = {"left", "right", "laparoscope"};
   std::vector<std::vector<std::string>> rows = {{"hand", "samples", "a second", "out of sight"}};
   for (std::size_t i = 0; i < report.fresh.size(); ++i) {
-    rows.push_back({kNames[i], std::to_string(report.fresh[i]),
-                    FormatNumber(report.seconds > 0 ? report.fresh[i] / report.seconds : 0, 3),
+    rows.push_back({Translate(kNames[i]), std::to_string(report.fresh[i]),
+                    ShownNumber(report.seconds > 0 ? report.fresh[i] / report.seconds : 0, 3),
                     std::to_string(report.unseen[i])});
   }
-  std::fputs(("\n" + FormatTable(rows)).c_str(), stdout);
-  if (!report.held_back.empty()) std::printf("Not used: %s\n", report.held_back.c_str());
+  Print("\n" + FormatShownTable(rows));
+  if (!report.held_back.empty()) Say("Not used: {1}\n", TranslateComposed(report.held_back));
 }
 
 core::Status LostError(const device::Driver& driver) {
@@ -144,8 +145,8 @@ core::Status Record(const std::string& spec, const std::string& path, double sec
   if (core::Status written = core::WriteFile(path, device::FormatHandFrames(frames)); !written)
     return written;
   PrintReport(*report);
-  std::printf("\nWrote %s: %zu frames. Play it with: trocar devices play %s, or --device play:%s\n",
-              path.c_str(), frames.size(), path.c_str(), path.c_str());
+  Say("\nWrote {1}: {2} frames. Play it with: trocar devices play {1}, or --device play:{1}\n", path,
+      frames.size());
   return report->is_lost ? LostError(**driver) : core::Status{};
 }
 

@@ -13,6 +13,7 @@
 
 #include "command.h"
 #include "device_console.h"
+#include "trocar/core/translate.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/emulator.h"
 
@@ -99,7 +100,9 @@ core::Status Emulate(const EmulateOptions& options) {
   const std::string name = FormatName(options.kind, (*host)->Address());
   std::printf("%s\n", name.c_str());
   std::fflush(stdout);
-  std::fprintf(stderr, "Emulating; try: trocar devices test %s   (Ctrl+C ends)\n", name.c_str());
+  std::fprintf(
+      stderr, "%s\n",
+      core::TranslateWith("Emulating; try: trocar devices test {1}   (Ctrl+C ends)", {name}).c_str());
   const InterruptWatch interrupt;
   device::Clock& clock = device::SystemClock();
   const double start = clock.Now();

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "command.h"
+#include "console.h"
+#include "trocar/core/text_table.h"
 #include "trocar/doctor/doctor_checks.h"
 
 namespace trocar::cli {
@@ -30,18 +32,27 @@ void PrintJson(const std::vector<Finding>& findings) {
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
+/// What was found may be an error: its code, then the message.
+std::string ShownFound(const std::string& found) {
+  const std::size_t space = found.find(' ');
+  if (!found.starts_with("E-") || space == std::string::npos) return TranslateComposed(found);
+  return found.substr(0, space + 1) + TranslateComposed(found.substr(space + 1));
+}
+
 void PrintForPerson(const std::vector<Finding>& findings) {
+  std::vector<std::vector<std::string>> rows;
   for (const Finding& finding : findings) {
-    std::printf("%-10s %-8s %s\n", finding.name.c_str(),
-                std::string(doctor::HealthName(finding.health)).c_str(), finding.found.c_str());
-    std::printf("%19s %s\n", "", finding.meaning.c_str());
-    if (!finding.remedy.empty()) std::printf("%19s to mend: %s\n", "", finding.remedy.c_str());
+    rows.push_back({finding.name, core::TranslateIn("health", doctor::HealthName(finding.health)),
+                    ShownFound(finding.found)});
+    rows.push_back({"", "", TranslateComposed(finding.meaning)});
+    if (!finding.remedy.empty())
+      rows.push_back({"", "", TranslateWith("to mend: {1}", {TranslateComposed(finding.remedy)})});
   }
+  Print(core::FormatTable(rows));
   const auto missing = std::count_if(findings.begin(), findings.end(), [](const Finding& finding) {
     return finding.health == Health::kMissing;
   });
-  std::printf("\n%s\n",
-              missing == 0 ? "Trocar runs here." : "Something is missing: mend what is named above.");
+  Say(missing == 0 ? "\nTrocar runs here.\n" : "\nSomething is missing: mend what is named above.\n");
 }
 
 }  // namespace

@@ -13,13 +13,13 @@
 namespace trocar::cli {
 namespace {
 
-void PrintTable() {
+void PrintForPerson() {
   std::vector<std::vector<std::string>> rows = {{"code", "meaning"}};
   for (const core::ErrorEntry& entry : core::ErrorTable()) {
     if (entry.code != core::ErrorCode::kNone)
-      rows.push_back({std::string(entry.text), core::Translate(entry.meaning)});
+      rows.push_back({std::string(entry.text), Translate(entry.meaning)});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
 }
 
 void PrintMarkdown() {
@@ -47,7 +47,7 @@ void AddErrorsCommand(CLI::App& app, Outcome&) {
   CLI::App* command = app.add_subcommand("errors", "List every error code and what it means");
   auto is_markdown = std::make_shared<bool>(false);
   command->add_flag("--markdown", *is_markdown, "As the page docs/errors.md");
-  command->callback([is_markdown] { *is_markdown ? PrintMarkdown() : PrintTable(); });
+  command->callback([is_markdown] { *is_markdown ? PrintMarkdown() : PrintForPerson(); });
 }
 
 }  // namespace trocar::cli

@@ -50,8 +50,8 @@ core::Status Seal(const SealArguments& arguments) {
   if (!sealed.ok()) return sealed.error();
   const auto published = assessment::WriteExam(arguments.output, *sealed);
   if (!published.ok()) return published.error();
-  std::printf("%s: keep it secret until the exam is over\n%s: publish it before the exam\nCommitment %s\n",
-              arguments.output.c_str(), published->c_str(), sealed->commitment.c_str());
+  Say("{1}: keep it secret until the exam is over\n{2}: publish it before the exam\nCommitment {3}\n",
+      arguments.output, published->c_str(), sealed->commitment);
   return {};
 }
 
@@ -86,12 +86,11 @@ core::Status RunExam(const RunArguments& arguments) {
   }
   bar.Finish();
   if (const auto finished = recording->Finish(*simulation); !finished.ok()) return finished;
-  std::printf(
-      "%s: %s s of the exam \"%s\"\nCertify it: trocar certificate issue %s %s --examinee PSEUDONYM --key "
+  Say("{1}: {2} s of the exam \"{3}\"\nCertify it: trocar certificate issue {4} {1} --examinee PSEUDONYM "
+      "--key "
       "FILE -o "
       "CERTIFICATE\n",
-      arguments.record.c_str(), FormatNumber(simulation->GetSnapshot().time, 4).c_str(), exam->name.c_str(),
-      arguments.file.c_str(), arguments.record.c_str());
+      arguments.record, ShownNumber(simulation->GetSnapshot().time, 4), exam->name, arguments.file);
   return {};
 }
 
@@ -159,9 +158,7 @@ void AddExamCommand(CLI::App& app, Outcome& outcome) {
   check->callback([=, &outcome] {
     const auto exam = assessment::ReadExam(*file);
     outcome.status = exam.ok() ? assessment::CheckPublished(*published, *exam) : core::Status(exam.error());
-    if (outcome.status.ok())
-      std::printf("%s: sealed as published, seed %llu\n", file->c_str(),
-                  static_cast<unsigned long long>(exam->seed));
+    if (outcome.status.ok()) Say("{1}: sealed as published, seed {2}\n", file->c_str(), exam->seed);
   });
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "trocar/core/translate.h"
 #include "trocar/store/attempts.h"
 
 namespace trocar::cli {
@@ -23,9 +24,10 @@ core::Status CompareWithGroup(report::AttemptReport& report, StoreSession& sessi
   if (!everyone.ok()) {
     facts.why_not = everyone.error().message;
   } else if (everyone->size() < kFewest) {
-    facts.why_not = "only " + std::to_string(everyone->size()) +
-                    " of its people have completed this task at this level, and fewer than " +
-                    std::to_string(kFewest) + " would show whose values they are";
+    facts.why_not = core::TranslateWith(
+        "only {1} of its people have completed this task at this level, and fewer than {2} would show whose "
+        "values they are",
+        {std::to_string(everyone->size()), std::to_string(kFewest)});
   } else {
     facts.people = everyone->size();
     for (report::MetricRow& row : report.metrics) {

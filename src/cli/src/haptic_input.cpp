@@ -9,6 +9,7 @@
 #include "command.h"
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/translate.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/device/ports.h"
@@ -23,15 +24,17 @@ namespace {
 std::string NextStep(const session::HapticStatus& status) {
   switch (status.check_pose) {
     case haptics::CheckPoseState::kConfirmed:
-      return "hold the safety switches (the first buttons)";
+      return core::Translate("hold the safety switches (the first buttons)");
     case haptics::CheckPoseState::kWrongDevice:
-      return "another device answered the check pose: exchange left and right, and start again";
+      return core::Translate(
+          "another device answered the check pose: exchange left and right, and start again");
     case haptics::CheckPoseState::kUnconfirmed:
     case haptics::CheckPoseState::kAsking:
       break;
   }
-  return std::string("bring the ") + (status.asked == scene::kLeft ? "left" : "right") +
-         " device to the middle of its reach and hold its first button";
+  return status.asked == scene::kLeft
+             ? core::Translate("bring the left device to the middle of its reach and hold its first button")
+             : core::Translate("bring the right device to the middle of its reach and hold its first button");
 }
 
 }  // namespace

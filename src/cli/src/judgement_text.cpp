@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
 #include "console.h"
@@ -18,49 +17,49 @@ using assessment::Better;
 /// In the unit that people are shown.
 std::string FormatMetric(const std::string& metric, double value) {
   const training::MetricDefinition* definition = training::FindMetric(metric);
-  if (definition == nullptr) return FormatNumber(value);
-  const std::string number = FormatNumber(value * definition->shown_scale);
+  if (definition == nullptr) return ShownNumber(value);
+  const std::string number = ShownNumber(value * definition->shown_scale);
   return definition->shown_unit.empty() ? number : number + " " + definition->shown_unit;
+}
+
+std::string FormatBound(const assessment::Threshold& threshold) {
+  return TranslateWith(threshold.better == Better::kLower ? Mark("at most {1}") : Mark("at least {1}"),
+                       {FormatMetric(threshold.of.metric, threshold.value)});
+}
+
+/// As assessment::TextOf, for a person: the metric's own name and the hand.
+std::string ShownKey(const assessment::MetricKey& key) {
+  const training::MetricDefinition* definition = training::FindMetric(key.metric);
+  std::string text = definition != nullptr ? Translate(definition->name) : key.metric;
+  if (!key.hand.empty())
+    text += ", " + (key.hand == "camera" ? Translate("camera")
+                    : key.hand == "left" ? Translate("left hand")
+                                         : Translate("right hand"));
+  return key.phase.empty() ? text : TranslateWith("{1}, in {2}", {text, Translate(key.phase)});
 }
 
 }  // namespace
 
-std::string WrapText(const std::string& text, std::size_t width, const std::string& indent) {
-  std::istringstream words(text);
-  std::string wrapped, line;
-  for (std::string word; words >> word;) {
-    if (!line.empty() && indent.size() + line.size() + 1 + word.size() > width) {
-      wrapped += indent + line + "\n";
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  return line.empty() ? wrapped : wrapped + indent + line + "\n";
-}
-
 std::string DescribeThreshold(const assessment::Threshold& threshold) {
-  return TextOf(threshold.of) + ": " + (threshold.better == Better::kLower ? "at most " : "at least ") +
-         FormatMetric(threshold.of.metric, threshold.value) + " (" + std::string(NameOf(threshold.purpose)) +
-         ")";
+  return ShownKey(threshold.of) + ": " + FormatBound(threshold) + " (" +
+         Translate(NameOf(threshold.purpose)) + ")";
 }
 
 void PrintVerdict(const assessment::Verdict& verdict) {
-  if (!verdict.is_completed) std::printf("  not completed\n");
+  if (!verdict.is_completed) Say("  not completed\n");
   std::vector<std::vector<std::string>> rows = {{"", "metric", "reached", "needed", "for"}};
   for (const auto& one : verdict.metrics) {
     const auto& threshold = one.threshold;
-    rows.push_back({one.is_met ? "met" : "MISSED", TextOf(threshold.of),
-                    one.value ? FormatMetric(threshold.of.metric, *one.value) : "not defined",
-                    (threshold.better == Better::kLower ? "at most " : "at least ") +
-                        FormatMetric(threshold.of.metric, threshold.value),
-                    std::string(NameOf(threshold.purpose))});
+    rows.push_back({Translate(one.is_met ? Mark("met") : Mark("MISSED")), ShownKey(threshold.of),
+                    one.value ? FormatMetric(threshold.of.metric, *one.value) : Translate("not defined"),
+                    FormatBound(threshold), Translate(NameOf(threshold.purpose))});
   }
-  if (rows.size() > 1) std::fputs(FormatTable(rows).c_str(), stdout);
+  if (rows.size() > 1) PrintTable(rows);
   if (verdict.composite) {
-    std::printf("%s%s deviations %s the mean of the expert set\n",
-                verdict.grade.empty() ? "" : (verdict.grade + ": ").c_str(),
-                FormatNumber(std::abs(*verdict.composite), 3).c_str(),
-                *verdict.composite < 0 ? "below" : "above");
+    Print(verdict.grade.empty() ? "" : verdict.grade + ": ");
+    Say(*verdict.composite < 0 ? "{1} deviations below the mean of the expert set\n"
+                               : "{1} deviations above the mean of the expert set\n",
+        ShownNumber(std::abs(*verdict.composite), 3));
   }
 }
 

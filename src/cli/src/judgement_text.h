@@ -2,7 +2,6 @@
 /// \file judgement_text.h  Thresholds and verdicts as people and programs read them.
 #pragma once
 
-#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -10,10 +9,7 @@
 
 namespace trocar::cli {
 
-/// Lines of at most `width` columns, each with the indent and ending with a newline.
-std::string WrapText(const std::string& text, std::size_t width, const std::string& indent);
-
-/// "path_length, left hand: at most 1240 mm (economy)"
+/// "Path length, left hand: at most 1240 mm (economy)"
 std::string DescribeThreshold(const assessment::Threshold& threshold);
 
 /// One line a threshold, then composite and grade.

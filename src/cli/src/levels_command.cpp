@@ -136,9 +136,8 @@ core::Status Make(const LevelsArguments& arguments) {
   if (!made.ok()) return made.error();
   if (const auto written = core::WriteFile(arguments.output, FormatProficiency(*made)); !written.ok())
     return written;
-  for (const Threshold& threshold : made->thresholds)
-    std::printf("%s\n", DescribeThreshold(threshold).c_str());
-  std::printf("%s holds them; edit it, and name it in a course\n", arguments.output.c_str());
+  for (const Threshold& threshold : made->thresholds) Print(DescribeThreshold(threshold) + "\n");
+  Say("{1} holds them; edit it, and name it in a course\n", arguments.output);
   return {};
 }
 
@@ -150,23 +149,23 @@ core::Status List() {
     const std::string source = one.source.size() > 60 ? one.source.substr(0, 57) + "..." : one.source;
     rows.push_back({one.key, one.task, one.level.empty() ? "-" : one.level, source});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
   return {};
 }
 
 core::Status Show(const std::string& name) {
   const auto one = assessment::FindProficiency(name);
   if (!one.ok()) return one.error();
-  std::printf("%s%s\n", one->task.c_str(), one->level.empty() ? "" : (", level " + one->level).c_str());
-  if (!one->about.empty()) std::fputs(WrapText(one->about, 100, "").c_str(), stdout);
-  std::fputs(WrapText("Source: " + one->source, 100, "").c_str(), stdout);
+  Print((one->level.empty() ? one->task : TranslateWith("{1}, level {2}", {one->task, one->level})) + "\n");
+  if (!one->about.empty()) Print(WrapText(one->about, 100, ""));
+  Print(WrapText(TranslateWith("Source: {1}", {one->source}), 100, ""));
   for (const Threshold& threshold : one->thresholds) {
-    std::printf("\n%s\n", DescribeThreshold(threshold).c_str());
-    std::fputs(WrapText(threshold.source, 100, "  ").c_str(), stdout);
+    Print("\n" + DescribeThreshold(threshold) + "\n");
+    Print(WrapText(threshold.source, 100, "  "));
   }
   for (const auto& grade : one->grades)
-    std::printf("%s%s from %s deviations on\n", &grade == one->grades.data() ? "\n" : "", grade.name.c_str(),
-                FormatNumber(grade.at_least, 3).c_str());
+    Say(&grade == one->grades.data() ? "\n{1} from {2} deviations on\n" : "{1} from {2} deviations on\n",
+        Translate(grade.name), ShownNumber(grade.at_least, 3));
   return {};
 }
 

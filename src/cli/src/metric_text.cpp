@@ -14,12 +14,12 @@ using training::MetricDefinition;
 using training::MetricValue;
 
 std::string ShownValue(const MetricDefinition& definition, const double* value) {
-  return value == nullptr ? std::string() : FormatNumber(*value * definition.shown_scale, 4);
+  return value == nullptr ? std::string() : ShownNumber(*value * definition.shown_scale, 4);
 }
 
 std::string BetterText(const MetricDefinition& definition) {
   return definition.better == training::BetterWhen::kNeither ? std::string()
-                                                             : std::string(NameOf(definition.better));
+                                                             : Translate(NameOf(definition.better));
 }
 
 std::string FormatTables(const std::vector<MetricRow>& rows) {
@@ -29,12 +29,12 @@ std::string FormatTables(const std::vector<MetricRow>& rows) {
     const MetricDefinition& d = *row.definition;
     if (!row.other.empty()) attempt.push_back({NameOfOther(d), row.other, d.shown_unit, BetterText(d)});
     if (!row.left.empty() || !row.right.empty())
-      hands.push_back({d.name, row.left.empty() ? "-" : row.left, row.right.empty() ? "-" : row.right,
-                       d.shown_unit, BetterText(d)});
+      hands.push_back({Translate(d.name), row.left.empty() ? "-" : row.left,
+                       row.right.empty() ? "-" : row.right, d.shown_unit, BetterText(d)});
   }
   std::string text;
-  if (attempt.size() > 1) text += FormatTable(attempt);
-  if (hands.size() > 1) text += (text.empty() ? "" : "\n") + FormatTable(hands);
+  if (attempt.size() > 1) text += FormatShownTable(attempt);
+  if (hands.size() > 1) text += (text.empty() ? "" : "\n") + FormatShownTable(hands);
   return text;
 }
 
@@ -42,7 +42,7 @@ std::string FormatTables(const std::vector<MetricRow>& rows) {
 
 std::string NameOfOther(const MetricDefinition& definition) {
   const bool is_camera = definition.of.size() > 1 && definition.of.back() == "camera";
-  return is_camera ? definition.name + " (camera)" : definition.name;
+  return Translate(definition.name) + (is_camera ? " (" + Translate("camera") + ")" : "");
 }
 
 std::vector<MetricRow> MakeMetricRows(const AttemptMetrics& metrics, std::string_view phase,
@@ -72,8 +72,10 @@ std::string FormatMetricsText(const AttemptMetrics& metrics, bool has_parts) {
     parts.push_back(std::move(part));
   }
   for (const auto& [phase, tool] : parts) {
-    text += "\n" + (tool.empty() ? "Phase: " + phase : "While using: " + tool) + "\n\n" +
-            FormatTables(MakeMetricRows(metrics, phase, tool));
+    text += "\n" +
+            (tool.empty() ? TranslateWith("Phase: {1}", {ShownName(phase)})
+                          : TranslateWith("While using: {1}", {ShownName(tool)})) +
+            "\n\n" + FormatTables(MakeMetricRows(metrics, phase, tool));
   }
   return text;
 }

@@ -88,19 +88,22 @@ std::string FormatWords(const TracedFile& traced, const AttemptMetrics& metrics,
                         const training::Validity& validity) {
   std::string text, note;
   if (traced.of.contains("of")) {
-    text += traced.of["of"].get<std::string>() + ", played by " + traced.of["player"].get<std::string>() +
-            ", " + FormatNumber(traced.trace.Seconds()) + " s" +
-            (traced.of["finished"] == true ? "" : " (the recording was not finished)") + "\n\n";
+    text +=
+        TranslateWith("{1}, played by {2}, {3} s", {traced.of["of"].get<std::string>(),
+                                                    TranslateComposed(traced.of["player"].get<std::string>()),
+                                                    ShownNumber(traced.trace.Seconds())}) +
+        (traced.of["finished"] == true ? "" : Translate(" (the recording was not finished)")) + "\n\n";
     const std::string task = TaskKey(traced.of["of"].get<std::string>());
     note = FormatValidityNote(metrics, task, validity.FindTask(task)) + "\n";
   }
   return text + FormatMetricsText(metrics, has_parts) + "\n" + note +
-         std::string(training::MetricsDisclaimer()) + ". trocar metrics --list says what each number is.\n";
+         Translate(training::MetricsDisclaimer()) + ". " +
+         Translate("trocar metrics --list says what each number is.") + "\n";
 }
 
 core::Status PutOut(const std::string& text, const std::string& output) {
   if (!output.empty()) return core::WriteFile(output, text);
-  std::fputs(text.c_str(), stdout);
+  Print(text);
   return {};
 }
 
@@ -109,11 +112,11 @@ core::Status List(const MetricsArguments& arguments) {
   if (arguments.is_markdown) return PutOut(training::FormatMetricDefinitionsPage(), arguments.output);
   std::vector<std::vector<std::string>> rows = {{"id", "name", "unit", "better", "what it is"}};
   for (const training::MetricDefinition& d : training::MetricDefinitions()) {
-    rows.push_back({d.id, d.name, d.shown_unit,
-                    d.better == training::BetterWhen::kNeither ? "" : std::string(NameOf(d.better)),
-                    d.about});
+    rows.push_back({d.id, Translate(d.name), d.shown_unit,
+                    d.better == training::BetterWhen::kNeither ? "" : Translate(NameOf(d.better)),
+                    Translate(d.about)});
   }
-  return PutOut(FormatTable(rows), arguments.output);
+  return PutOut(FormatShownTable(rows), arguments.output);
 }
 
 core::Status Measure(const MetricsArguments& arguments) {

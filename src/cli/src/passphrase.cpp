@@ -1,66 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "passphrase.h"
 
-#include <signal.h>
-#include <termios.h>
-#include <unistd.h>
-
-#include <cstdio>
-#include <optional>
-
 #include "trocar/assessment/signing_key.h"
+#include "trocar/core/secret_prompt.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::cli {
-namespace {
-
-/// While it lives, the terminal shows no key. Signals wait, so that none leaves the terminal like that.
-class SilentTerminal {
- public:
-  explicit SilentTerminal(int file) : file_(file) {
-    ::sigset_t all;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_BLOCK, &all, &signals_);
-    is_silent_ = ::tcgetattr(file_, &settings_) == 0;
-    if (!is_silent_) return;
-    ::termios silent = settings_;
-    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
-    is_silent_ = ::tcsetattr(file_, TCSAFLUSH, &silent) == 0;
-  }
-  ~SilentTerminal() {
-    if (is_silent_) ::tcsetattr(file_, TCSAFLUSH, &settings_);
-    ::pthread_sigmask(SIG_SETMASK, &signals_, nullptr);
-  }
-  SilentTerminal(const SilentTerminal&) = delete;
-  SilentTerminal& operator=(const SilentTerminal&) = delete;
-  bool IsSilent() const { return is_silent_; }
-
- private:
-  int file_;
-  bool is_silent_ = false;
-  ::termios settings_{};
-  ::sigset_t signals_{};
-};
-
-/// \return nothing where nobody sits at a terminal
-std::optional<std::string> Ask(const std::string& question) {
-  if (::isatty(STDIN_FILENO) != 1) return std::nullopt;
-  const SilentTerminal silent(STDIN_FILENO);
-  if (!silent.IsSilent()) return std::nullopt;
-  std::fprintf(stderr, "%s: ", question.c_str());
-  std::string answer;
-  for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) answer += static_cast<char>(c);
-  std::fputc('\n', stderr);
-  return answer;
-}
-
-}  // namespace
-
 core::Result<std::string> FindNewPassphrase(const std::filesystem::path& key) {
   if (auto given = assessment::PassphraseOfEnvironment(); !given.empty()) return given;
-  const auto first = Ask("Passphrase for " + key.string() + ", at least " +
-                         std::to_string(assessment::kShortestPassphrase) + " characters (Enter for none)");
+  const auto first =
+      core::AskInSecret(core::TranslateWith("Passphrase for {1}, at least {2} characters (Enter for none)",
+                                            {key.string(), std::to_string(assessment::kShortestPassphrase)}));
   if (!first || first->empty()) return std::string();
-  const auto second = Ask("The same again");
+  const auto second = core::AskInSecret(core::Translate("The same again"));
   if (second == first) return *first;
   return core::Error{core::ErrorCode::kUsage, "the two passphrases differ; no key was made, begin again"};
 }
@@ -70,7 +22,7 @@ core::Result<std::string> FindPassphrase(const std::filesystem::path& key) {
   if (!is_encrypted.ok()) return is_encrypted.error();
   if (!*is_encrypted) return std::string();
   if (auto given = assessment::PassphraseOfEnvironment(); !given.empty()) return given;
-  return Ask("Passphrase of " + key.string()).value_or("");
+  return core::AskInSecret(core::TranslateWith("Passphrase of {1}", {key.string()})).value_or("");
 }
 
 }  // namespace trocar::cli

@@ -26,9 +26,9 @@ core::Status PrintPictures() {
   std::vector<std::vector<std::string>> rows = {{"picture", "task", "surgeon", "what"}};
   for (const view::SeriesSitting& sitting : view::ListPictureSeries()) {
     for (const view::SeriesShot& shot : sitting.shots)
-      rows.push_back({shot.name, sitting.task, sitting.surgeon, shot.about});
+      rows.push_back({shot.name, sitting.task, sitting.surgeon, Translate(shot.about)});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintTable(rows);
   return {};
 }
 
@@ -58,11 +58,11 @@ core::Status MakePictures(const PicturesArguments& arguments, Outcome& outcome) 
   std::size_t missing = 0;
   for (const view::SeriesPicture& picture : *pictures) {
     missing += picture.has_come ? 0 : 1;
-    rows.push_back({picture.name, FormatNumber(picture.time, 4), FormatNumber(1e3 * picture.draw_median, 3),
-                    picture.about});
+    rows.push_back({picture.name, ShownNumber(picture.time, 4), ShownNumber(1e3 * picture.draw_median, 3),
+                    Translate(picture.about)});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf("%s holds %zu pictures\n", arguments.output.c_str(), pictures->size() - missing);
+  PrintTable(rows);
+  Say("{1} holds {2} pictures\n", arguments.output, pictures->size() - missing);
   outcome.has_finding = missing > 0;
   return {};
 }

@@ -146,47 +146,45 @@ void PrintJson(const scene::Scene& scene, const PlayReport& report) {
 }
 
 std::string FormatShownScore(const scene::Task& task, const scene::TaskSnapshot& now) {
-  const std::string score = FormatNumber(scene::CalcShownScore(task, now), 4);
-  return task.reference_points > 0 ? score + " of " + FormatNumber(task.best_score, 4) : score + " points";
+  const std::string score = ShownNumber(scene::CalcShownScore(task, now), 4);
+  return task.reference_points > 0 ? TranslateWith("{1} of {2}", {score, ShownNumber(task.best_score, 4)})
+                                   : TranslateWith("{1} points", {score});
 }
 
 void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
   const auto done = std::count_if(report.task.goals.begin(), report.task.goals.end(),
                                   [](const auto& goal) { return goal.is_done; });
-  std::printf("%s, level %s: %s after %s s, %td of %zu goals, score %s\n", scene.task->name.c_str(),
-              scene.task->level.c_str(),
-              report.gave_up ? "given up" : std::string(scene::PhaseName(report.task.phase)).c_str(),
-              FormatNumber(report.task.time, 4).c_str(), done, report.task.goals.size(),
-              FormatShownScore(*scene.task, report.task).c_str());
+  Say("{1}, level {2}: {3} after {4} s, {5} of {6} goals, score {7}\n", TranslateComposed(scene.task->name),
+      Translate(scene.task->level),
+      Translate(report.gave_up ? Mark("given up") : scene::PhaseName(report.task.phase)),
+      ShownNumber(report.task.time, 4), done, report.task.goals.size(),
+      FormatShownScore(*scene.task, report.task));
   for (std::size_t e = 0; e < scene.task->errors.size(); ++e) {
     if (report.task.errors[e] == 0) continue;
     const scene::ErrorRule& rule = scene.task->errors[e];
-    std::printf("  %u x %s: %s (%s, %s points each)\n", report.task.errors[e], rule.name.c_str(),
-                rule.about.c_str(), std::string(training::NameOf(rule.severity)).c_str(),
-                FormatNumber(rule.penalty).c_str());
+    Say("  {1} x {2}: {3} ({4}, {5} points each)\n", report.task.errors[e], rule.name, Translate(rule.about),
+        Translate(training::NameOf(rule.severity)), ShownNumber(rule.penalty));
   }
-  std::printf("Tick p99 %s ms, state hash %s\n", FormatNumber(report.tick_p99_ms, 3).c_str(),
-              core::HashText(report.hash).c_str());
-  std::printf("Training feedback, not certified assessment.\n");
+  Say("Tick p99 {1} ms, state hash {2}\n", ShownNumber(report.tick_p99_ms, 3), core::HashText(report.hash));
+  Say("Training feedback, not certified assessment.\n");
 }
 
 constexpr std::size_t kListWidth = 100;  // columns
 
 /// A task in one line, and below it who can do it, in lines that a terminal holds.
 void PrintTask(const std::string& key, const std::string& levels, const scene::Scene& scene) {
-  std::printf("%s%s: %s\n", key.c_str(), levels.empty() ? "" : (" (" + levels + ")").c_str(),
-              scene.name.c_str());
+  Print(key + (levels.empty() ? "" : " (" + levels + ")") + ": " + TranslateComposed(scene.name) + "\n");
   std::string line = "   ";
   for (const agent::SurgeonEntry& entry : agent::ListSurgeons()) {
     if (!entry.suits(scene)) continue;
     const std::string name = entry.name;
     if (line.size() + 1 + name.size() > kListWidth) {
-      std::printf("%s\n", line.c_str());
+      Print(line + "\n");
       line = "   ";
     }
     line += " " + name;
   }
-  std::printf("%s\n", line.c_str());
+  Print(line + "\n");
 }
 
 core::Status PrintList() {
@@ -208,11 +206,10 @@ core::Status PrintList() {
     levels += (levels.empty() ? "" : ", ") + level.key;
   if (*operation) PrintTask("cholecystectomy", levels, **operation);
   std::printf("\n");
-  std::vector<std::vector<std::string>> rows;
-  rows = {{"surgeon", "error", "about"}};
+  std::vector<std::vector<std::string>> rows = {{"surgeon", "error", "about"}};
   for (const agent::SurgeonEntry& entry : agent::ListSurgeons())
-    rows.push_back({entry.name, *entry.error == 0 ? "-" : entry.error, entry.about});
-  std::fputs(FormatTable(rows).c_str(), stdout);
+    rows.push_back({entry.name, *entry.error == 0 ? "-" : entry.error, Translate(entry.about)});
+  PrintTable(rows);
   return {};
 }
 
@@ -262,7 +259,7 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
     if (now.tick % 30 != 0) continue;
     const auto done = std::count_if(now.task.goals.begin(), now.task.goals.end(),
                                     [](const auto& goal) { return goal.is_done; });
-    progress.SetLabel(FormatNumber(now.time, 3) + " s, " + std::string(surgeon.Doing()));
+    progress.SetLabel(ShownNumber(now.time, 3) + " s, " + Translate(surgeon.Doing()));
     progress.Show(static_cast<double>(done));
   }
   progress.Finish();
@@ -296,7 +293,7 @@ core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const scene::Scene> scene
     if (now.tick % 30 != 0) return;
     const auto done = std::count_if(now.task.goals.begin(), now.task.goals.end(),
                                     [](const auto& goal) { return goal.is_done; });
-    progress.SetLabel(FormatNumber(now.time, 3) + " s, " + std::string(surgeon.Doing()));
+    progress.SetLabel(ShownNumber(now.time, 3) + " s, " + Translate(surgeon.Doing()));
     progress.Show(static_cast<double>(done));
   };
   RunReport run_report = MakeRunReport(*scene, arguments);

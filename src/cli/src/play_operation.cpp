@@ -81,7 +81,7 @@ ordered_json MakeJson(const OperationResult& result, const Run& run, const std::
                {"hash", core::HashText(run.hash)},
                {"time_s", run.seconds},
                {"phase", training::NameOf(result.phase)},
-               {"strasberg", training::StrasbergName(result.injuries.strasberg)},
+               {"strasberg", Translate(training::StrasbergName(result.injuries.strasberg))},
                {"right_liver_without_blood", result.injuries.is_right_liver_without_blood},
                {"bed_blood_ml", kMillilitre * result.bed_blood},
                {"stones",
@@ -99,48 +99,48 @@ ordered_json MakeJson(const OperationResult& result, const Run& run, const std::
 
 void PrintForPerson(const scene::Scene& scene, const OperationResult& result, const Run& run,
                     const std::string& bail_out) {
-  std::printf("%s: %s after %s s\n", scene.name.c_str(), result.is_completed ? "completed" : "not completed",
-              FormatNumber(run.seconds, 4).c_str());
+  Say(result.is_completed ? "{1}: completed after {2} s\n" : "{1}: not completed after {2} s\n",
+      TranslateComposed(scene.name), ShownNumber(run.seconds, 4));
   if (!bail_out.empty()) {
-    std::printf("Ended early: %s.\n%s\n", bail_out.c_str(),
-                EndOf(result, bail_out) == training::OperationEnd::kConversion
-                    ? "Nothing that must stay was harmed: it counts as a conversion, not as a failure."
-                    : "It came too late to count as a conversion: see the errors.");
+    Say("Ended early: {1}.\n", Translate(bail_out));
+    Say(EndOf(result, bail_out) == training::OperationEnd::kConversion
+            ? "Nothing that must stay was harmed: it counts as a conversion, not as a failure.\n"
+            : "It came too late to count as a conversion: see the errors.\n");
   }
-  std::printf("Critical view of safety: %s\n",
-              result.was_critical_view_achieved ? "achieved" : "not achieved");
+  Say(result.was_critical_view_achieved ? "Critical view of safety: achieved\n"
+                                        : "Critical view of safety: not achieved\n");
   if (!result.was_critical_view_achieved) {
     for (const std::string& reason : training::ExplainCriticalView(result.facts, result.critical_view))
-      std::printf("  %s\n", core::TranslateComposed(reason).c_str());
+      Print("  " + TranslateComposed(reason) + "\n");
   }
   for (std::size_t i = 0; i < training::kOperationErrorCount; ++i) {
     const auto error = static_cast<training::OperationError>(i);
     const std::size_t count = result.errors.Count(error);
     if (count == 0) continue;
-    std::printf("  %zu x %s (%s): %s\n", count, std::string(training::NameOf(error)).c_str(),
-                std::string(training::NameOf(training::SeverityOf(error))).c_str(),
-                std::string(training::ExplanationOf(error)).c_str());
+    Print("  " + std::to_string(count) + " x " + ShownName(training::NameOf(error)) + " (" +
+          Translate(training::NameOf(training::SeverityOf(error))) +
+          "): " + Translate(training::ExplanationOf(error)) + "\n");
   }
-  std::printf("Blood %s mL, bile %s mL; injury by Strasberg: %s\n",
-              FormatNumber(Left(result, surgery::Fluid::kBlood), 3).c_str(),
-              FormatNumber(Left(result, surgery::Fluid::kBile), 3).c_str(),
-              std::string(training::StrasbergName(result.injuries.strasberg)).c_str());
+  Say("Blood {1} mL, bile {2} mL; injury by Strasberg: {3}\n",
+      ShownNumber(Left(result, surgery::Fluid::kBlood), 3),
+      ShownNumber(Left(result, surgery::Fluid::kBile), 3),
+      Translate(training::StrasbergName(result.injuries.strasberg)));
   const simulation::StoneCount& stones = result.stones;
   if (stones.inside < stones.all) {
-    std::printf("Of %d stones %d came out of the gallbladder; spilled and not retrieved: %d\n", stones.all,
-                stones.all - stones.inside, stones.spilled);
+    Say("Of {1} stones {2} came out of the gallbladder; spilled and not retrieved: {3}\n", stones.all,
+        stones.all - stones.inside, stones.spilled);
   }
-  std::printf("Tick p99 %s ms, longest tick with a cut %s ms, state hash %s\n",
-              FormatNumber(core::CalcPercentile(run.tick_ms, 0.99), 3).c_str(),
-              FormatNumber(run.cut_tick_max_ms, 3).c_str(), core::HashText(run.hash).c_str());
-  std::printf("Training feedback, not certified assessment.\n");
+  Say("Tick p99 {1} ms, longest tick with a cut {2} ms, state hash {3}\n",
+      ShownNumber(core::CalcPercentile(run.tick_ms, 0.99), 3), ShownNumber(run.cut_tick_max_ms, 3),
+      core::HashText(run.hash));
+  Say("Training feedback, not certified assessment.\n");
 }
 
 std::string Progress(const Snapshot& now, std::string_view doing) {
-  return FormatNumber(now.time, 4) + " s, " + std::string(doing) + ": fat cleared " +
-         FormatNumber(100 * now.operation.facts.cleared_share, 3) + " %, bed free " +
-         FormatNumber(100 * now.operation.facts.detached_share, 3) + " %, " +
-         std::to_string(now.operation.errors) + " errors";
+  return TranslateWith(
+      "{1} s, {2}: fat cleared {3} %, bed free {4} %, errors {5}",
+      {ShownNumber(now.time, 4), Translate(doing), ShownNumber(100 * now.operation.facts.cleared_share, 3),
+       ShownNumber(100 * now.operation.facts.detached_share, 3), std::to_string(now.operation.errors)});
 }
 
 /// How far an operation is, roughly: by what it divides [-].
@@ -160,8 +160,8 @@ core::Status GoOn(const PlayFiles& files, double most_seconds, simulation::Simul
   const double time = simulation.GetSnapshot().time;
   if (time < most_seconds) return {};
   return core::Error{core::ErrorCode::kUsage,
-                     "\"" + files.restore.string() + "\" stands at " + FormatNumber(time, 4) +
-                         " s, and --seconds " + FormatNumber(most_seconds, 4) +
+                     "\"" + files.restore.string() + "\" stands at " + ShownNumber(time, 4) +
+                         " s, and --seconds " + ShownNumber(most_seconds, 4) +
                          " counts from the attempt's start: give more seconds, or leave the option out"};
 }
 

@@ -29,11 +29,11 @@ core::Status WriteForm(const FormArguments& arguments) {
   const auto form = report::FindRatingForm(arguments.form);
   if (!form.ok()) return form.error();
   if (arguments.output.empty()) {
-    std::printf("%s\n%s\n", form->name.c_str(), form->about.c_str());
+    Print(Translate(form->name) + "\n" + Translate(form->about) + "\n");
     for (const report::RatingItem& item : form->items)
-      std::printf("\n  %s=1..5   %s\n    1 %s\n    3 %s\n    5 %s\n", item.key.c_str(), item.name.c_str(),
-                  item.lowest.c_str(), item.middle.c_str(), item.highest.c_str());
-    std::printf("\nSource: %s\n", form->source.c_str());
+      Print("\n  " + item.key + "=1..5   " + Translate(item.name) + "\n    1 " + Translate(item.lowest) +
+            "\n    3 " + Translate(item.middle) + "\n    5 " + Translate(item.highest) + "\n");
+    Say("\nSource: {1}\n", form->source);
     return {};
   }
   const auto kind = FindReportKind(arguments.output);
@@ -42,7 +42,7 @@ core::Status WriteForm(const FormArguments& arguments) {
   const report::Document sheet = report::MakeRatingSheet(*form);
   const core::Status written = core::WriteFile(
       arguments.output, *kind == ReportKind::kPdf ? report::FormatPdf(sheet) : report::FormatHtml(sheet));
-  if (written.ok()) std::printf("Wrote %s, to be printed\n", arguments.output.c_str());
+  if (written.ok()) Say("Wrote {1}, to be printed\n", arguments.output);
   return written;
 }
 
@@ -66,8 +66,8 @@ core::Status Enter(EnterArguments arguments) {
     return {};
   }
   if (const auto written = core::WriteFile(arguments.output, text); !written.ok()) return written;
-  std::printf("%s: %d of %zu points, in %s\n", form->name.c_str(), arguments.rating.Sum(),
-              form->items.size() * report::kMostPoints, arguments.output.c_str());
+  Say("{1}: {2} of {3} points, in {4}\n", Translate(form->name), arguments.rating.Sum(),
+      form->items.size() * report::kMostPoints, arguments.output);
   return {};
 }
 
@@ -83,25 +83,22 @@ ordered_json IccJson(const report::Icc& icc) {
 
 void PrintAgreement(const report::RatingForm& form, const report::FormAgreement& agreement,
                     double confidence) {
-  std::printf("%s: %zu raters of %zu attempts; interval of %s %%\n\n", form.name.c_str(),
-              agreement.raters.size(), agreement.attempts.size(), FormatNumber(confidence, 3).c_str());
+  Say("{1}: {2} raters of {3} attempts; interval of {4} %\n\n", Translate(form.name), agreement.raters.size(),
+      agreement.attempts.size(), ShownNumber(confidence, 3));
   std::vector<std::vector<std::string>> rows = {
       {"of", "ICC(2,1)", "interval", "ICC(2,k)", "interval", "ICC(3,1)", "interval", "one rater agrees"}};
-  const auto number = [](double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f", value);
-    return std::string(text);
+  const auto number = [](double value) { return ShownFixed(value, 2); };
+  const auto interval = [&](const report::Icc& icc) {
+    return TranslateWith("{1} to {2}", {number(icc.low), number(icc.high)});
   };
-  const auto interval = [&](const report::Icc& icc) { return number(icc.low) + " to " + number(icc.high); };
   for (const auto& [of, icc] : agreement.of) {
     rows.push_back({of, number(icc.two_random.value), interval(icc.two_random),
                     number(icc.two_random_mean.value), interval(icc.two_random_mean),
                     number(icc.three_fixed.value), interval(icc.three_fixed),
-                    std::string(report::DescribeAgreement(icc.two_random.value))});
+                    Translate(report::DescribeAgreement(icc.two_random.value))});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf(
-      "\nICC(2,1): one rater, of any; ICC(2,k): the mean of these many; ICC(3,1): one of these raters, who "
+  PrintTable(rows);
+  Say("\nICC(2,1): one rater, of any; ICC(2,k): the mean of these many; ICC(3,1): one of these raters, who "
       "may differ by a constant.\n"
       "Items whose ratings do not vary are left out. Words: Koo and Li 2016. Judge by the interval, not the "
       "value alone.\n");

@@ -69,47 +69,55 @@ ordered_json InfoJson(const Recording& recording) {
 
 std::string HowItEnded(const Recording& recording) {
   if (!recording.damage.empty()) {
-    return "damaged: " + recording.damage + "; " + std::to_string(recording.whole_bytes) + " of " +
-           std::to_string(recording.file_bytes) + " bytes are whole (trocar record repair)";
+    return TranslateWith("damaged: {1}; {2} of {3} bytes are whole (trocar record repair)",
+                         {TranslateComposed(recording.damage), std::to_string(recording.whole_bytes),
+                          std::to_string(recording.file_bytes)});
   }
-  return recording.ending ? "finished"
-                          : "not finished: the program ended before the attempt; what is there is whole";
+  return Translate(recording.ending
+                       ? Mark("finished")
+                       : Mark("not finished: the program ended before the attempt; what is there is whole"));
+}
+
+/// "    12.30 s  "
+std::string At(std::uint64_t tick, const record::Description& description) {
+  const std::string time = ShownFixed(static_cast<double>(tick) * description.tick_seconds, 2);
+  return std::string(time.size() < 10 ? 10 - time.size() : 0, ' ') + time + " s  ";
 }
 
 void PrintInfo(const Recording& recording) {
   const record::Description& d = recording.description;
-  const std::string what = d.name + (d.level.empty() ? "" : ", level " + d.level) +
-                           (d.patient.empty() ? "" : ", patient " + d.patient) + ", seed " +
-                           std::to_string(d.seed);
-  std::vector<std::vector<std::string>> rows = {
-      {"recording of", what},
-      {"played by", d.player},
-      {"started", d.started},
-      {"written by", "trocar " + d.program + ", " + d.compiler},
-      {"goes on from", d.branched_from.empty()
-                           ? "-"
-                           : d.branched_from + " at " +
-                                 FormatNumber(static_cast<double>(d.branched_tick) * d.tick_seconds, 4) +
-                                 " s"},
-      {"length",
-       FormatNumber(recording.Seconds(), 4) + " s, " + std::to_string(recording.inputs.size()) + " ticks"},
-      {"size", FormatNumber(1e-6 * static_cast<double>(recording.file_bytes), 3) + " MB, with " +
-                   std::to_string(recording.KeyframeTicks().size()) + " keyframes and " +
-                   std::to_string(recording.hashes.size()) + " hashes"},
-      {"state", HowItEnded(recording)}};
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  const std::string what = (d.level.empty() ? d.name : TranslateWith("{1}, level {2}", {d.name, d.level})) +
+                           (d.patient.empty() ? "" : TranslateWith(", patient {1}", {d.patient})) +
+                           TranslateWith(", seed {1}", {std::to_string(d.seed)});
+  Print(FormatFields(
+      {{"recording of", what},
+       {"played by", TranslateComposed(d.player)},
+       {"started", d.started},
+       {"written by", "trocar " + d.program + ", " + d.compiler},
+       {"goes on from",
+        d.branched_from.empty()
+            ? "-"
+            : TranslateWith(
+                  "{1} from {2} s on",
+                  {d.branched_from, ShownNumber(static_cast<double>(d.branched_tick) * d.tick_seconds, 4)})},
+       {"length", TranslateWith("{1} s, {2} ticks", {ShownNumber(recording.Seconds(), 4),
+                                                     std::to_string(recording.inputs.size())})},
+       {"size", TranslateWith("{1} MB, with {2} keyframes and {3} hashes",
+                              {ShownNumber(1e-6 * static_cast<double>(recording.file_bytes), 3),
+                               std::to_string(recording.KeyframeTicks().size()),
+                               std::to_string(recording.hashes.size())})},
+       {"state", HowItEnded(recording)}}));
   const auto errors = std::count_if(recording.events.begin(), recording.events.end(),
                                     [](const record::EventMark& event) { return event.is_error; });
-  if (errors > 0) std::printf("\n%td errors:\n", errors);
+  if (errors > 0) Say("\n{1} errors:\n", errors);
   std::size_t shown = 0;
   for (const record::EventMark& event : recording.events) {
     if (!event.is_error || ++shown > kShownErrors) continue;
-    std::printf("  %8.2f s  %s%s%s\n", static_cast<double>(event.tick) * d.tick_seconds, event.kind.c_str(),
-                event.about.empty() ? "" : ": ", event.about.c_str());
+    Print(At(event.tick, d) + Translate(event.kind) +
+          (event.about.empty() ? "" : ": " + TranslateComposed(event.about)) + "\n");
   }
-  if (shown > kShownErrors) std::printf("  and %zu more (--json)\n", shown - kShownErrors);
-  for (const record::TextMark& mark : recording.marks)
-    std::printf("  %8.2f s  \"%s\"\n", static_cast<double>(mark.tick) * d.tick_seconds, mark.text.c_str());
+  if (shown > kShownErrors) Say("  and {1} more (--json)\n", shown - kShownErrors);
+  for (const record::TextMark& mark : recording.marks) Print(At(mark.tick, d) + "\"" + mark.text + "\"\n");
 }
 
 void AddInfo(CLI::App& record, Outcome& outcome) {
@@ -148,7 +156,7 @@ void AddVerify(CLI::App& record, Outcome& outcome) {
         return;
       }
     }
-    std::printf("%s: %s\n", path->c_str(), HowItEnded(*recording).c_str());
+    Print(*path + ": " + HowItEnded(*recording) + "\n");
     outcome.has_finding = !recording->damage.empty();
   });
 }
@@ -164,8 +172,8 @@ void AddRepair(CLI::App& record, Outcome& outcome) {
     if (!outcome.status.ok()) return;
     const auto repaired = record::ReadRecording(*to);
     if (repaired.ok()) {
-      std::printf("%s holds %s s; the damage and what came after it are left out\n", to->c_str(),
-                  FormatNumber(repaired->Seconds(), 4).c_str());
+      Say("{1} holds {2} s; the damage and what came after it are left out\n", to->c_str(),
+          ShownNumber(repaired->Seconds(), 4));
     }
   });
 }
@@ -201,9 +209,9 @@ core::Status MakeIndex(const std::string& path, double seconds, int threads) {
   }
   std::error_code failure;
   const auto bytes = std::filesystem::file_size(settings.index, failure);
-  std::printf("%s holds %zu states, %s MB; any moment is at most %s s after one\n", settings.index.c_str(),
-              replay->KnownTicks().size(), FormatNumber(1e-6 * static_cast<double>(bytes), 3).c_str(),
-              FormatNumber(seconds, 3).c_str());
+  Say("{1} holds {2} states, {3} MB; any moment is at most {4} s after one\n", settings.index,
+      replay->KnownTicks().size(), ShownNumber(1e-6 * static_cast<double>(bytes), 3),
+      ShownNumber(seconds, 3));
   return {};
 }
 

@@ -79,26 +79,25 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
     return {};
   }
   if (verified->divergence) {
-    std::printf("DIVERGED at %.2f s: the state's hash is %s, recorded was %s\n",
-                static_cast<double>(verified->divergence->tick) * tick,
-                core::HashText(verified->divergence->computed).c_str(),
-                core::HashText(verified->divergence->recorded).c_str());
+    Say("DIVERGED at {1} s: the state's hash is {2}, recorded was {3}\n",
+        ShownFixed(static_cast<double>(verified->divergence->tick) * tick, 2),
+        core::HashText(verified->divergence->computed), core::HashText(verified->divergence->recorded));
   } else if (!verified->is_outcome_same) {
-    std::printf("DIVERGED in the outcome: computed %s, recorded was %s\n", verified->outcome.c_str(),
-                recording.ending->outcome.c_str());
+    Say("DIVERGED in the outcome: computed {1}, recorded was {2}\n", verified->outcome,
+        recording.ending->outcome);
   } else {
-    std::printf("VERIFIED: %llu ticks, %llu hashes%s\n", static_cast<unsigned long long>(verified->ticks),
-                static_cast<unsigned long long>(verified->hashes),
-                recording.ending ? " and the outcome are those that were recorded"
-                                 : " are those that were recorded; the recording has no ending");
+    Say(recording.ending
+            ? "VERIFIED: {1} ticks, {2} hashes and the outcome are those that were recorded\n"
+            : "VERIFIED: {1} ticks, {2} hashes are those that were recorded; the recording has no ending\n",
+        verified->ticks, verified->hashes);
   }
   const std::string& program = recording.description.program;
   if (!verified->IsVerified() && program != core::VersionText()) {
-    std::printf("It was recorded by version %s, and this is %s: replay it with that one.\n", program.c_str(),
-                std::string(core::VersionText()).c_str());
+    Say("It was recorded by version {1}, and this is {2}: replay it with that one.\n", program,
+        core::VersionText());
   }
   if (!recording.damage.empty())
-    std::printf("The file is damaged (%s): what comes after is missing.\n", recording.damage.c_str());
+    Say("The file is damaged ({1}): what comes after is missing.\n", TranslateComposed(recording.damage));
   return {};
 }
 
@@ -168,13 +167,13 @@ core::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) 
     std::printf("%s\n", json.dump(2).c_str());
     return {};
   }
-  std::printf("%s holds front.png of %s s and back.png of %s s: the critical view is %s\n",
-              arguments.video.output.c_str(), FormatNumber(front_seconds, 4).c_str(),
-              FormatNumber(back_seconds, 4).c_str(), score.IsAchieved() ? "achieved" : "not achieved");
-  std::printf("Triangle cleared %d of 2, lower third off the plate %d of 2, two structures %d of 2\n",
-              score.criteria[0], score.criteria[1], score.criteria[2]);
+  Say("{1} holds front.png of {2} s and back.png of {3} s: the critical view is {4}\n",
+      arguments.video.output, ShownNumber(front_seconds, 4), ShownNumber(back_seconds, 4),
+      score.IsAchieved() ? Translate("achieved") : Translate("not achieved"));
+  Say("Triangle cleared {1} of 2, lower third off the plate {2} of 2, two structures {3} of 2\n",
+      score.criteria[0], score.criteria[1], score.criteria[2]);
   for (const std::string& reason : training::ExplainCriticalView(result.facts, score))
-    std::printf("  %s\n", core::TranslateComposed(reason).c_str());
+    Print("  " + TranslateComposed(reason) + "\n");
   return {};
 }
 
@@ -199,8 +198,8 @@ core::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
     simulation.Step(input);
     recording->Add(input, simulation);
     if (simulation.GetSnapshot().tick % 60 != 0) continue;
-    progress.SetLabel(FormatNumber(simulation.GetSnapshot().time, 4) + " s, " +
-                      std::string((*surgeon)->Doing()));
+    progress.SetLabel(ShownNumber(simulation.GetSnapshot().time, 4) + " s, " +
+                      Translate((*surgeon)->Doing()));
     progress.Show(simulation.GetSnapshot().operation.facts.detached_share);
   }
   progress.Finish();
@@ -255,8 +254,8 @@ core::Status DoReplay(const ReplayArguments& arguments, Outcome& outcome) {
   const double seconds = static_cast<double>(recording->LastTick()) * recording->description.tick_seconds;
   const double first = branches ? arguments.at : arguments.video.from;
   if (first > seconds) {
-    return core::Error{core::ErrorCode::kUsage, "the recording ends at " + FormatNumber(seconds, 4) +
-                                                    " s, before " + FormatNumber(first, 4) + " s"};
+    return core::Error{core::ErrorCode::kUsage, "the recording ends at " + ShownNumber(seconds, 4) +
+                                                    " s, before " + ShownNumber(first, 4) + " s"};
   }
   auto replay = OpenReplay(std::move(*recording), arguments.file, arguments.threads);
   if (!replay.ok()) return replay.error();

@@ -132,8 +132,8 @@ core::Status MakeReplayVideo(Replay& replay, Replay* other, const ReplayVideoOpt
   progress.Finish();
   if (const auto finished = film->Finish(); !finished.ok()) return finished;
   if (const auto kept = part.Keep(); !kept.ok()) return kept;
-  std::printf("%s holds demo.webm and %d pictures, from %s s to %s s\n", options.output.c_str(), pictures,
-              FormatNumber(options.from, 4).c_str(), FormatNumber(end, 4).c_str());
+  Say("{1} holds demo.webm and {2} pictures, from {3} s to {4} s\n", options.output, pictures,
+      ShownNumber(options.from, 4), ShownNumber(end, 4));
   return {};
 }
 

@@ -61,14 +61,14 @@ core::Result<int> WriteReportCard(const ReportCardOptions& options) {
   std::vector<std::vector<std::string>> rows = {{"figure", "measured", "unit", ""}};
   for (const bench::PhysicsCheck& check : *checks) {
     for (const bench::CheckFigure& figure : check.figures) {
-      rows.push_back({figure.name, FormatNumber(figure.value), figure.unit,
-                      figure.Passes()         ? "passes"
-                      : figure.is_known_limit ? "known limit"
-                                              : "FAILS"});
+      rows.push_back({figure.name, ShownNumber(figure.value), figure.unit,
+                      Translate(figure.Passes()         ? Mark("passes")
+                                : figure.is_known_limit ? Mark("known limit")
+                                                        : Mark("FAILS"))});
     }
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf("\nPage: %s\n", page.string().c_str());
+  PrintTable(rows);
+  Say("\nPage: {1}\n", page.string());
   return bench::CountFailures(*checks);
 }
 

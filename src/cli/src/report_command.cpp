@@ -13,6 +13,7 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "console.h"
 #include "group_values.h"
 #include "trocar/assessment/learning.h"
 #include "trocar/core/safe_file.h"
@@ -32,7 +33,7 @@ struct ReportArguments {
 core::Status WriteDictionary(const ReportArguments& arguments) {
   const std::string text = report::FormatDictionaryCsv();
   if (!arguments.output.empty()) return core::WriteFile(arguments.output, text);
-  std::fputs(text.c_str(), stdout);
+  Print(text);
   return {};
 }
 
@@ -93,8 +94,8 @@ core::Status Report(ReportArguments arguments) {
     written = WriteReport(trainee, arguments.output);
   }
   if (!written.ok()) return written;
-  if (reports.size() == 1) std::printf("%s\n", reports[0].outcome.c_str());
-  std::printf("Wrote %s\n", arguments.output.c_str());
+  if (reports.size() == 1) Print(TranslateComposed(reports[0].outcome) + "\n");
+  Say("Wrote {1}\n", arguments.output);
   return {};
 }
 

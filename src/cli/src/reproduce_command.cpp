@@ -90,8 +90,7 @@ core::Status Reproduce(std::span<const bench::ExperimentEntry> entries, const Ar
   if (!arguments.folder.empty()) {
     if (core::Status status = WritePages(*experiments, arguments, is_all, machine); !status) return status;
     const std::string page = is_all ? "index.html" : experiments->front().name + ".html";
-    if (!arguments.is_json)
-      std::printf("Page: %s\n", (std::filesystem::path(arguments.folder) / page).string().c_str());
+    if (!arguments.is_json) Say("Page: {1}\n", (std::filesystem::path(arguments.folder) / page).string());
   }
   if (arguments.markdown.empty()) return {};
   return UpdateDocument(*experiments, arguments.markdown, machine);

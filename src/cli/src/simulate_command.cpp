@@ -189,19 +189,18 @@ void PrintJson(const SimulateReport& report) {
 void PrintForPerson(const SimulateReport& report) {
   std::vector<std::vector<std::string>> rows = {{"stage", "median [ms]", "p99 [ms]"}};
   for (const StageTimes& stage : report.stages) {
-    rows.push_back({stage.name, FormatNumber(stage.median_ms, 3), FormatNumber(stage.p99_ms, 3)});
+    rows.push_back({ShownName(stage.name), ShownNumber(stage.median_ms, 3), ShownNumber(stage.p99_ms, 3)});
   }
-  rows.push_back({"whole tick", "", FormatNumber(report.tick_p99_ms, 3)});
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  if (!report.gpu.empty()) std::printf("\nGPU: %s\n", report.gpu.c_str());
-  std::printf("\n%llu ticks, state hash %s\n", static_cast<unsigned long long>(report.ticks),
-              report.hash.c_str());
+  rows.push_back({Translate("whole tick"), "", ShownNumber(report.tick_p99_ms, 3)});
+  PrintTable(rows);
+  if (!report.gpu.empty()) Say("\nGPU: {1}\n", report.gpu);
+  Say("\n{1} ticks, state hash {2}\n", report.ticks, report.hash);
   if (report.haptics) {
     for (const auto& [what, how] : session::DescribeSummary(*report.haptics))
-      std::printf("%s: %s\n", what.c_str(), how.c_str());
+      Print(Translate(what) + ": " + TranslateComposed(how) + "\n");
   }
-  std::printf("residual after the last tick %s, largest force on an instrument %s N\n",
-              FormatNumber(report.residual).c_str(), FormatNumber(report.max_force_n).c_str());
+  Say("residual after the last tick {1}, largest force on an instrument {2} N\n",
+      ShownNumber(report.residual), ShownNumber(report.max_force_n));
 }
 
 }  // namespace

@@ -20,13 +20,13 @@ core::Error StartWindow(const std::vector<std::string>& arguments) {
   pointers.push_back(nullptr);
   ::execv(program.c_str(), pointers.data());
   if (errno == ENOENT) {
-    return {core::ErrorCode::kWindowMissing,
-            "trocar-window is not beside this program: build it too (ninja programs, with "
-            "TROCAR_BUILD_WINDOW=ON), or "
-            "use trocar demo, which needs no window"};
+    return core::Error{core::ErrorCode::kWindowMissing,
+                       "trocar-window is not beside this program: build it too (ninja programs, with "
+                       "TROCAR_BUILD_WINDOW=ON), or "
+                       "use trocar demo, which needs no window"};
   }
-  return {core::ErrorCode::kWindowMissing,
-          std::string("trocar-window does not start: ") + std::strerror(errno) + "; build it again"};
+  return core::Error{core::ErrorCode::kWindowMissing, std::string("trocar-window does not start: ") +
+                                                          std::strerror(errno) + "; build it again"};
 }
 
 }  // namespace trocar::cli

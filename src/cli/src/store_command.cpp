@@ -18,6 +18,12 @@
 namespace trocar::cli {
 namespace {
 
+/// How long attempts are kept.
+std::string Days(int days) {
+  return days == 0 ? Translate("for ever")
+                   : TranslateCount("{1} day", "{1} days", static_cast<std::size_t>(days));
+}
+
 using nlohmann::ordered_json;
 using Options = std::shared_ptr<StoreOptions>;
 
@@ -53,27 +59,28 @@ void AddInfo(CLI::App& parent, const Options& options, Outcome& outcome) {
                       {"retention_days", *days}});
       return {};
     }
-    std::fputs(FormatTable({{"store", place.Text()},
-                            {"database", std::string(place.IsPostgres() ? "PostgreSQL" : "SQLite") +
-                                             ", tables of version " + std::to_string(*version)},
-                            {"names, spool, backups", place.folder.string()},
-                            {"people", std::to_string(counts->people) + " in " +
-                                           std::to_string(counts->groups) + " groups"},
-                            {"courses", std::to_string(counts->courses)},
-                            {"attempts", std::to_string(counts->attempts)},
-                            {"certificates", std::to_string(counts->certificates)},
-                            {"waiting in the spool", std::to_string(spool.CountWaiting()) + ", held " +
-                                                         std::to_string(spool.CountHeld())},
-                            {"attempts are kept", *days == 0 ? "for ever" : std::to_string(*days) + " days"}})
-                   .c_str(),
-               stdout);
+    Print(FormatFields(
+        {{"store", place.Text()},
+         {"database",
+          TranslateWith("{1}, tables of version {2}",
+                        {place.IsPostgres() ? "PostgreSQL" : "SQLite", std::to_string(*version)})},
+         {"names, spool, backups", place.folder.string()},
+         {"people", TranslateWith("{1} in {2} groups",
+                                  {std::to_string(counts->people), std::to_string(counts->groups)})},
+         {"courses", std::to_string(counts->courses)},
+         {"attempts", std::to_string(counts->attempts)},
+         {"certificates", std::to_string(counts->certificates)},
+         {"waiting in the spool", TranslateWith("{1}, held {2}", {std::to_string(spool.CountWaiting()),
+                                                                  std::to_string(spool.CountHeld())})},
+         {"attempts are kept", Days(*days)}}));
     return {};
   });
 }
 
 std::string Result(const store::Attempt& attempt) {
-  if (!attempt.is_completed) return "not completed";
-  return !attempt.is_passed ? "completed" : *attempt.is_passed ? "passed" : "not passed";
+  if (!attempt.is_completed) return Translate("not completed");
+  if (!attempt.is_passed) return Translate("completed");
+  return *attempt.is_passed ? Translate("passed") : Translate("not passed");
 }
 
 ordered_json AttemptJson(const store::StoredAttempt& stored) {
@@ -125,14 +132,14 @@ void AddAttempts(CLI::App& parent, const Options& options, Outcome& outcome) {
     for (const store::StoredAttempt& stored : page->attempts) {
       const store::Attempt& a = stored.attempt;
       rows.push_back({Shown(a.started), a.trainee.empty() ? "-" : Shown(a.trainee), Shown(a.task),
-                      Shown(a.level), FormatNumber(a.seconds, 4), a.score ? FormatNumber(*a.score, 3) : "-",
+                      Shown(a.level), ShownNumber(a.seconds, 4), a.score ? ShownNumber(*a.score, 3) : "-",
                       Result(a)});
     }
     if (page->attempts.empty())
-      std::printf("no attempts\n");
+      Say("no attempts\n");
     else
-      std::fputs(FormatTable(rows).c_str(), stdout);
-    if (!page->next.empty()) std::printf("more: --page %s\n", page->next.c_str());
+      PrintTable(rows);
+    if (!page->next.empty()) Say("more: --page {1}\n", page->next);
     return {};
   });
 }
@@ -181,12 +188,10 @@ void AddPercentile(CLI::App& parent, const Options& options, Outcome& outcome) {
                       {"trainees", percentile->trainees},
                       {"percentile", percentile->Percent()}});
     } else if (percentile->trainees == 0) {
-      std::printf("nobody there has completed this\n");
+      Say("nobody there has completed this\n");
     } else {
-      std::printf("%s: higher than %lld and equal to %lld of %lld trainees (percentile %s)\n",
-                  FormatNumber(compared).c_str(), static_cast<long long>(percentile->below),
-                  static_cast<long long>(percentile->equal), static_cast<long long>(percentile->trainees),
-                  FormatNumber(percentile->Percent(), 3).c_str());
+      Say("{1}: higher than {2} and equal to {3} of {4} trainees (percentile {5})\n", ShownNumber(compared),
+          percentile->below, percentile->equal, percentile->trainees, ShownNumber(percentile->Percent(), 3));
     }
     return {};
   });
@@ -231,10 +236,9 @@ void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
         PrintStoreJson({{"in_store", kept->is_in_store},
                         {"why_not", kept->failure ? ordered_json(kept->failure->Text()) : ordered_json()}});
       else
-        std::printf("%s\n",
-                    kept->is_in_store ? "the attempt is in the store" : "the attempt waits in the spool");
+        Say(kept->is_in_store ? "the attempt is in the store\n" : "the attempt waits in the spool\n");
       // a store that is away is no failure: the attempt is safe; one that is refused wants a person
-      if (kept->failure) std::fprintf(stderr, "trocar: %s\n", kept->failure->Text().c_str());
+      if (kept->failure) std::fprintf(stderr, "trocar: %s\n", core::ShownText(*kept->failure).c_str());
       outcome.has_finding = !kept->is_in_store;
       return {};
     }();
@@ -256,14 +260,13 @@ void AddDeliver(CLI::App& parent, const Options& options, Outcome& outcome) {
                       {"damaged", report.damaged},
                       {"waiting", spool.CountWaiting()}});
     } else {
-      std::printf("%d attempts are new in the store, %d were there already, %zu wait\n", report.added,
-                  report.known, spool.CountWaiting());
+      Say("{1} attempts are new in the store, {2} were there already, {3} wait\n", report.added, report.known,
+          spool.CountWaiting());
       if (report.held > 0)
-        std::printf("%d are of trainees that the store does not know: add them, then use --held\n",
-                    report.held);
+        Say("{1} are of trainees that the store does not know: add them, then use --held\n", report.held);
       if (report.damaged > 0)
-        std::printf("%d are damaged and lie in %s\n", report.damaged,
-                    (session.store.GetPlace().SpoolFolder() / "damaged").c_str());
+        Say("{1} are damaged and lie in {2}\n", report.damaged,
+            session.store.GetPlace().SpoolFolder() / "damaged");
     }
     return report.failure ? core::Status(*report.failure) : core::Status();
   });
@@ -281,7 +284,7 @@ void AddTransfer(CLI::App& parent, const Options& options, Outcome& outcome) {
       return core::Error{core::ErrorCode::kUsage, "the file's name ends with .json or .csv"};
     auto done = is_csv ? ExportCsv(session.store, session.viewer, *file)
                        : ExportJson(session.store, session.viewer, *file);
-    if (done.ok()) std::printf("%s is written\n", file->c_str());
+    if (done.ok()) Say("{1} is written\n", file->c_str());
     return done;
   });
   CLI::App* importing = parent.add_subcommand(
@@ -297,11 +300,8 @@ void AddTransfer(CLI::App& parent, const Options& options, Outcome& outcome) {
                       {"attempts", report->attempts},
                       {"known", report->known}});
     } else {
-      std::printf(
-          "new: %lld people, %lld groups, %lld courses, %lld attempts; %lld attempts were here already\n",
-          static_cast<long long>(report->people), static_cast<long long>(report->groups),
-          static_cast<long long>(report->courses), static_cast<long long>(report->attempts),
-          static_cast<long long>(report->known));
+      Say("new: {1} people, {2} groups, {3} courses, {4} attempts; {5} attempts were here already\n",
+          report->people, report->groups, report->courses, report->attempts, report->known);
     }
     return {};
   });
@@ -318,7 +318,7 @@ void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
     const auto made = BackUp(session.store, session.viewer, *file);
     if (!made.ok()) return made.error();
     options->is_json ? PrintStoreJson({{"backup", made->string()}})
-                     : static_cast<void>(std::printf("%s is written and checked\n", made->c_str()));
+                     : Say("{1} is written and checked\n", made->c_str());
     return {};
   });
   auto checked = std::make_shared<std::string>();
@@ -335,14 +335,14 @@ void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
       auto session = OpenSession(*options, settings);
       outcome.status = session.ok() ? Verify(session->store) : core::Status(session.error());
     }
-    if (outcome.status.ok()) std::printf("all is sound\n");
+    if (outcome.status.ok()) Say("all is sound\n");
   });
   CLI::App* migrate =
       parent.add_subcommand("migrate", "Make the store, or bring its tables to this program's version");
   OnStore(*migrate, options, outcome, [](StoreSession& session) -> core::Status {
     const auto version = session.store.ReadVersion();
     if (!version.ok()) return version.error();
-    std::printf("the tables are of version %d\n", *version);
+    Say("the tables are of version {1}\n", *version);
     return {};
   });
 }
@@ -354,9 +354,7 @@ void AddKeeping(CLI::App& parent, const Options& options, Outcome& outcome) {
   retain->add_option("--days", *days, "0: for ever")->required()->check(CLI::Range(0, 36500));
   OnStore(*retain, options, outcome, [days](StoreSession& session) -> core::Status {
     auto set = SetRetention(session.store, session.viewer, *days);
-    if (set.ok())
-      std::printf("attempts are kept %s\n",
-                  *days == 0 ? "for ever" : (std::to_string(*days) + " days").c_str());
+    if (set.ok()) Say("attempts are kept {1}\n", Days(*days));
     return set;
   });
   CLI::App* tidy = parent.add_subcommand(
@@ -370,10 +368,10 @@ void AddKeeping(CLI::App& parent, const Options& options, Outcome& outcome) {
                       {"left", report->left},
                       {"backup", report->backup.string()}});
     else
-      std::printf("%lld attempts and %d recordings are removed; backup: %s\n",
-                  static_cast<long long>(report->attempts), report->recordings, report->backup.c_str());
+      Say("{1} attempts and {2} recordings are removed; backup: {3}\n", report->attempts, report->recordings,
+          report->backup);
     if (!options->is_json)
-      for (const std::string& left : report->left) std::printf("not removed here: %s\n", left.c_str());
+      for (const std::string& left : report->left) Say("not removed here: {1}\n", left);
     return {};
   });
 }

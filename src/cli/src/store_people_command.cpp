@@ -41,7 +41,7 @@ void AddAdd(CLI::App& trainee, const Options& options, Outcome& outcome) {
         return kept;
     }
     options->is_json ? PrintStoreJson({{"pseudonym", JsonText(person->pseudonym)}, {"role", arguments->role}})
-                     : static_cast<void>(std::printf("%s\n", Shown(person->pseudonym).c_str()));
+                     : Print(Shown(person->pseudonym) + "\n");
     return {};
   });
 }
@@ -90,13 +90,12 @@ void AddList(CLI::App& trainee, const Options& options, Outcome& outcome) {
     for (const store::Person& person : *people) {
       std::string groups;
       for (const std::string& group : person.groups) groups += (groups.empty() ? "" : ", ") + Shown(group);
-      rows.push_back({Shown(person.pseudonym), std::string(store::RoleName(person.role)),
+      rows.push_back({Shown(person.pseudonym), Translate(store::RoleName(person.role)),
                       groups.empty() ? "-" : groups, Shown(name_of(person))});
     }
-    people->empty() ? static_cast<void>(std::printf("nobody\n"))
-                    : static_cast<void>(std::fputs(FormatTable(rows).c_str(), stdout));
+    people->empty() ? Say("nobody\n") : PrintTable(rows);
     if (people->size() == static_cast<std::size_t>(arguments->limit))
-      std::printf("more: --after %s\n", Shown(people->back().pseudonym).c_str());
+      Say("more: --after {1}\n", Shown(people->back().pseudonym));
     return {};
   });
 }
@@ -131,7 +130,7 @@ void AddChange(CLI::App& trainee, const Options& options, Outcome& outcome) {
         return renamed;
       if (auto moved = store::MoveName(names, arguments->pseudonym, arguments->to); !moved.ok()) return moved;
     }
-    std::printf("done\n");
+    Say("done\n");
     return {};
   });
 }
@@ -149,7 +148,7 @@ void AddErase(CLI::App& trainee, const Options& options, Outcome& outcome) {
   OnStore(*exporting, options, outcome, [arguments](StoreSession& session) -> core::Status {
     const auto copied = ExportPerson(session.store, session.viewer, arguments->pseudonym, arguments->folder);
     if (!copied.ok()) return copied.error();
-    std::printf("%s holds person.json and %d recordings\n", arguments->folder.c_str(), *copied);
+    Say("{1} holds person.json and {2} recordings\n", arguments->folder, *copied);
     return {};
   });
   CLI::App* erase = trainee.add_subcommand(
@@ -174,11 +173,11 @@ void AddErase(CLI::App& trainee, const Options& options, Outcome& outcome) {
                       {"backups", report->backups}});
       return {};
     }
-    std::printf("erased: %lld attempts, %d recordings, %d waiting attempts, %zu waiting statements\n",
-                static_cast<long long>(report->attempts), report->recordings, report->spooled, *statements);
-    for (const std::string& left : report->left) std::printf("not erased here: %s\n", left.c_str());
+    Say("erased: {1} attempts, {2} recordings, {3} waiting attempts, {4} waiting statements\n",
+        report->attempts, report->recordings, report->spooled, *statements);
+    for (const std::string& left : report->left) Say("not erased here: {1}\n", left);
     for (const std::string& backup : report->backups)
-      std::printf("this backup still holds them; delete it and make a new one: %s\n", backup.c_str());
+      Say("this backup still holds them; delete it and make a new one: {1}\n", backup);
     return {};
   });
 }
@@ -192,7 +191,7 @@ void AddGroups(CLI::App& parent, const Options& options, Outcome& outcome) {
   OnStore(*add, options, outcome, [name](StoreSession& session) -> core::Status {
     const auto added = AddGroup(session.store, session.viewer, *name);
     if (!added.ok()) return added.error();
-    std::printf("done\n");
+    Say("done\n");
     return {};
   });
   CLI::App* list = group->add_subcommand("list", "List groups");
@@ -208,7 +207,7 @@ void AddGroups(CLI::App& parent, const Options& options, Outcome& outcome) {
     if (options->is_json)
       PrintStoreJson(json);
     else
-      std::fputs(groups->empty() ? "no groups\n" : FormatTable(rows).c_str(), stdout);
+      groups->empty() ? Say("no groups\n") : PrintTable(rows);
     return {};
   });
   const auto add_membership = [&](const char* word, const char* help, auto change) {
@@ -217,7 +216,7 @@ void AddGroups(CLI::App& parent, const Options& options, Outcome& outcome) {
     command->add_option("pseudonym", *person, "Who")->required();
     OnStore(*command, options, outcome, [name, person, change](StoreSession& session) -> core::Status {
       auto done = change(session.store, session.viewer, *name, *person);
-      if (done.ok()) std::printf("done\n");
+      if (done.ok()) Say("done\n");
       return done;
     });
   };

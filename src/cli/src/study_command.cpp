@@ -52,11 +52,11 @@ core::Status WriteStudy(const StudyArguments& arguments, const std::vector<bench
                                           [](const auto& finding) { return finding.separates; });
     rows.push_back({task.task, std::to_string(task.attempts), std::to_string(task.completed),
                     std::to_string(task.metrics.size()), std::to_string(separating),
-                    std::to_string(task.clusters.size()) + " groups"});
+                    TranslateWith("{1} groups", {std::to_string(task.clusters.size())})});
   }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf("\nPage: %s\n", (folder / "study.html").string().c_str());
-  std::printf("The people are made by a program: this sets no standard of competence.\n");
+  PrintTable(rows);
+  Say("\nPage: {1}\n", (folder / "study.html").string());
+  Say("The people are made by a program: this sets no standard of competence.\n");
   return {};
 }
 
@@ -67,17 +67,14 @@ core::Status Study(const StudyArguments& arguments, Outcome& outcome) {
   const auto wanted = bench::CountStudyAttempts(options);
   if (!wanted.ok()) return wanted.error();
   ProgressBar progress("playing", 1.0);
-  const auto attempts = bench::RunStudy(options, [&](const std::string& what, double share) {
-    progress.SetLabel(what);
-    progress.Show(share);
-  });
+  const auto attempts = bench::RunStudy(options, progress.Follow());
   progress.Finish();
   if (!attempts.ok()) return attempts.error();
   StudyArguments done = arguments;
   done.options = options;
   if (auto status = WriteStudy(done, *attempts); !status.ok()) return status;
   if (attempts->size() < *wanted) {
-    std::printf("%zu of %zu attempts are done; the same command goes on.\n", attempts->size(), *wanted);
+    Say("{1} of {2} attempts are done; the same command goes on.\n", attempts->size(), *wanted);
     outcome.has_finding = true;
   }
   return {};
@@ -108,15 +105,14 @@ core::Status RunPlan(const StudyArguments& arguments, Outcome& outcome) {
   const auto summary = study::RunStudy(options, *plan, [&](double share) { progress.Show(share); });
   progress.Finish();
   if (!summary) return summary.error();
-  std::printf("%zu of %zu runs are done; %zu failed\n", summary->done, summary->runs, summary->failed);
-  for (const std::string& line : summary->failures) std::printf("  %s\n", line.c_str());
+  Say("{1} of {2} runs are done; {3} failed\n", summary->done, summary->runs, summary->failed);
+  for (const std::string& line : summary->failures) Print("  " + TranslateComposed(line) + "\n");
   if (summary->done < summary->runs) {
-    std::printf("The same command goes on.\n");
+    Say("The same command goes on.\n");
     outcome.has_finding = true;
   }
   const std::filesystem::path folder = arguments.output;
-  std::printf("Table: %s, %s\nPage: %s\n", (folder / "runs.csv").c_str(), (folder / "runs.sqlite").c_str(),
-              (folder / "report.html").c_str());
+  Say("Table: {1}, {2}\nPage: {3}\n", folder / "runs.csv", folder / "runs.sqlite", folder / "report.html");
   return {};
 }
 

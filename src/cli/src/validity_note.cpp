@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "trocar/core/safe_file.h"
+#include "trocar/core/translate.h"
 #include "trocar/scene/scene.h"
 #include "trocar/training/metric_definition.h"
 
@@ -44,14 +45,17 @@ std::string TaskKey(const std::string& description_name) {
 std::string FormatValidityNote(const training::AttemptMetrics& metrics, const std::string& task,
                                const training::TaskValidity* validity) {
   if (validity == nullptr)
-    return "Which of these numbers tell novices from experts in \"" + task +
-           "\" has not been studied (trocar study).\n";
+    return core::TranslateWith(
+               "Which of these numbers tell novices from experts in \"{1}\" has not been studied (trocar "
+               "study).",
+               {task}) +
+           "\n";
   std::vector<std::string> weak, unknown;
   for (const training::MetricValue& value : metrics.values) {
     if (!value.phase.empty() || !value.tool.empty()) continue;
     const training::MetricDefinition* definition = training::FindMetric(value.metric);
-    std::string name = definition != nullptr ? definition->name : value.metric;
-    if (!value.hand.empty()) name += " (" + value.hand + ")";
+    std::string name = definition != nullptr ? core::Translate(definition->name) : value.metric;
+    if (!value.hand.empty()) name += " (" + core::Translate(value.hand) + ")";
     const training::MeasureValidity* found = validity->Find(value.metric, value.hand);
     if (found == nullptr) {
       unknown.push_back(name);
@@ -61,12 +65,12 @@ std::string FormatValidityNote(const training::AttemptMetrics& metrics, const st
   }
   const auto list = [](const char* heading, const std::vector<std::string>& names) {
     if (names.empty()) return std::string();
-    std::string text = heading;
+    std::string text = core::Translate(heading);
     for (std::size_t i = 0; i < names.size(); ++i) text += (i > 0 ? "; " : " ") + names[i];
     return text + ".\n";
   };
-  return list("These do not separate scripted novices and experts in this task:", weak) +
-         list("Not studied in this task:", unknown);
+  return list(core::Mark("These do not separate scripted novices and experts in this task:"), weak) +
+         list(core::Mark("Not studied in this task:"), unknown);
 }
 
 }  // namespace trocar::cli

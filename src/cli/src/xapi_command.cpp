@@ -10,6 +10,7 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "console.h"
 #include "trocar/report/xapi.h"
 #include "trocar/report/xapi_delivery.h"
 
@@ -42,14 +43,15 @@ core::Status Queue(const XapiArguments& arguments) {
   for (const report::XapiStatement& statement : *statements) {
     if (const auto added = queue.Add(statement); !added.ok()) return added;
   }
-  std::printf("%zu statements wait in %s\n", queue.List().size(), queue.Folder().c_str());
+  Say("{1} statements wait in {2}\n", queue.List().size(), queue.Folder());
   return {};
 }
 
 core::Status List(const XapiArguments& arguments) {
   const report::XapiQueue queue = OpenQueue(arguments);
   for (const report::XapiStatement& statement : queue.List()) std::printf("%s\n", statement.json.c_str());
-  for (const auto& path : queue.ListRefused()) std::fprintf(stderr, "refused: %s\n", path.c_str());
+  for (const auto& path : queue.ListRefused())
+    std::fprintf(stderr, "%s\n", TranslateWith("refused: {1}", {path.string()}).c_str());
   return {};
 }
 
@@ -63,14 +65,16 @@ core::Status Deliver(const XapiArguments& arguments) {
     settings.credentials = std::move(*credentials);
   }
   settings.give_up_seconds = arguments.give_up_seconds;
-  settings.on_trouble = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
+  settings.on_trouble = [](const std::string& text) {
+    std::fprintf(stderr, "%s\n", TranslateComposed(text).c_str());
+  };
   report::XapiQueue queue = OpenQueue(arguments);
   const auto delivered = report::DeliverQueue(queue, *endpoint, settings);
   if (!delivered.ok()) return delivered.error();
-  std::printf("%zu delivered, %zu refused, %zu waiting\n", delivered->delivered, delivered->refused,
-              delivered->waiting);
+  Say("{1} delivered, {2} refused, {3} waiting\n", delivered->delivered, delivered->refused,
+      delivered->waiting);
   if (delivered->refused > 0)
-    std::printf("What was refused lies in %s with the reason\n", (queue.Folder() / "refused").c_str());
+    Say("What was refused lies in {1} with the reason\n", queue.Folder() / "refused");
   return delivered->failure ? core::Status(*delivered->failure) : core::Status();
 }
 
@@ -78,7 +82,7 @@ core::Status Erase(const XapiArguments& arguments) {
   report::XapiQueue queue = OpenQueue(arguments);
   const auto erased = queue.Erase(arguments.person);
   if (!erased.ok()) return erased.error();
-  std::printf("%zu statements of this person were taken out of the queue\n", *erased);
+  Say("{1} statements of this person were taken out of the queue\n", *erased);
   return {};
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "trocar/contours/contour_rehearsal.h"
 #include "trocar/contours/label_edges.h"
+#include "trocar/core/console.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::contours {
 namespace {
@@ -40,12 +41,6 @@ constexpr Measure kMeasures[] = {
     {"dice_placed", [](const RehearsalRun& r) { return r.dice_placed; }},
     {"dice_adapted", [](const RehearsalRun& r) { return r.dice_adapted; }}};
 
-std::string Format(const char* format, double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
-
 }  // namespace
 
 std::vector<std::vector<std::string>> Tabulate(const std::vector<OrganRehearsal>& organs) {
@@ -56,13 +51,12 @@ std::vector<std::vector<std::string>> Tabulate(const std::vector<OrganRehearsal>
     std::size_t slices = 0, points = 0, inserted = 0;
     for (const auto& run : organ.runs) slices += run.slices, points += run.points, inserted += run.inserted;
     const std::size_t n = organ.runs.size();
-    std::vector<std::string> row = {organ.name, std::to_string(n), std::to_string(slices / n),
-                                    std::to_string(points / n), std::to_string(inserted / n)};
+    std::vector<std::string> row = {core::Translate(organ.name), std::to_string(n),
+                                    std::to_string(slices / n), std::to_string(points / n),
+                                    std::to_string(inserted / n)};
     for (const Measure& measure : kMeasures) {
       const Spread spread = CalcSpread(organ, measure.value);
-      char text[64];
-      std::snprintf(text, sizeof(text), "%.3f +- %.3f", spread.mean, spread.deviation);
-      row.push_back(text);
+      row.push_back(core::ShownFixed(spread.mean, 3) + " +- " + core::ShownFixed(spread.deviation, 3));
     }
     rows.push_back(std::move(row));
   }
@@ -98,16 +92,16 @@ std::vector<std::vector<std::string>> Tabulate(const LabelEdges& edges) {
   std::vector<std::vector<std::string>> rows = {{"organ", "labels", "places", "edge seen",
                                                  "mean distance [mm]", "median", "signed mean", "within 1 mm",
                                                  "drawn contours [mm]"}};
-  const auto add = [&](const std::vector<LabelEdgeReport>& reports, const char* labels) {
+  const auto add = [&](const std::vector<LabelEdgeReport>& reports, const std::string& labels) {
     for (const auto& report : reports) {
-      rows.push_back({report.name, labels, std::to_string(report.places), Format("%.2f", report.seen),
-                      Format("%.2f", report.mean_mm), Format("%.2f", report.median_mm),
-                      Format("%+.2f", report.signed_mean_mm), Format("%.2f", report.within_1mm),
-                      Format("%.2f", report.drawn_mm)});
+      rows.push_back({core::Translate(report.name), labels, std::to_string(report.places),
+                      core::ShownFixed(report.seen, 2), core::ShownFixed(report.mean_mm, 2),
+                      core::ShownFixed(report.median_mm, 2), core::ShownFixed(report.signed_mean_mm, 2, true),
+                      core::ShownFixed(report.within_1mm, 2), core::ShownFixed(report.drawn_mm, 2)});
     }
   };
-  add(edges.as_given, "as given");
-  add(edges.shifted, "shifted");
+  add(edges.as_given, core::Translate("as given"));
+  add(edges.shifted, core::Translate("shifted"));
   return rows;
 }
 

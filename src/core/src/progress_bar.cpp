@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <utility>
 
 #include "trocar/core/clock.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::core {
 namespace {
@@ -18,11 +18,8 @@ constexpr int kBarCells = 30;
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string label, double total)
-    : label_(std::move(label)),
-      total_(total),
-      is_terminal_(::isatty(STDERR_FILENO) == 1),
-      start_(NowNanoseconds()) {}
+ProgressBar::ProgressBar(std::string_view label, double total)
+    : label_(label), total_(total), is_terminal_(::isatty(STDERR_FILENO) == 1), start_(NowNanoseconds()) {}
 
 ProgressBar::~ProgressBar() {
   Finish();
@@ -38,7 +35,8 @@ void ProgressBar::Show(double done) {
   const int full = static_cast<int>(fraction * kBarCells);
   const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                           std::string(static_cast<std::size_t>(kBarCells - full), '.');
-  std::fprintf(stderr, "\r%s [%s] %3.0f %%\033[K", label_.c_str(), bar.c_str(), 100 * fraction);
+  std::fprintf(stderr, "\r%s [%s] %3.0f %%\033[K", TranslateComposed(label_).c_str(), bar.c_str(),
+               100 * fraction);
   std::fflush(stderr);
 }
 

@@ -5,16 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 
 namespace trocar::core {
 namespace {
-
-bool IsNumber(const std::string& cell) {
-  if (cell.empty()) return false;
-  char* end = nullptr;
-  std::strtod(cell.c_str(), &end);
-  return end == cell.c_str() + cell.size();
-}
 
 /// Characters, not bytes: continuation bytes of UTF-8 take no room.
 std::size_t CountColumns(const std::string& cell) {
@@ -34,6 +28,14 @@ std::string FormatNumber(double value, int digits) {
   return text;
 }
 
+bool IsNumberText(std::string text) {
+  if (text.empty()) return false;
+  std::replace(text.begin(), text.end(), ',', '.');
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return end == text.c_str() + text.size();
+}
+
 std::string FormatTable(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
@@ -46,12 +48,25 @@ std::string FormatTable(const std::vector<std::vector<std::string>>& rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string padding(widths[i] - CountColumns(row[i]), ' ');
       if (i > 0) line += "  ";
-      line += IsNumber(row[i]) ? padding + row[i] : row[i] + padding;
+      line += IsNumberText(row[i]) ? padding + row[i] : row[i] + padding;
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
   return text;
+}
+
+std::string WrapText(const std::string& text, std::size_t width, const std::string& indent) {
+  std::istringstream words(text);
+  std::string wrapped, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && indent.size() + CountColumns(line) + 1 + CountColumns(word) > width) {
+      wrapped += indent + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return line.empty() ? wrapped : wrapped + indent + line + "\n";
 }
 
 }  // namespace trocar::core

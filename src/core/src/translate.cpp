@@ -90,6 +90,10 @@ std::string TranslateIn(std::string_view context, std::string_view text) {
 }
 
 std::string TranslateWith(std::string_view pattern, std::initializer_list<std::string_view> values) {
+  return TranslateWith(pattern, std::span(values.begin(), values.size()));
+}
+
+std::string TranslateWith(std::string_view pattern, std::span<const std::string_view> values) {
   const std::string text = Translate(pattern);
   std::string filled;
   for (std::size_t at = 0; at < text.size();) {
@@ -97,7 +101,7 @@ std::string TranslateWith(std::string_view pattern, std::initializer_list<std::s
                           text[at + 1] >= '1' && text[at + 1] <= '9';
     const std::size_t place = is_place ? static_cast<std::size_t>(text[at + 1] - '1') : values.size();
     if (place < values.size()) {
-      filled += values.begin()[place];
+      filled += values[place];
       at += 3;
     } else {
       filled += text[at++];
@@ -145,6 +149,23 @@ std::string TranslateComposed(std::string_view text) {
       patterns = ReadPatterns(catalogue_folder / language / "LC_MESSAGES" / (std::string(kDomain) + ".mo"));
   }
   return TranslateComposed(text, kDeepestComposition);
+}
+
+std::string TranslatePieces(std::string_view text) {
+  if (std::string whole = TranslateComposed(text); whole != text) return whole;
+  constexpr std::string_view kSeparators[] = {": ", ", ", "; ", "."};
+  std::string translated;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = text.size(), length = 0;
+    for (const std::string_view separator : kSeparators) {
+      const std::size_t found = text.find(separator, at);
+      if (found < end) end = found, length = separator.size();
+    }
+    if (end > at) translated += TranslateComposed(text.substr(at, end - at));
+    translated += text.substr(end, length);
+    at = end + length;
+  }
+  return translated;
 }
 
 std::string LocalNumber(std::string number) {

@@ -272,21 +272,7 @@ std::vector<RehearsalLine> DescribeOrigin(const anatomy::Patient& patient) {
 }
 
 std::string SpokenReason(const std::string& reason) {
-  if (std::string whole = core::TranslateComposed(reason); whole != reason) return whole;
-  // put together of pieces, each with its own text in the catalogue
-  constexpr std::string_view kSeparators[] = {": ", ", ", "; ", "."};
-  std::string spoken;
-  for (std::size_t at = 0; at < reason.size();) {
-    std::size_t end = reason.size(), length = 0;
-    for (const std::string_view separator : kSeparators) {
-      const std::size_t found = reason.find(separator, at);
-      if (found < end) end = found, length = separator.size();
-    }
-    if (end > at) spoken += core::TranslateComposed(reason.substr(at, end - at));
-    spoken += reason.substr(end, length);
-    at = end + length;
-  }
-  return spoken;
+  return core::TranslatePieces(reason);
 }
 
 std::string SpokenUse(anatomy::PortUse use) {

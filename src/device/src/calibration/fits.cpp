@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "trocar/core/console.h"
+#include "trocar/core/translate.h"
 #include "trocar/device/hand_calibration.h"
 
 namespace trocar::device {
@@ -194,14 +196,12 @@ const char* JudgeTrocarMotion(std::span<const Pose> poses, const std::vector<Vec
 }  // namespace
 
 std::string FormatQuality(const FitQuality& quality, std::size_t poses) {
-  char text[240];
-  std::snprintf(
-      text, sizeof text,
-      "known to %.1f mm (5 allowed); residual %.2f mm RMS (3 allowed), worst %.2f mm, turned by %.0f degrees "
-      "(30 needed), %zu poses",
-      1e3 * quality.uncertainty, 1e3 * quality.residual, 1e3 * quality.worst, kDegrees * quality.spread,
-      poses);
-  return text;
+  return core::TranslateWith(
+      "known to {1} mm (5 allowed); residual {2} mm RMS (3 allowed), worst {3} mm, turned by {4} degrees "
+      "(30 needed), {5} poses",
+      {core::ShownFixed(1e3 * quality.uncertainty, 1), core::ShownFixed(1e3 * quality.residual, 2),
+       core::ShownFixed(1e3 * quality.worst, 2), core::ShownFixed(kDegrees * quality.spread, 0),
+       std::to_string(poses)});
 }
 
 core::Result<PivotFit> FitPivot(std::span<const Pose> poses) {

@@ -78,7 +78,7 @@ struct RehearsalOptions {
 core::Result<std::vector<OrganRehearsal>> RehearseContours(const RehearsalOptions& options,
                                                            const images::Progress& progress = {});
 
-/// Means and deviations over the runs, a row an organ below a row of headings; every organ has a run.
+/// Means and deviations over the runs for a person, a row an organ below a row of headings in English; every organ has a run.
 std::vector<std::vector<std::string>> Tabulate(const std::vector<OrganRehearsal>& organs);
 /// Every run, and the spread of its measures.
 std::string FormatJson(const std::vector<OrganRehearsal>& organs);

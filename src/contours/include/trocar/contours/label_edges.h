@@ -48,7 +48,7 @@ struct LabelEdgeOptions {
 core::Result<LabelEdges> MeasureLabelEdges(const LabelEdgeOptions& options,
                                            const images::Progress& progress = {});
 
-/// A row an organ and map below a row of headings.
+/// A row an organ and map for a person, below a row of headings in English.
 std::vector<std::vector<std::string>> Tabulate(const LabelEdges& edges);
 std::string FormatJson(const LabelEdges& edges);
 

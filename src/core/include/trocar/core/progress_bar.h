@@ -2,6 +2,7 @@
 /// \file progress_bar.h  Progress for a person at a terminal.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -11,9 +12,9 @@ namespace trocar::core {
 /// second.
 class ProgressBar {
  public:
-  /// \param label  what is going on;
+  /// \param label  what is going on, in English; shown in the chosen language
   /// \param total  steps, > 0
-  ProgressBar(std::string label, double total);
+  ProgressBar(std::string_view label, double total);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -22,6 +23,13 @@ class ProgressBar {
   void Show(double done);
   /// Replaces what is said to be going on.
   void SetLabel(std::string_view label) { label_ = label; }
+  /// For work that says what it is doing, and how far it is; the bar must outlive it.
+  std::function<void(std::string_view, double)> Follow() {
+    return [this](std::string_view what, double done) {
+      SetLabel(what);
+      Show(done);
+    };
+  }
   /// Wipes the line.
   void Finish();
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -38,6 +39,7 @@ std::string TranslateIn(std::string_view context, std::string_view text);
 /// \param pattern  English, with places {1} to {9}; a translation may order them anew
 /// \param values   of {1}, {2}, ...; a place without one stays as it is
 std::string TranslateWith(std::string_view pattern, std::initializer_list<std::string_view> values);
+std::string TranslateWith(std::string_view pattern, std::span<const std::string_view> values);
 
 /// One or many: TranslateCount("{1} clip", "{1} clips", 3). {1} is the count.
 std::string TranslateCount(const char* one, const char* many, std::size_t count);
@@ -47,6 +49,9 @@ std::string TranslateCount(const char* one, const char* many, std::size_t count)
 /// likewise. The pattern with the longest fixed text wins. Itself where none fits.
 /// \note Not real-time safe: searches the whole catalogue.
 std::string TranslateComposed(std::string_view text);
+
+/// The same for a text of several pieces with ": ", ", ", "; " or "." between them, each with its own text in the catalogue.
+std::string TranslatePieces(std::string_view text);
 
 /// The number's text with the language's decimal mark: "9,81". Only for people; what a program reads keeps its point.
 /// \param number  digits and at most one point, perhaps with a unit behind

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/core/console.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "trocar/core/text_table.h"
+#include "trocar/core/translate.h"
+
+namespace trocar::core {
+
+std::string ShownNumber(double value, int digits) {
+  return Translate(LocalNumber(FormatNumber(value, digits)));
+}
+
+std::string ShownFixed(double value, int decimals, bool has_sign) {
+  char text[64];
+  std::snprintf(text, sizeof text, has_sign ? "%+.*f" : "%.*f", decimals, value);
+  return LocalNumber(text);
+}
+
+void Print(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+std::string FormatShownTable(std::vector<std::vector<std::string>> rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::string& cell : rows[i]) {
+      if (i == 0)
+        cell = Translate(cell);
+      else if (IsNumberText(cell))
+        cell = LocalNumber(cell);
+    }
+  }
+  return FormatTable(rows);
+}
+
+void PrintTable(std::vector<std::vector<std::string>> rows) {
+  Print(FormatShownTable(std::move(rows)));
+}
+
+std::string FormatFields(std::vector<std::vector<std::string>> rows) {
+  for (std::vector<std::string>& row : rows) row.front() = Translate(row.front());
+  return FormatTable(rows);
+}
+
+std::string SaidText(std::string_view pattern, std::initializer_list<std::string> values) {
+  constexpr const char* kSpace = " \n";
+  const std::size_t begin = std::min(pattern.find_first_not_of(kSpace), pattern.size());
+  const std::size_t end = std::max(pattern.find_last_not_of(kSpace) + 1, begin);
+  const std::vector<std::string_view> views(values.begin(), values.end());
+  return std::string(pattern.substr(0, begin)) + TranslateWith(pattern.substr(begin, end - begin), views) +
+         std::string(pattern.substr(end));
+}
+
+}  // namespace trocar::core
