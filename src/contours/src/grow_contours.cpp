@@ -374,6 +374,10 @@ core::Status ApplyGrowth(ContourDocument& document, const GrownOrgan& grown) {
                                    [slice](const SliceContours& s) { return s.slice == slice; });
     if (!stays && status.ok()) status = document.SetContours(grown.structure, slice, {}, {}, kWhat);
   }
+  // the points lie on the border already; the strongest edge nearby may be another one, the diaphragm's to fat
+  EdgeAdaptionSettings adaption = structures[grown.structure].adaption;
+  adaption.max_shift_px = adaption.skipped_shift_px = 0;
+  if (status.ok()) status = document.SetAdaption(grown.structure, adaption);
   for (const SliceContours& slice : grown.slices) {
     if (status.ok())
       status = document.SetContours(grown.structure, slice.slice, slice.contours, slice.holes, kWhat);

@@ -298,6 +298,7 @@ TEST(GrowOrgan, DrawsContoursThatAreOneStep) {
   ASSERT_TRUE(ApplyGrowth(document, *grown).ok());
   EXPECT_EQ(document.ContouredSlices(1).size(), grown->slices.size());
   EXPECT_EQ(document.At(1, 15).open.size(), 1u);
+  EXPECT_EQ(document.Points().structures[1].adaption.max_shift_px, 0);
   // growing again changes nothing, and is no error
   ASSERT_TRUE(ApplyGrowth(document, *grown).ok());
   while (document.Text() != before && document.CanUndo()) document.Undo();

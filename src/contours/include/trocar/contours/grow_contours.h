@@ -59,7 +59,8 @@ struct GrownOrgan {
 core::Result<GrownOrgan> GrowOrgan(const GrowthRequest& request, std::stop_token stop = {},
                                    const images::Progress& progress = {});
 
-/// Replaces the contours of the structure by the grown ones, as one step that can be undone; open contours stay.
+/// Replaces the contours of the structure by the grown ones, as one step that can be undone; open contours stay. Its points
+/// are not moved to edges from then on, until somebody sets a reach.
 /// \return kEditRefused where the structure has gone or has another name since
 core::Status ApplyGrowth(ContourDocument& document, const GrownOrgan& grown);
 
