@@ -23,8 +23,9 @@ std::vector<std::string> EnglishLinesOf(const std::string& text) {
       std::regex::icase);
   std::vector<std::string> found;
   std::istringstream lines(text);
+  static const std::regex key("[a-z0-9]+(-[a-z0-9]+)+");  // typed again: "lift-and-fetch"
   for (std::string line; std::getline(lines, line);) {
-    if (std::regex_search(line, word)) found.push_back(line);
+    if (std::regex_search(std::regex_replace(line, key, ""), word)) found.push_back(line);
   }
   return found;
 }

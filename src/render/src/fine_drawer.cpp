@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "fine_shaders.h"
 #include "shaders.h"
@@ -15,7 +16,7 @@ namespace {
 using math::Vec3;
 
 constexpr double kNearest = 0.004;  // m, before the lens
-constexpr std::uint32_t kBlobSides = 7;
+constexpr std::uint32_t kBlobSides = 7, kPuffSides = 10;
 /// Least half width in pixels: thinner ones would come and go from frame to frame.
 constexpr double kLeastPixels = 0.6;
 /// A fibre of fewer pixels is straight, one of fewer than the second has one bend.
@@ -197,6 +198,38 @@ void FineDrawer::DrawBlobs(const Looks& looks, std::span<const Blob> blobs, cons
     }
   }
   Draw(program);
+}
+
+void FineDrawer::DrawPuffs(const Looks& looks, std::span<const Puff> puffs, const Viewport& viewport) {
+  corners_.clear();
+  indices_.clear();
+  const Frame3 X_camera_world(viewport.X_camera_world);
+  for (const Puff& puff : puffs) {
+    const Vec3 centre = X_camera_world * puff.centre;
+    if (!IsSeen(centre, puff.radius, viewport)) continue;
+    const MaterialLook& look = looks[puff.material];
+    const Vec3 to_eye = -math::Normalized(centre), s = math::AnyPerpendicular(to_eye),
+               t = math::Cross(to_eye, s);
+    const auto first = static_cast<std::uint32_t>(corners_.size());
+    const std::array<float, 4> albedo = PickColour(look, 0);
+    // thick in the middle, less than half of it half way out, nothing at the rim
+    const auto add = [&](const Vec3& p, double opacity) {
+      corners_.push_back(
+          {ToFloat(p), ToFloat(to_eye), albedo, {look.emission, static_cast<float>(opacity), 1.0f}});
+    };
+    add(centre, puff.opacity);
+    for (const auto& [share, opacity] : {std::pair{0.5, 0.42 * puff.opacity}, std::pair{1.0, 0.0}}) {
+      for (std::uint32_t i = 0; i < kPuffSides; ++i) {
+        const double angle = 2 * M_PI * i / kPuffSides;
+        add(centre + (share * puff.radius) * (std::cos(angle) * s + std::sin(angle) * t), opacity);
+      }
+    }
+    for (std::uint32_t i = 0; i < kPuffSides; ++i) {
+      const std::uint32_t a = first + 1 + i, b = first + 1 + (i + 1) % kPuffSides;
+      indices_.insert(indices_.end(), {first, a, b, a, a + kPuffSides, b, b, a + kPuffSides, b + kPuffSides});
+    }
+  }
+  Draw(nullptr);
 }
 
 void FineDrawer::Draw(const Program* program) {

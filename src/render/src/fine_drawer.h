@@ -46,6 +46,8 @@ class FineDrawer {
                   const Program* program = nullptr);
   void DrawBlobs(const Looks& looks, std::span<const Blob> blobs, const Viewport& viewport,
                  const Program* program = nullptr);
+  /// \pre blending is on
+  void DrawPuffs(const Looks& looks, std::span<const Puff> puffs, const Viewport& viewport);
 
   /// Triangles of the last call.
   std::size_t TriangleCount() const { return indices_.size() / 3; }

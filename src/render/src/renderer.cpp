@@ -123,6 +123,7 @@ struct Renderer::Content {
     // ribbons face the eye
     glDisable(GL_CULL_FACE);
     fine.DrawFibres(looks, frame.fibres, viewport);
+    fine.DrawPuffs(looks, frame.puffs, viewport);
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
@@ -274,7 +275,8 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
 
 void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, int width, int height) {
   Content& c = *content_;
-  const bool is_smoothed = frame.has_smooth_edges && !frame.is_wireframe && c.round.Bind(width, height);
+  const bool is_smoothed =
+      (frame.has_smooth_edges || !frame.blots.empty()) && !frame.is_wireframe && c.round.Bind(width, height);
   if (!is_smoothed) glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   ClearPicture(frame, width, height);
   // first, at the near plane: what lies outside the circle is then never shaded
@@ -293,7 +295,7 @@ void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, in
   SurfaceDrawer::End();
   if (is_smoothed) {
     glBindFramebuffer(GL_FRAMEBUFFER, target);
-    c.round.DrawSmoothed(frame.has_mask, frame.quality == Quality::kHigh, width, height);
+    c.round.DrawSmoothed({frame.has_mask, frame.quality == Quality::kHigh, frame.blots}, width, height);
   }
   glBindVertexArray(0);
   glUseProgram(0);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "shaders.h"
@@ -23,10 +24,21 @@ std::array<float, 2> CalcCircle(int width, int height) {
   return {ToFloat(kMaskDiameter * height / width), ToFloat(kMaskDiameter)};
 }
 
+/// Each as centre, radius and thickness; those that are not there have no radius.
+void SetBlots(const Program& program, std::span<const Blot> blots) {
+  std::array<std::array<float, 4>, kMaxBlots> packed{};
+  for (std::size_t i = 0; i < std::min(blots.size(), kMaxBlots); ++i)
+    packed[i] = {ToFloat(blots[i].centre.x), ToFloat(blots[i].centre.y), ToFloat(blots[i].radius),
+                 ToFloat(blots[i].thick)};
+  glUniform4fv(glGetUniformLocation(program.name, "u_blots"), static_cast<GLsizei>(kMaxBlots),
+               packed[0].data());
+}
+
 }  // namespace
 
 RoundPicture::~RoundPicture() {
-  for (const Program& program : {mask_, smooth_, smooth_fine_, glow_}) glDeleteProgram(program.name);
+  for (const Program& program : {mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, glow_})
+    glDeleteProgram(program.name);
   glDeleteFramebuffers(2, glow_framebuffers_.data());
   glDeleteTextures(2, glow_pictures_.data());
   glDeleteVertexArrays(1, &ring_);
@@ -40,12 +52,13 @@ core::Status RoundPicture::Make() {
   const auto mask = MakeProgram({kMaskVertexShader}, {kMaskFragmentShader});
   if (!mask) return mask.error();
   mask_ = *mask;
-  const auto smooth = MakeProgram({kScreenVertexShader}, {kVersion, kSmoothFragmentShader});
-  if (!smooth) return smooth.error();
-  smooth_ = *smooth;
-  const auto smooth_fine = MakeProgram({kScreenVertexShader}, {kVersion, kFine, kSmoothFragmentShader});
-  if (!smooth_fine) return smooth_fine.error();
-  smooth_fine_ = *smooth_fine;
+  for (const auto& [program, fine, smeared] :
+       {std::tuple{&smooth_, "", ""}, std::tuple{&smooth_fine_, kFine, ""},
+        std::tuple{&smeared_, "", kSmeared}, std::tuple{&smeared_fine_, kFine, kSmeared}}) {
+    const auto made = MakeProgram({kScreenVertexShader}, {kVersion, fine, smeared, kSmoothFragmentShader});
+    if (!made) return made.error();
+    *program = *made;
+  }
   const auto glow = MakeProgram({kFullVertexShader}, {kGlowFragmentShader});
   if (!glow) return glow.error();
   glow_ = *glow;
@@ -146,7 +159,8 @@ void RoundPicture::MakeGlow(int width, int height) {
   pass(0, glow_pictures_[1], {0, texel[1]});
 }
 
-void RoundPicture::DrawSmoothed(bool has_mask, bool has_glow, int width, int height) {
+void RoundPicture::DrawSmoothed(const Smoothing& smoothing, int width, int height) {
+  const bool has_glow = smoothing.has_glow, is_smeared = !smoothing.blots.empty();
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glActiveTexture(GL_TEXTURE0);
@@ -159,8 +173,11 @@ void RoundPicture::DrawSmoothed(bool has_mask, bool has_glow, int width, int hei
   }
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  const Program& smooth = has_glow ? smooth_fine_ : smooth_;
+  const Program& smooth = is_smeared ? (has_glow ? smeared_fine_ : smeared_)
+                          : has_glow ? smooth_fine_
+                                     : smooth_;
   glUseProgram(smooth.name);
+  if (is_smeared) SetBlots(smooth, smoothing.blots);
   if (has_glow) {
     glActiveTexture(GL_TEXTURE1);
     glBindTexture(GL_TEXTURE_2D, glow_pictures_[0]);
@@ -172,8 +189,9 @@ void RoundPicture::DrawSmoothed(bool has_mask, bool has_glow, int width, int hei
   smooth.Set("u_texel", std::array<float, 2>{ToFloat(1.0 / width), ToFloat(1.0 / height)});
   // without a mask a circle round the whole picture
   const double wide = 1.5 * std::hypot(width, height);
-  smooth.Set("u_inner", has_mask ? CalcCircle(width, height)
-                                 : std::array<float, 2>{ToFloat(wide / width), ToFloat(wide / height)});
+  smooth.Set("u_inner", smoothing.has_mask
+                            ? CalcCircle(width, height)
+                            : std::array<float, 2>{ToFloat(wide / width), ToFloat(wide / height)});
   glBindVertexArray(ring_);
   glDrawArrays(GL_TRIANGLE_FAN, kFanFirst, kSegments + 1);
   glBindTexture(GL_TEXTURE_2D, 0);

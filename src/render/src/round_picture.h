@@ -5,9 +5,11 @@
 #include <epoxy/gl.h>
 
 #include <array>
+#include <span>
 
 #include "shader_program.h"
 #include "trocar/core/result.h"
+#include "trocar/render/frame.h"
 
 namespace trocar::render {
 
@@ -30,14 +32,18 @@ class RoundPicture {
   bool Bind(int width, int height);
 
   /// Copies the own picture into the bound framebuffer with soft edges; outside the circle it is black.
-  /// \param has_glow  light that the lens scatters about highlights, too
-  void DrawSmoothed(bool has_mask, bool has_glow, int width, int height);
+  struct Smoothing {
+    bool has_mask = true;
+    bool has_glow = true;  ///< light that the lens scatters about highlights, too
+    std::span<const Blot> blots;
+  };
+  void DrawSmoothed(const Smoothing& smoothing, int width, int height);
 
  private:
   void MakeRing();
   void MakeGlow(int width, int height);
 
-  Program mask_, smooth_, smooth_fine_, glow_;
+  Program mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, glow_;
   std::array<GLuint, 2> glow_framebuffers_{}, glow_pictures_{};
   int glow_width_ = 0, glow_height_ = 0;
   GLuint ring_ = 0, ring_vertices_ = 0;

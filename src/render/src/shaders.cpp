@@ -12,6 +12,7 @@ namespace trocar::render {
 
 const char* const kVersion = "#version 330 core\n";
 const char* const kFine = "#define FINE\n";
+const char* const kSmeared = "#define SMEARED\n";
 
 const char* const kSurfaceVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 a_position;
@@ -310,6 +311,36 @@ uniform vec2 u_texel;
 #ifdef FINE
 uniform sampler2D u_glow;     // light that the lens scatters about highlights
 #endif
+#ifdef SMEARED
+uniform vec4 u_blots[6];      // what sticks to the lens: centre, radius [heights of the picture], how thick
+const vec3 kSmearTint = vec3(1.0, 0.80, 0.74);
+
+// How thick the smear is at a place: thick in the middle, with a lobed and uneven edge.
+float CalcSmear(vec2 place) {
+  float thick = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    if (u_blots[i].z <= 0.0) continue;
+    vec2 to = place - u_blots[i].xy;
+    float turn = atan(to.y, to.x) + 5.0 * u_blots[i].x;
+    float lobes = 1.0 + 0.16 * sin(2.0 * turn) + 0.12 * sin(3.0 * turn + 1.7) + 0.07 * sin(7.0 * turn);
+    float streaks = 0.86 + 0.14 * sin(210.0 * to.x + 70.0 * to.y + 3.0 * sin(40.0 * to.y));
+    thick = max(thick, u_blots[i].w * streaks * (1.0 - smoothstep(0.30, 1.0, length(to) / (u_blots[i].z * lobes))));
+  }
+  return thick;
+}
+
+// Out of focus: light from all round comes to each place, and the smear shines a little of its own.
+vec3 SeeThroughSmear(vec2 at, vec2 shape, float thick) {
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < 16; ++i) {
+    float turn = 2.399963 * float(i), far = 0.085 * thick * sqrt((float(i) + 0.5) / 16.0);
+    sum += texture(u_picture, at + far * vec2(cos(turn), sin(turn)) / shape).rgb;
+  }
+  vec3 blurred = 0.0625 * sum;
+  float grey = dot(blurred, vec3(0.299, 0.587, 0.114));
+  return mix(blurred, kSmearTint * (0.10 + 0.80 * grey), 0.55 * thick);
+}
+#endif
 void main() {
   vec2 at = gl_FragCoord.xy * u_texel;
   vec4 here = texture(u_picture, at);
@@ -323,6 +354,11 @@ void main() {
   float share = clamp((high - low - 0.03) * 16.0, 0.0, 1.0);
   vec3 smoothed = 0.25 * (nw.rgb + ne.rgb + sw.rgb + se.rgb);
   vec3 colour = mix(here.rgb, smoothed, share);
+#ifdef SMEARED
+  vec2 shape = vec2(u_texel.y / u_texel.x, 1.0);
+  float thick = CalcSmear((at - 0.5) * shape);
+  if (thick > 0.0) colour = mix(colour, SeeThroughSmear(at, shape, thick), smoothstep(0.0, 0.25, thick));
+#endif
 #ifdef FINE
   // added as on a screen: it comes nearer to white and never beyond
   colour += (1.0 - colour) * 0.45 * texture(u_glow, at).rgb;

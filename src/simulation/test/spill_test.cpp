@@ -342,6 +342,37 @@ TEST_F(SpillTest, WhatIsNotRetrievedIsAnErrorWhenTheBagIsOut) {
   }
 }
 
+// Pictures show water and suction while a pedal is down; no state knows of it, so that hashes stay what they were.
+TEST_F(SpillTest, PedalsOfTheIrrigatorArePublishedAndInNoState) {
+  const auto hash = [&] {
+    core::StateHash value;
+    core::AddStateTo(value, *operation_);
+    return value.Value();
+  };
+  MakeOperation();
+  SelectTool(kRight, instrument::ToolKind::kSuctionIrrigator);
+  Act();
+  const std::uint64_t before = hash();
+  EXPECT_FALSE(Published().is_rinsing[kRight]);
+  input_.controls[kRight].aspirate = true;  // far from any pool: it changes nothing
+  hands_.X_proxy[kRight] = hands_.X_device[kRight] = {{}, {0.4, 0.4, 0.4}};
+  Act();
+  EXPECT_TRUE(Published().is_aspirating[kRight]);
+  EXPECT_FALSE(Published().is_rinsing[kRight]);
+  EXPECT_FALSE(Published().is_aspirating[kLeft]);
+  EXPECT_EQ(hash(), before);
+  input_.controls[kRight].aspirate = false;
+  input_.controls[kRight].rinse = true;
+  Act();
+  EXPECT_TRUE(Published().is_rinsing[kRight]);
+  EXPECT_FALSE(Published().is_aspirating[kRight]);
+  // of another tool the pedal means nothing
+  SelectTool(kRight, instrument::ToolKind::kHook);
+  Act();
+  EXPECT_FALSE(Published().is_rinsing[kRight]);
+  input_.controls[kRight] = {};
+}
+
 TEST_F(SpillTest, AStoneGoesOutWithTheToolThatHoldsIt) {
   MakeOperation();
   Spill(15e-6);

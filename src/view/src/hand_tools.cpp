@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tip_clouds.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/math/random.h"
 #include "trocar/view/labels.h"
@@ -60,10 +61,11 @@ std::vector<double> CalcPouchShares(const geometry::TriangleMesh& pouch) {
 }
 
 /// Current leaves the toe of the hook, else the tips.
-void AddSparks(render::Frame& frame, const instrument::Tool& tool, const Pose& X_world_tool,
-               std::uint64_t tick, std::uint32_t hand) {
-  const Vec3 p_tool_source = tool.kind == ToolKind::kHook ? Vec3{0, 0.0032, -0.0005} : Vec3{};
-  const Vec3 source = X_world_tool * p_tool_source;
+Vec3 FindElectrode(const instrument::Tool& tool, const Pose& X_world_tool) {
+  return X_world_tool * (tool.kind == ToolKind::kHook ? Vec3{0, 0.0032, -0.0005} : Vec3{});
+}
+
+void AddSparks(render::Frame& frame, const Vec3& source, std::uint64_t tick, std::uint32_t hand) {
   math::Random random(2 * tick + hand);
   frame.blobs.push_back({source, 0.0006, Material::kSpark, 0});
   for (std::uint32_t i = 0; i < kSparks; ++i) {
@@ -88,6 +90,7 @@ void HandTools::Add(render::Renderer& renderer, const scene::Scene& scene) {
     return shown;
   };
   assistant_ = upload(*instrument::FindTool("grasper"));
+  if (scene.operation) suction_ = scene.operation->parameters.suction;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     const scene::InstrumentSetup& setup = scene.instruments[i];
     Hand& hand = hands_[i];
@@ -120,10 +123,22 @@ void HandTools::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot
         {hand.sleeve, {now.X_world_tool.rotation, hand.p_world_port}, MakeLabel(LabelClass::kTrocar, i)});
     frame.shades.push_back({now.X_world_tool * Vec3{0, 0, 0.5 * shown.tool.jaw_width},
                             now.X_world_tool * Vec3{0, 0, kShadeLength}, shown.tool.shaft_radius});
-    if (snapshot.operation.has_current[i])
-      AddSparks(frame, shown.tool, now.X_world_tool, snapshot.tick, static_cast<std::uint32_t>(i));
+    AddClouds(frame, snapshot, i, shown.tool);
   }
   AddAssistant(frame, snapshot);
+}
+
+void HandTools::AddClouds(render::Frame& frame, const simulation::Snapshot& snapshot, std::size_t hand,
+                          const instrument::Tool& tool) const {
+  const simulation::OperationSnapshot& operation = snapshot.operation;
+  const Pose& X_world_tool = snapshot.instruments[hand].X_world_tool;
+  if (operation.has_current[hand]) {
+    const Vec3 source = FindElectrode(tool, X_world_tool);
+    AddSparks(frame, source, snapshot.tick, static_cast<std::uint32_t>(hand));
+    AddSteam(frame, snapshot, source);
+  }
+  if (operation.is_rinsing[hand]) AddRinse(frame, snapshot, tool, X_world_tool, suction_.rinse_rate);
+  if (operation.is_aspirating[hand]) AddSuction(frame, snapshot, tool, X_world_tool, suction_.pool_reach);
 }
 
 void HandTools::AddAssistant(render::Frame& frame, const simulation::Snapshot& snapshot) const {

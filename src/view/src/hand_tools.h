@@ -16,7 +16,7 @@ class HandTools {
  public:
   /// Uploads every tool of both trays, so that an exchange shows at once.
   void Add(render::Renderer& renderer, const scene::Scene& scene);
-  /// Adds tools, the assistant's grasper, sleeves, the shade that they throw and sparks.
+  /// Adds tools, the assistant's grasper, sleeves, the shade that they throw, and what comes out of tips.
   void AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const;
 
  private:
@@ -33,10 +33,13 @@ class HandTools {
     math::Vec3 p_world_port;
     render::SurfaceId sleeve;
   };
+  void AddClouds(render::Frame& frame, const simulation::Snapshot& snapshot, std::size_t hand,
+                 const instrument::Tool& tool) const;
   void AddAssistant(render::Frame& frame, const simulation::Snapshot& snapshot) const;
 
   std::array<Hand, scene::kHandCount> hands_;
   ShownTool assistant_;  // the third grasper
+  scene::SuctionParameters suction_;
 };
 
 }  // namespace trocar::view

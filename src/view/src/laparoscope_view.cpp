@@ -15,6 +15,7 @@
 #include "clip_shapes.h"
 #include "falciform_ligament.h"
 #include "hand_tools.h"
+#include "lens_smear.h"
 #include "liquids.h"
 #include "neighbour_view.h"
 #include "object_view.h"
@@ -111,6 +112,7 @@ struct LaparoscopeView::Content {
   std::vector<std::uint8_t> raw_rows;
   ObjectView objects;
   BandView bands;
+  LensSmear smear;
   double light_scale = 1;
   render::Frame frame;
   Overlay overlay;
@@ -140,7 +142,7 @@ struct LaparoscopeView::Content {
             .Update(start, film);
         tube_labels.push_back(MakeLabel(FindLabelClass(info, has_patient), i));
       } else {
-        organs.emplace_back(info, *material).Update(start, film);
+        organs.emplace_back(info, i, *material).Update(start, film);
         organ_labels.push_back(MakeLabel(FindLabelClass(info, has_patient), i));
       }
     }
@@ -449,6 +451,9 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
   c.frame.fibres.clear();
   c.frame.blobs.clear();
   c.frame.puddles.clear();
+  c.frame.puffs.clear();
+  c.smear.Update(snapshot);
+  c.frame.blots = c.smear.Blots();
   c.tools.AddTo(c.frame, snapshot);
   c.clips.AddTo(c.renderer, c.frame, snapshot.operation);
   c.stones.AddTo(c.renderer, c.frame, snapshot.operation);
@@ -488,7 +493,10 @@ void LaparoscopeView::Draw(int width, int height) {
       c.frame.fibres.push_back({trail.points[i], trail.points[i + 1], trail.width, 0, trail.material, 0});
   }
   const Pose X_world_laparoscope = c.frame.camera.X_world_camera;
-  if (c.overlay.X_world_camera) c.frame.camera.X_world_camera = *c.overlay.X_world_camera;
+  if (c.overlay.X_world_camera) {
+    c.frame.camera.X_world_camera = *c.overlay.X_world_camera;
+    c.frame.blots.clear();  // they stick to another lens
+  }
   c.renderer.Draw(c.frame, width, height);
   c.frame.camera.X_world_camera = X_world_laparoscope;
   c.frame.fibres.resize(fibres);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pressed_tissue.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
@@ -80,8 +81,8 @@ render::SurfaceMark HeatMark(const simulation::OperationSnapshot& operation, std
   return mark;
 }
 
-OrganShape::OrganShape(const scene::SurfaceInfo& info, render::Material material)
-    : material_(material), triangles_(info.triangles) {
+OrganShape::OrganShape(const scene::SurfaceInfo& info, std::uint32_t index, render::Material material)
+    : surface_index_(static_cast<std::int32_t>(index)), material_(material), triangles_(info.triangles) {
   rows_.resize(info.node_count);
   for (std::uint32_t i = 0; i < info.node_count; ++i) rows_[i] = info.first_node + i;
   Resize();
@@ -124,11 +125,16 @@ void OrganShape::Update(const simulation::Snapshot& snapshot, const Film& film) 
   const simulation::OperationSnapshot& operation = snapshot.operation;
   marks_.resize(refiner_->VertexCount());
   SumAreas(triangles_, positions_, areas_);
+  const std::vector<Press> presses = FindPresses(snapshot);
   bool has_any = false;
   for (std::size_t v = 0; v < rows_.size(); ++v) {
     marks_[v] = HeatMark(operation, rows_[v]);
     if (rest_areas_.size() == areas_.size() && rest_areas_[v] > 0.0)
       marks_[v].pallor = CalcPallor(areas_[v] / rest_areas_[v]);
+    if (!presses.empty())
+      marks_[v].pallor =
+          std::max(marks_[v].pallor,
+                   ToByte(static_cast<float>(CalcPressedPallor(presses, surface_index_, positions_[v]))));
     film.Wet(positions_[v], rows_[v], marks_[v]);
     has_any = has_any || marks_[v] != render::SurfaceMark{};
   }

@@ -19,7 +19,8 @@ using math::Vec3;
 
 class OrganShape {
  public:
-  OrganShape(const scene::SurfaceInfo& info, render::Material material);
+  /// \param index  of the surface in Simulation::Surfaces()
+  OrganShape(const scene::SurfaceInfo& info, std::uint32_t index, render::Material material);
 
   /// Connectivity after a cut, over rows of the snapshot. Where it has changed the surface is uploaded anew at the next
   /// Upload.
@@ -44,6 +45,7 @@ class OrganShape {
   void LearnAreas(const RowMemory& memory);
   void AddSurface(render::Renderer& renderer, const RowMemory& memory);
 
+  std::int32_t surface_index_;
   render::Material material_;
   render::SurfaceId surface_;
   bool is_changed_ = false;              // connectivity, since the last upload

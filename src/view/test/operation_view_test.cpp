@@ -461,5 +461,150 @@ TEST_F(OperationViewTest, CurrentSparksAtTheElectrode) {
   EXPECT_EQ(change.far, 0);
 }
 
+TEST_F(OperationViewTest, WaterIsSeenWhileThePedalIsDown) {
+  now_.operation.tools[0] = 5;
+  scene_.operation.emplace();
+  // towards the ball, 35 mm from its surface
+  now_.instruments[0].X_world_tool = {math::RotationBetween({0, 0, -1}, {1, 0, 0}), {-0.050, 0.0, -0.10}};
+  MakeView();
+  const Image dry = Draw();
+  now_.operation.is_rinsing[0] = true;
+  const Image wet = Draw();
+  EXPECT_GT(CountChanges(dry, wet, {-0.032, 0.0, -0.10}, 0.014).near, 60) << "no jet";
+  EXPECT_GT(CountChanges(dry, wet, {-0.014, 0.0, -0.10}, 0.008).near, 30)
+      << "no splash where it meets the ball";
+  // it ends there: behind the ball nothing changes
+  EXPECT_EQ(CountChanges(dry, wet, {0.025, 0.0, -0.10}, 0.008).near, 0);
+  now_.operation.is_rinsing[0] = false;
+  EXPECT_EQ(Draw(), dry);
+}
+
+TEST_F(OperationViewTest, SuctionDrawsFromThePoolThatItReaches) {
+  now_.operation.tools[0] = 5;
+  scene_.operation.emplace();
+  now_.operation.flow.ledger.rinse_pooled = 5e-6;
+  now_.operation.flow.p_world_pool = {-0.05, -0.03, -0.09};
+  now_.instruments[0].X_world_tool.translation = {-0.05, -0.02, -0.09};
+  MakeView();
+  const Image still = Draw();
+  now_.operation.is_aspirating[0] = true;
+  EXPECT_GT(CountChanges(still, Draw(), {-0.05, -0.02, -0.09}, 0.010).near, 10);
+  // in the air it draws nothing that is seen
+  now_.operation.flow.p_world_pool = {0.05, -0.10, -0.09};
+  const Image away = Draw();
+  now_.operation.is_aspirating[0] = false;
+  EXPECT_EQ(Draw(), away);
+}
+
+TEST_F(OperationViewTest, SteamRisesFromWetTissueAndNotFromChar) {
+  now_.operation.tools[0] = 2;
+  now_.operation.charring.assign(now_.positions.size(), 0.0f);
+  now_.operation.blanching.assign(now_.positions.size(), 0.0f);
+  now_.instruments[0].X_world_tool.translation = {0.0, 0.012, -0.085};
+  now_.time = 3.0;
+  MakeView();
+  Draw();
+  EXPECT_TRUE(view_->GetFrame().puffs.empty());
+  now_.operation.has_current[0] = true;
+  const Image wet = Draw();
+  const auto puffs = view_->GetFrame().puffs;
+  ASSERT_GE(puffs.size(), 8u);
+  double highest = -1, lowest = 1;
+  for (const render::Puff& puff : puffs) {
+    highest = std::max(highest, puff.centre.y);
+    lowest = std::min(lowest, puff.centre.y);
+    EXPECT_GE(puff.opacity, 0.0);
+    EXPECT_LE(puff.opacity, 0.5);
+  }
+  EXPECT_GT(highest, 0.020) << "gravity points along -y, so steam rises along +y";
+  EXPECT_GT(lowest, 0.005);
+  std::fill(now_.operation.charring.begin(), now_.operation.charring.end(), 1.0f);
+  Draw();
+  EXPECT_TRUE(view_->GetFrame().puffs.empty()) << "char is dry";
+  // what steam covers is lighter, and the same moment has the same steam
+  std::fill(now_.operation.charring.begin(), now_.operation.charring.end(), 0.0f);
+  EXPECT_EQ(Draw(), wet);
+}
+
+TEST_F(OperationViewTest, TissueThatAToolPressesTurnsWhite) {
+  surfaces_[0].look = "liver";  // dark red: what whitens is seen
+  MakeView();
+  ViewOptions options = view_->GetOptions();
+  options.has_force_arrows = false;
+  view_->SetOptions(options);
+  auto& tool = now_.instruments[0];
+  tool.X_world_tool = {math::RotationBetween({0, 0, 1}, {0, 1, 0}), {0.0, 0.004, -0.0845}};
+  const Image before = Draw();
+  // of the pixels that changed: how much greener and bluer they became, which red tissue does as it turns white
+  const auto whiter = [&](const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const auto [r0, g0, b0] = before.At(x, y);
+        const auto [r, g, b] = image.At(x, y);
+        sum += (g + b) - (g0 + b0);
+      }
+    }
+    return sum;
+  };
+  tool.organ = 0;
+  tool.is_touching = true;
+  tool.force = {0, 0, 1.5};
+  const Image pressed = Draw();
+  EXPECT_GT(whiter(pressed), 2000);
+  EXPECT_GT(CountChanges(before, pressed, {0.0, 0.004, -0.085}, 0.013).near, 100);
+  EXPECT_EQ(CountChanges(before, pressed, {0.0, 0.004, -0.085}, 0.016).far, 0) << "only round the tip";
+  // a feather's weight is not seen
+  tool.force = {0, 0, 0.05};
+  EXPECT_EQ(Draw(), before);
+  // jaws that hold: by their pinch, whatever the pull
+  tool.is_grasping = true;
+  tool.pinch = 5.0;
+  EXPECT_GT(whiter(Draw()), 2000);
+  tool.pinch = 0.1;
+  EXPECT_EQ(Draw(), before);
+  tool.organ = -1;
+  tool.pinch = 5.0;
+  EXPECT_EQ(Draw(), before);
+}
+
+TEST_F(OperationViewTest, TheLensIsSmearedByTissueUntilItIsWiped) {
+  MakeView();
+  now_.laparoscope.depth = 0.15;
+  now_.X_world_laparoscope.translation = {0, 0, 0};
+  now_.time = 1.0;
+  const Image clear = Draw();
+  ASSERT_TRUE(view_->GetFrame().blots.empty());
+  // the lens into the ball, which begins 85 mm ahead, and back to where it was
+  now_.X_world_laparoscope.translation = {0, 0, -0.081};
+  now_.time = 2.0;
+  Draw();
+  ASSERT_FALSE(view_->GetFrame().blots.empty());
+  now_.X_world_laparoscope.translation = {0, 0, 0};
+  now_.time = 3.0;
+  const Image smeared = Draw();
+  EXPECT_GT(CountChanges(clear, smeared, {0, 0, -0.10}, 0.05).near, 500);
+  // it is a lens's: from elsewhere nothing is smeared
+  const std::size_t blots = view_->GetFrame().blots.size();
+  now_.X_world_laparoscope.translation = {0, 0, -0.081};
+  now_.time = 4.0;
+  Draw();
+  EXPECT_GT(view_->GetFrame().blots.size(), blots) << "another touch adds to it";
+  // drawn back into the trocar it is wiped
+  now_.laparoscope.depth = 0.01;
+  now_.X_world_laparoscope.translation = {0, 0, 0};
+  now_.time = 5.0;
+  EXPECT_EQ(Draw(), clear);
+  // and a leap back in time begins clean
+  now_.laparoscope.depth = 0.15;
+  now_.X_world_laparoscope.translation = {0, 0, -0.081};
+  now_.time = 6.0;
+  Draw();
+  ASSERT_FALSE(view_->GetFrame().blots.empty());
+  now_.X_world_laparoscope.translation = {0, 0, 0};
+  now_.time = 0.5;
+  EXPECT_EQ(Draw(), clear);
+}
+
 }  // namespace
 }  // namespace trocar::view

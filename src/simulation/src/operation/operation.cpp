@@ -218,7 +218,8 @@ void Operation::BeginTick() noexcept {
 void Operation::Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   change_.Clear();
   for (int hand = 0; hand < kHandCount; ++hand) {
-    hands_[static_cast<std::size_t>(hand)].has_current = false;
+    HandState& state = hands_[static_cast<std::size_t>(hand)];
+    state.has_current = state.is_rinsing = state.is_aspirating = false;
     RefuseImpossible(hand, hands);
     switch (Tool(hand).kind) {
       case instrument::ToolKind::kScissors:
@@ -344,6 +345,8 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
     const auto h = static_cast<std::size_t>(hand);
     snapshot.tools[h] = static_cast<std::uint8_t>(active_[h]);
     snapshot.has_current[h] = hands_[h].has_current;
+    snapshot.is_rinsing[h] = hands_[h].is_rinsing;
+    snapshot.is_aspirating[h] = hands_[h].is_aspirating;
     snapshot.clips_left[h] = hands_[h].clips;
   }
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(),
@@ -463,6 +466,7 @@ void AddTo(const training::OperationJudge& judge, OperationResult& result) {
 // --- state
 
 void Operation::HandState::VisitState(core::StateArchive& archive) {
+  if (archive.IsRestoring()) is_rinsing = is_aspirating = false;
   archive.Field("blade", blade);
   archive.Field("spread_upper", spread_upper);
   archive.Field("spread_lower", spread_lower);

@@ -159,7 +159,8 @@ class Operation {
     std::optional<surgery::Vessels::Caught> caught;  // between them then
     int clips = 0;
     bool has_current = false;
-    double idle_seconds = 0;  // pedal down, nothing touched
+    bool is_rinsing = false, is_aspirating = false;  // in this tick; decides nothing, so that no state has it
+    double idle_seconds = 0;                         // pedal down, nothing touched
     bool was_refused = false;
     bool was_open = false;  // jaws, since they closed last
     bool was_outside_emitted = false;

@@ -292,6 +292,8 @@ void Operation::RefuseImpossible(int hand, const HandsNow& hands) noexcept {
 void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   const HandControls& controls = hands.input->controls[h];
+  hands_[h].is_rinsing = controls.rinse;
+  hands_[h].is_aspirating = controls.aspirate;
   if (controls.rinse) {
     fluids_.Rinse(Suction().rinse_rate * hands.seconds);
     acts_.Add({InstrumentKind::kIrrigator, Verb::kIrrigate, training::Target::kFluid}, hand);

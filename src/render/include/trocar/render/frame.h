@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trocar/math/pose.h"
+#include "trocar/math/vector.h"
 #include "trocar/render/material.h"
 
 namespace trocar::render {
@@ -89,6 +90,22 @@ struct Blob {
   std::uint32_t seed = 0;
 };
 
+/// A soft cloud without an edge, for example of steam.
+struct Puff {
+  math::Vec3 centre;   ///< world frame [m]
+  double radius = 0;   ///< where nothing is left of it [m]
+  double opacity = 0;  ///< in the middle, 0 to 1 [-]
+  Material material = Material::kSteam;
+};
+
+/// Something that sticks to the lens: nothing behind it is in focus.
+struct Blot {
+  math::Vec2 centre;  ///< from the picture's middle, +x right, +y up, in heights of the picture
+  double radius = 0;  ///< likewise
+  double thick = 0;   ///< 0 nothing to 1 hardly any light passes as it came [-]
+};
+inline constexpr std::size_t kMaxBlots = 6;
+
 /// Liquid that lies in a hollow.
 struct Puddle {
   /// Its surface in the world frame, coloured by what it holds; the ambient occlusion of its vertices is the share of its
@@ -116,6 +133,9 @@ struct Frame {
   std::vector<Fibre> fibres;  ///< drawn after everything else
   std::vector<Blob> blobs;
   std::vector<Puddle> puddles;
+  std::vector<Puff> puffs;
+  std::vector<Blot>
+      blots;  ///< the first kMaxBlots count; they need the pass that smooths edges, which then is made
   std::vector<Arrow> arrows;
   std::vector<Shade> shades;  ///< the first kMaxShades count
   double smoke = 0;           ///< haze between lens and tissue, 0 none to 1 thick [-]

@@ -34,13 +34,14 @@ enum class Material {
   kGreenRubber,
   kBlueRubber,
   kWhitePlastic,
-  kMark,  ///< bright: what is to be done next
+  kMark,   ///< bright: what is to be done next
+  kSteam,  ///< of water that heat drives out of tissue
   kCount
 };
 
 /// "liver", "gallbladder", "duct", "artery", "fat", "bowel", "peritoneum", "shaft", "steel", "sleeve",
 /// "force", "fibre", "film", "blood", "bile", "rinse", "lumen", "titanium", "pouch", "stone", "spark", "red_rubber",
-/// "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark".
+/// "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark", "steam".
 std::string_view MaterialName(Material material) noexcept;
 /// The material of that name, or nothing.
 std::optional<Material> FindMaterial(std::string_view name) noexcept;

@@ -84,6 +84,8 @@ struct OperationSnapshot {
   training::Phase phase = training::Phase::kPreparation;
   std::size_t errors = 0, critical_errors = 0;  ///< so far
   bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
+  /// Pedals of a suction-irrigator in this tick. No part of the state: up after it was restored, until the next tick.
+  std::array<bool, kHandCount> is_rinsing{}, is_aspirating{};
 };
 
 }  // namespace trocar::simulation
