@@ -64,8 +64,8 @@ TEST(CtPhantom, ShowsOrgansAndABodyAroundThem) {
   EXPECT_EQ(phantom.labels.size, phantom.ct.size);
   EXPECT_NEAR(MeanOf(phantom, 1, true), FindHounsfield(CtTissue::kLiver, CtPhase::kPortalVenous), 4);
   EXPECT_NEAR(MeanOf(phantom, 2, true), FindHounsfield(CtTissue::kBile, CtPhase::kPortalVenous), 4);
-  // the wall and partial volume: at its border the gallbladder is not as dark as its bile
-  EXPECT_GT(MeanOf(phantom, 2, false), MeanOf(phantom, 2, true) + 2);
+  // the wall, and partial volume with liver and fat: at its border the gallbladder is not as its bile is
+  EXPECT_GT(std::fabs(MeanOf(phantom, 2, false) - MeanOf(phantom, 2, true)), 2);
   // air, fat, soft tissue, bone
   std::array<double, 4> shares = {};
   for (const std::int16_t value : phantom.ct.hounsfield) {

@@ -98,7 +98,7 @@ void PrintInfo(const Recording& recording) {
         d.branched_from.empty()
             ? "-"
             : TranslateWith(
-                  "{1} from {2} s on",
+                  "{1} at {2} s",
                   {d.branched_from, ShownNumber(static_cast<double>(d.branched_tick) * d.tick_seconds, 4)})},
        {"length", TranslateWith("{1} s, {2} ticks", {ShownNumber(recording.Seconds(), 4),
                                                      std::to_string(recording.inputs.size())})},

@@ -103,7 +103,7 @@ TEST_F(CourseCommand, ShowsCoursesAndSteps) {
     EXPECT_NE(list.out.find(course), std::string::npos) << list.out;
   const Printed step = RunTrocar({"course", "show", "basic-skills", "peg-transfer"});
   EXPECT_EQ(step.status, 0) << step.err;
-  EXPECT_NE(step.out.find("task_time: at most "), std::string::npos) << step.out;
+  EXPECT_NE(step.out.find("Time for the task: at most "), std::string::npos) << step.out;
   const Printed fls = RunTrocar({"levels", "show", "peg_transfer-fls"});
   EXPECT_NE(fls.out.find("at most 48 s"), std::string::npos) << fls.out << fls.err;
   const Printed none = RunTrocar({"course", "show", "basic-skills", "juggling"});

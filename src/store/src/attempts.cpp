@@ -329,10 +329,12 @@ core::Result<AttemptPage> ListAttempts(Store& store, const Viewer& viewer, const
   }
   // one more than shown tells whether there is another page
   const std::string most = Put(parameters, std::int64_t{limit} + 1);
-  const auto found =
-      store.GetDatabase().Run("SELECT " + std::string(kColumns) + std::string(kFrom) + where +
-                                  " ORDER BY attempt.started_ms DESC, attempt.id DESC LIMIT " + most,
-                              parameters);
+  const std::string order = " ORDER BY attempt.started_ms DESC, attempt.id DESC";
+  // the page is found in an index alone; only its own rows are read
+  const auto found = store.GetDatabase().Run("SELECT " + std::string(kColumns) + std::string(kFrom) +
+                                                 "attempt.id IN (SELECT attempt.id FROM attempt WHERE " +
+                                                 where + order + " LIMIT " + most + ")" + order,
+                                             parameters);
   if (!found.ok()) return found.error();
   AttemptPage result;
   for (const Row& row : found->rows) {
