@@ -286,7 +286,7 @@ CONTROLS = (
 )
 COMMAND_CONTROLS = (
     ("a command that is not there", lambda r: append(r / "docs/tissue.md", "`trocar operate`\n"), "there is no operate"),
-    ("a subcommand in a block that is not there", lambda r: append(r / "docs/tissue.md", "```\ntrocar anatomy grow -o x\n```\n"), "there is no grow"),
+    ("a subcommand in a block that is not there", lambda r: append(r / "docs/tissue.md", "```\ntrocar anatomy shrink -o x\n```\n"), "there is no shrink"),
     ("an option that is not there", lambda r: append(r / "docs/tissue.md", "`trocar demo --fast`\n"), "there is no option --fast"),
     ("a window's option that is not there", lambda r: append(r / "docs/tissue.md", "`trocar-window --fast`\n"), "trocar-window --fast: there is no option"),
     ("a command without a row", lambda r: edit(r / "docs/commands.md", "`trocar doctor`", "`trocar errors`"), "trocar doctor is missing"),

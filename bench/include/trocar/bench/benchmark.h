@@ -20,7 +20,7 @@ struct BenchmarkOptions {
   int attempts = 100'000;  ///< of the store
   int steps = 3000;        ///< random actions of the soak, over all environments
   std::uint64_t seed = 1;  ///< of those actions
-  std::string labels;  ///< label map that growth draws its phantom of; empty: of generated patients
+  std::string labels;      ///< label map that growth draws its phantom of; empty: of generated patients
   std::string url;  ///< an empty database for the store; empty: a SQLite file for the time of the benchmark
 };
 
