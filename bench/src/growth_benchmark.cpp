@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,34 +9,16 @@
 #include "trocar/bench/benchmark.h"
 #include "trocar/contours/growth_rehearsal.h"
 #include "trocar/core/progress_bar.h"
+#include "trocar/core/text_table.h"
+#include "work_folder.h"
 
 namespace trocar::bench {
 namespace {
 
-namespace fs = std::filesystem;
 using images::CtPhase;
 
 /// The figures that a simulated user must reach (docs/contours.md).
 constexpr double kLeastLiver = 0.95, kLeastGallbladder = 0.85;
-
-/// Gone when it ends.
-class Folder {
- public:
-  Folder() {
-    std::string path = (fs::temp_directory_path() / "trocar-growth-XXXXXX").string();
-    if (::mkdtemp(path.data()) != nullptr) path_ = path;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const fs::path& Path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 core::Result<images::LabelVolume> FindMap(const BenchmarkOptions& options, std::uint64_t seed) {
   if (options.labels.empty()) {
@@ -62,7 +40,8 @@ core::Result<std::vector<contours::GrowthTrial>> Try(const images::LabelVolume& 
   settings.phase = phase, settings.seed = seed;
   const auto phantom = anatomy::MakeCtPhantom(map, settings);
   if (!phantom) return phantom.error();
-  const Folder folder;
+  const WorkFolder folder;
+  if (auto made = folder.Status(); !made) return made.error();
   if (auto status = anatomy::WriteCtPhantom(folder.Path() / "ct", *phantom); !status) return status.error();
   auto workspace = contours::ContourWorkspace::Open({folder.Path() / "ct" / "slices", {}, {}, {}});
   if (!workspace) return workspace.error();
@@ -124,10 +103,8 @@ core::Result<BenchmarkResult> RunGrowthBenchmark(const BenchmarkOptions& options
   for (const auto& [name, sums] : all) AddCases(name, sums, result);
   result.notes.push_back(
       "CT phantoms: 0.8 mm pixels, 3 mm slices, noise 12 HU. Dice over all slices, those between contours by "
-      "shape. The "
-      "figures to reach: liver " +
-      std::to_string(kLeastLiver).substr(0, 4) + ", gallbladder " +
-      std::to_string(kLeastGallbladder).substr(0, 4));
+      "shape. The figures to reach: liver " +
+      core::FormatNumber(kLeastLiver) + ", gallbladder " + core::FormatNumber(kLeastGallbladder));
   return result;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The store of a large centre: how long a page of a trainee's history takes, and how a trainee compares with a group.
-#include <stdlib.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -18,6 +17,7 @@
 #include "trocar/core/statistics.h"
 #include "trocar/store/attempts.h"
 #include "trocar/store/maintenance.h"
+#include "work_folder.h"
 
 namespace trocar::bench {
 namespace {
@@ -33,25 +33,6 @@ constexpr int kLargeQuestions = 200;     // of those that look at everybody
 constexpr std::size_t kBatch = 100'000;  // attempts in a transaction; after each, standings are counted anew
 
 const Viewer kOwner = Viewer::Owner();
-
-/// A folder for one run.
-class WorkFolder {
- public:
-  WorkFolder() {
-    std::string path = (std::filesystem::temp_directory_path() / "trocar-bench-XXXXXX").string();
-    if (::mkdtemp(path.data()) != nullptr) path_ = path;
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const std::filesystem::path& Path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string TaskName(int number) {
   return "task_" + std::to_string(number);
@@ -191,9 +172,7 @@ core::Status TimePercentiles(Store& target, const std::string& name, int questio
 
 core::Result<BenchmarkResult> RunStoreBenchmark(const BenchmarkOptions& options) {
   const WorkFolder folder;
-  if (folder.Path().empty())
-    return core::Error{core::ErrorCode::kFileUnwritable,
-                       "no folder can be made for the benchmark; check TMPDIR"};
+  if (auto made = folder.Status(); !made) return made.error();
   store::Place place;
   place.folder = folder.Path() / "files";
   place.url = options.url.empty() ? (folder.Path() / "store.sqlite").string() : options.url;

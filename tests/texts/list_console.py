@@ -5,11 +5,10 @@
 That are the patterns of Say, headings of tables (the first row in the declaration of a vector of vectors of strings), the first column of
 FormatFields, labels of progress bars, notes, and what the doctor and the patient's linter find. Line ends and spaces around a pattern are no part of it, as in SaidText.
 """
-import pathlib
 import re
 import sys
 
-from list_messages import LEAST_SIGNS, alternatives, arguments_of, closing_places, literal, pattern_of, tokens_of
+from list_messages import LEAST_SIGNS, alternatives, arguments_of, closing_places, literal, pattern_of, print_template, tokens_of
 
 TABLE = ["std", "::", "vector", "<", "std", "::", "vector", "<", "std", "::", "string", ">>"]
 FINDS = {"doctor_checks.cpp"}  # whose texts are shown with TranslateComposed
@@ -104,18 +103,5 @@ def console_texts_of(source, finds=False, notes=True):
         yield from found_texts_of(tokens, pairs)
 
 
-def main():
-    printed = set()
-    print('msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=UTF-8\\n"')
-    for folder in sys.argv[1:]:
-        for path in sorted(pathlib.Path(folder).rglob("*.cpp")):
-            if "test" in path.parts:
-                continue
-            for text in console_texts_of(path.read_text(encoding="utf-8"), path.name in FINDS, not folder.startswith("bench")):
-                if text not in printed:
-                    printed.add(text)
-                    print('\nmsgid "%s"\nmsgstr ""' % text)
-
-
 if __name__ == "__main__":
-    main()
+    print_template(sys.argv[1:], lambda source, path, folder: console_texts_of(source, path.name in FINDS, not folder.startswith("bench")))

@@ -112,18 +112,19 @@ def messages_of(source):
                     yield pattern
 
 
-def main():
+def print_template(folders, texts_of):
+    """As a template for gettext, once each, what texts_of(source, path, folder) yields of the folders' sources; tests are left out."""
     printed = set()
     print('msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=UTF-8\\n"')
-    for folder in sys.argv[1:]:
+    for folder in folders:
         for path in sorted(pathlib.Path(folder).rglob("*.cpp")):
             if "test" in path.parts:
                 continue
-            for pattern in messages_of(path.read_text(encoding="utf-8")):
-                if pattern not in printed:
-                    printed.add(pattern)
-                    print('\nmsgid "%s"\nmsgstr ""' % pattern)
+            for text in texts_of(path.read_text(encoding="utf-8"), path, folder):
+                if text not in printed:
+                    printed.add(text)
+                    print('\nmsgid "%s"\nmsgstr ""' % text)
 
 
 if __name__ == "__main__":
-    main()
+    print_template(sys.argv[1:], lambda source, path, folder: messages_of(source))

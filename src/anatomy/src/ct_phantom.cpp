@@ -28,30 +28,31 @@ constexpr double kEndMm = 5.0;          // of the gallbladder, whose middle is f
 constexpr const char *kDucts = "bile_ducts", *kArteries = "arteries", *kHepaticVeins = "hepatic_veins";
 constexpr int kSamples = 2;  // lattice voxels in a pixel's side
 
+/// By Substance.
 constexpr std::array<CtTissue, static_cast<std::size_t>(Substance::kCount)> kTissues = {{
-    CtTissue::kAir,              // gel and gas
-    CtTissue::kSkin,             //
-    CtTissue::kFat,              //
-    CtTissue::kMuscle,           //
-    CtTissue::kBone,             //
-    CtTissue::kDisc,             //
-    CtTissue::kNerve,            // cord
-    CtTissue::kLung,             //
-    CtTissue::kHeart,            //
-    CtTissue::kVenousBlood,      // blood
-    CtTissue::kMuscle,           // wall of a vessel
-    CtTissue::kBowelWall,        //
-    CtTissue::kBowelContent,     //
-    CtTissue::kRenalCortex,      // kidney
-    CtTissue::kRenalMedulla,     //
-    CtTissue::kSpleen,           //
-    CtTissue::kFat,              // connective tissue
-    CtTissue::kLiver,            //
-    CtTissue::kGallbladderWall,  //
-    CtTissue::kBile,             //
-    CtTissue::kBile,             // duct
-    CtTissue::kArterialBlood,    // artery
-    CtTissue::kArterialBlood,    // aorta
+    CtTissue::kAir,              // kGel
+    CtTissue::kSkin,             // kSkin
+    CtTissue::kFat,              // kFat
+    CtTissue::kMuscle,           // kMuscle
+    CtTissue::kBone,             // kBone
+    CtTissue::kDisc,             // kDisc
+    CtTissue::kNerve,            // kCord
+    CtTissue::kLung,             // kLung
+    CtTissue::kHeart,            // kHeart
+    CtTissue::kVenousBlood,      // kBlood
+    CtTissue::kMuscle,           // kVesselWall
+    CtTissue::kBowelWall,        // kBowelWall
+    CtTissue::kBowelContent,     // kBowelContent
+    CtTissue::kRenalCortex,      // kKidney
+    CtTissue::kRenalMedulla,     // kMedulla
+    CtTissue::kSpleen,           // kSpleen
+    CtTissue::kFat,              // kConnective
+    CtTissue::kLiver,            // kLiver
+    CtTissue::kGallbladderWall,  // kGallbladderWall
+    CtTissue::kBile,             // kBile
+    CtTissue::kBile,             // kDuct
+    CtTissue::kArterialBlood,    // kArtery
+    CtTissue::kArterialBlood,    // kAorticBlood
 }};
 
 /// A map's voxels by place, its labels by tissue.
@@ -66,13 +67,6 @@ class Map {
     }
   }
 
-  bool IsOblique() const {
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vec3 &a = step_[axis], &b = step_[(axis + 1) % 3];
-      if (std::fabs(Dot(a, b)) > 1e-3 * Norm(a) * Norm(b)) return true;
-    }
-    return false;
-  }
   bool HasVessels() const { return has_vessels_; }
   /// Place of a voxel: left, cranial, anterior [mm].
   Vec3 PlaceOf(std::size_t at) const {
@@ -83,17 +77,7 @@ class Map {
                      static_cast<double>(row / labels_.size[1]) * step_[2];
     return {lps.x, lps.z, -lps.y};
   }
-  int LabelAt(const Vec3& lps) const {
-    const Vec3 p = lps - Vec3{labels_.origin[0], labels_.origin[1], labels_.origin[2]};
-    std::size_t at = 0, stride = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      const long place = std::lround(Dot(p, step_[axis]) / Dot(step_[axis], step_[axis]));
-      if (place < 0 || place >= labels_.size[axis]) return 0;
-      at += stride * static_cast<std::size_t>(place);
-      stride *= labels_.size[axis];
-    }
-    return labels_.labels[at];
-  }
+  int LabelAt(const Vec3& lps) const { return images::LabelAt(labels_, {lps.x, lps.y, lps.z}); }
   bool IsLiver(int label) const { return label == organs_.liver; }
   bool IsGallbladder(int label) const { return label == organs_.gallbladder; }
   std::optional<CtTissue> TissueOf(int label) const {
@@ -245,11 +229,11 @@ core::Result<CtPhantom> MakeCtPhantom(const images::LabelVolume& labels, const i
                                       std::stop_token stop, const images::Progress& progress) {
   const auto organs = FindLabels(labels, {});
   if (!organs) return organs.error();
-  const Map map(labels, *organs);
-  if (map.IsOblique()) {
+  if (images::IsOblique(labels)) {
     return core::Error{core::ErrorCode::kLabelsMismatch,
                        "the label map's axes are not at right angles; resample it, in 3D Slicer for example"};
   }
+  const Map map(labels, *organs);
   const BodyPlan plan = map.PlanBody();
   const PhantomBody body(plan, settings.seed);
   const geometry::Box& box = body.Extent();

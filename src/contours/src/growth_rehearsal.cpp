@@ -213,7 +213,7 @@ class Rehearsal {
   }
 
   core::Status Correct(GrowthTrial& trial) {
-    DrawEnds(trial);
+    if (auto status = DrawEnds(trial); !status) return status;
     // the slice that is most wrong comes first
     std::vector<std::pair<double, int>> order;
     for (const SliceContours& slice : Mine().slices) {
@@ -263,7 +263,7 @@ class Rehearsal {
   }
 
   /// Contours where the organ begins and ends, if what grew ends well before.
-  void DrawEnds(GrowthTrial& trial) {
+  core::Status DrawEnds(GrowthTrial& trial) {
     const auto& slices = labelled_.Slices();
     std::vector<int> shown;
     for (const int slice : slices) {
@@ -272,12 +272,14 @@ class Rehearsal {
         shown.push_back(slice);
     }
     const auto contoured = workspace_.Document().ContouredSlices(structure_);
-    if (shown.empty() || contoured.empty()) return;
+    if (shown.empty() || contoured.empty()) return {};
     const double reach = kEndMm / Points().slice_mm;
-    if (contoured.front() - shown.front() > reach && trial.drawn < user_.draws)
-      (void)Draw(shown.front(), labelled_.Trace(shown.front()), trial);
-    if (shown.back() - contoured.back() > reach && trial.drawn < user_.draws)
-      (void)Draw(shown.back(), labelled_.Trace(shown.back()), trial);
+    for (const auto& [missed, end] : {std::pair{contoured.front() - shown.front(), shown.front()},
+                                      std::pair{shown.back() - contoured.back(), shown.back()}}) {
+      if (missed <= reach || trial.drawn >= user_.draws) continue;
+      if (auto status = Draw(end, labelled_.Trace(end), trial); !status) return status;
+    }
+    return {};
   }
 
   ContourWorkspace& workspace_;

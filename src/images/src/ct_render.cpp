@@ -193,6 +193,10 @@ std::vector<float> MeanNumbers(const TissueVolume& tissues, CtPhase phase, const
   return picture;
 }
 
+Vec3 StepOf(const LabelVolume& labels, int axis) {
+  return {labels.direction[axis][0], labels.direction[axis][1], labels.direction[axis][2]};
+}
+
 }  // namespace
 
 std::optional<CtPhase> FindCtPhase(std::string_view name) {
@@ -251,38 +255,42 @@ core::Result<CtVolume> RenderCt(const TissueVolume& tissues, const CtSettings& s
   return volume;
 }
 
+int LabelAt(const LabelVolume& labels, const std::array<double, 3>& p) {
+  const Vec3 from_first = Vec3{p[0], p[1], p[2]} - Vec3{labels.origin[0], labels.origin[1], labels.origin[2]};
+  std::size_t at = 0, stride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = StepOf(labels, axis);
+    const long place = std::lround(Dot(from_first, step) / Dot(step, step));
+    if (place < 0 || place >= labels.size[axis]) return 0;
+    at += stride * static_cast<std::size_t>(place);
+    stride *= labels.size[axis];
+  }
+  return labels.labels[at];
+}
+
+bool IsOblique(const LabelVolume& labels) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 a = StepOf(labels, axis), b = StepOf(labels, (axis + 1) % 3);
+    if (std::fabs(Dot(a, b)) > 1e-3 * Norm(a) * Norm(b)) return true;
+  }
+  return false;
+}
+
 LabelVolume LabelsOn(const CtVolume& volume, const LabelVolume& labels) {
+  TROCAR_ASSERT(!IsOblique(labels));
   LabelVolume on;
   on.size = volume.size;
   on.direction = {{{volume.pixel_mm, 0, 0}, {0, volume.pixel_mm, 0}, {0, 0, volume.slice_mm}}};
   on.origin = volume.origin_mm;
   on.names = labels.names;
   on.labels.resize(volume.hounsfield.size());
-  Vec3 step[3];
-  for (int axis = 0; axis < 3; ++axis)
-    step[axis] = {labels.direction[axis][0], labels.direction[axis][1], labels.direction[axis][2]};
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 &a = step[axis], &b = step[(axis + 1) % 3];
-    TROCAR_ASSERT(std::fabs(Dot(a, b)) < 1e-3 * Norm(a) * Norm(b));
-  }
-  const Vec3 origin = {labels.origin[0], labels.origin[1], labels.origin[2]};
   oneapi::tbb::parallel_for(0, on.size[2], [&](int k) {
     std::size_t at = static_cast<std::size_t>(k) * on.size[0] * on.size[1];
     for (int j = 0; j < on.size[1]; ++j) {
-      for (int i = 0; i < on.size[0]; ++i, ++at) {
-        const Vec3 p = Vec3{on.origin[0] + i * volume.pixel_mm, on.origin[1] + j * volume.pixel_mm,
-                            on.origin[2] + k * volume.slice_mm} -
-                       origin;
-        std::size_t from = 0, stride = 1;
-        bool is_inside = true;
-        for (int axis = 0; axis < 3; ++axis) {
-          const long place = std::lround(Dot(p, step[axis]) / Dot(step[axis], step[axis]));
-          is_inside = is_inside && place >= 0 && place < labels.size[axis];
-          from += stride * static_cast<std::size_t>(std::max(place, 0L));
-          stride *= labels.size[axis];
-        }
-        on.labels[at] = is_inside ? labels.labels[from] : 0;
-      }
+      for (int i = 0; i < on.size[0]; ++i, ++at)
+        on.labels[at] =
+            LabelAt(labels, {on.origin[0] + i * volume.pixel_mm, on.origin[1] + j * volume.pixel_mm,
+                             on.origin[2] + k * volume.slice_mm});
     }
   });
   return on;

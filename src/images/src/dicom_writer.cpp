@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "trocar/core/assert.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/state_hash.h"
 #include "trocar/images/ct_render.h"
 
 namespace trocar::images {
@@ -40,20 +42,14 @@ std::string Decimal(double value) {
   return text;
 }
 
-/// FNV-1a.
 std::uint64_t Hash(const CtVolume& volume) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  const auto add = [&](std::int64_t number) {
-    for (int shift = 0; shift < 64; shift += 8)
-      hash = (hash ^ (static_cast<std::uint64_t>(number) >> shift & 0xFF)) * 1099511628211ULL;
-  };
-  for (const int side : volume.size) add(side);
-  for (const double length :
-       {volume.pixel_mm, volume.slice_mm, volume.origin_mm[0], volume.origin_mm[1], volume.origin_mm[2]})
-    add(static_cast<std::int64_t>(length * 1e6));
+  core::StateHash hash;
+  for (const int side : volume.size) hash.Add(static_cast<std::uint64_t>(side));
+  for (const double length : {volume.pixel_mm, volume.slice_mm}) hash.Add(length);
+  hash.Add(std::span<const double>(volume.origin_mm));
   for (const std::int16_t value : volume.hounsfield)
-    hash = (hash ^ static_cast<std::uint16_t>(value)) * 1099511628211ULL;
-  return hash;
+    hash.Add(std::uint64_t{static_cast<std::uint16_t>(value)});
+  return hash.Value();
 }
 
 /// A UID out of a UUID (PS3.5, B.2), made from what it names.

@@ -169,8 +169,7 @@ void HdHost::Watch() noexcept {
     const bool has_died = ::ppoll(&watched, 1, &look, nullptr) > 0;
     const std::uint64_t beats = page.beats.load(std::memory_order_acquire);
     const std::int64_t silence = watch.Look(beats, core::NowNanoseconds());
-    // a process that has just been started has no beat yet
-    if (!has_died && (beats == 0 || silence < kLongestBeatSilence)) continue;
+    if (!has_died && silence < kLongestBeatSilence) continue;
     active_->Kill();
     has_failed_.store(true, std::memory_order_release);
     if (spare_) {
@@ -243,6 +242,8 @@ int RunOpenHapticsHost(int socket, int page) {
   auto& shared = *static_cast<HdHostPage*>(memory);
   GoFirst();
   HdDevices devices(shared.mailbox);
+  // watched from the moment the devices are open, not from the guard's first look
+  shared.beats.store(1, std::memory_order_release);
   std::atomic<bool> is_ending{false};
   std::thread guard([&] { GuardLibrary(devices, shared, is_ending); });
   std::vector<ForceLimits> limits;

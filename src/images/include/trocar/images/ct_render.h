@@ -99,6 +99,13 @@ core::Result<CtVolume> RenderCt(const TissueVolume& tissues, const CtSettings& s
 core::Status WriteDicom(const std::filesystem::path& folder, const CtVolume& volume,
                         const Progress& progress = {});
 
+/// Label of the voxel that a place lies in; 0 beyond the map.
+/// \param p  LPS [mm]
+/// \pre the map's steps are at right angles (IsOblique)
+int LabelAt(const LabelVolume& labels, const std::array<double, 3>& p);
+/// Whether two of the map's steps are further from a right angle than rounding leaves them.
+bool IsOblique(const LabelVolume& labels);
+
 /// Labels of a map at the CT's voxels: each has the label of the map's voxel that its centre lies in.
 /// \pre the map's steps are at right angles (TROCAR_ASSERT)
 LabelVolume LabelsOn(const CtVolume& volume, const LabelVolume& labels);
