@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "surround_patient.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/contours/overlay.h"
@@ -84,6 +85,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const images
   auto patient = AssemblePatient(*points, built->meshes);
   if (!patient.ok()) return patient.error();
   report.patient = std::move(*patient);
+  if (options.has_surroundings) SurroundPatient({}, report);
   if (options.stop.stop_requested()) return given_up;
 
   if (!options.output.empty()) {
@@ -133,7 +135,7 @@ std::string FormatSurroundings(const BuildReport& report) {
                                                    "left out [mL]"}};
     for (const NeighbourReport& one : report.neighbours) {
       rows.push_back({core::Translate(roles::SpokenName(one.name)),
-                      core::Translate(one.is_seen ? core::Mark("map") : core::Mark("template")),
+                      core::Translate(one.is_seen ? core::Mark("images") : core::Mark("template")),
                       std::to_string(one.is_seen ? one.parts : 1), std::to_string(one.triangles),
                       ShownFixed(one.min_angle_deg, 1), ShownFixed(one.volume_ml, 0)});
       if (!one.is_seen) continue;

@@ -13,8 +13,7 @@
 #include "label_names.h"
 #include "label_neighbours.h"
 #include "label_plausibility.h"
-#include "neighbour_template.h"
-#include "port_placement.h"
+#include "surround_patient.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/core/printable.h"
 #include "trocar/geometry/mesh_measures.h"
@@ -207,21 +206,7 @@ void AddSurroundings(const images::LabelVolume& volume, const OrganLabels& organ
     patient.neighbours.push_back({one.report.name, std::move(one.mesh), true, one.role});
   }
   progress("placing ports", 0.9);
-  const BodyShape body = MeasureBody(volume, labels, frame, shift);
-  std::vector<Neighbour> templates = MakeTemplateNeighbours(patient, FindMidline(patient, body));
-  for (Neighbour& one : templates) {
-    report.neighbours.push_back({one.name, false});
-    patient.neighbours.push_back(std::move(one));
-  }
-  PlacePorts(body, patient);
-  report.sinking = SinkUnderGas(patient);
-  for (std::size_t i = 0; i < report.neighbours.size(); ++i) {
-    NeighbourReport& one = report.neighbours[i];
-    const auto inspected = geometry::InspectMesh(patient.neighbours[i].mesh);
-    one.triangles = inspected.triangles;
-    one.volume_ml = 1e6 * inspected.volume;
-    one.min_angle_deg = inspected.min_angle * 180.0 / M_PI;
-  }
+  SurroundPatient(MeasureBody(volume, labels, frame, shift), report);
 }
 
 }  // namespace

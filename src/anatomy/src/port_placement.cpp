@@ -84,7 +84,7 @@ Navel FindNavel(const Patient& patient, const BodyShape& body) {
                                              : "in the midline, taken as that between aorta and vena cava";
     navel.is_usual = false;
   } else {
-    navel.reason += Mm(-kUsualFundus.x) + " left of the fundus as usual (no spine in the map)";
+    navel.reason += Mm(-kUsualFundus.x) + " left of the fundus as usual (no spine is outlined)";
   }
   if (body.navel) {
     navel.place.y = std::clamp(*body.navel, fundus.y - kMostCaudal, fundus.y - kLeastCaudal);
@@ -277,7 +277,7 @@ Table PlaceTable(const Patient& patient) {
   }
   return {
       kUsualHeadUp * kDegree, kUsualRightUp * kDegree,
-      bowel != nullptr ? "As usual: no bowel lies on the gallbladder." : "As usual: the map shows no bowel."};
+      bowel != nullptr ? "As usual: no bowel lies on the gallbladder." : "As usual: no bowel is outlined."};
 }
 
 /// By how much a place breaks each rule [m]; 0: not at all. `why` says the first that is broken.
@@ -332,16 +332,6 @@ core::Result<Port> MovePort(const Patient& patient, PortUse use, double x, doubl
   return port;
 }
 
-void PlaceUsualPorts(Patient& patient) {
-  patient.ports.clear();
-  for (std::size_t use = 0; use < kPortUseCount; ++use) {
-    patient.ports.push_back({static_cast<PortUse>(use), kUsualPorts[use],
-                             "At its usual place: contours say nothing of this body's wall."});
-  }
-  patient.table =
-      Table{kUsualHeadUp * kDegree, kUsualRightUp * kDegree, "As usual: contours say nothing of the bowel."};
-}
-
 double FindMidline(const Patient& patient, const BodyShape& body) {
   return body.midline.value_or(PlaceOf(patient, LandmarkRole::kFundus).x - kUsualFundus.x);
 }
@@ -355,7 +345,7 @@ void PlacePorts(const BodyShape& body, Patient& patient) {
     for (std::size_t use = 0; use < kPortUseCount; ++use) {
       patient.ports.push_back({static_cast<PortUse>(use), kUsualPorts[use],
                                use == 0 ? "At the navel: " + navel.reason + "."
-                                        : "At its usual place: the map shows nothing of this body's wall."});
+                                        : "At its usual place: the images say nothing of this body's wall."});
     }
     return;
   }

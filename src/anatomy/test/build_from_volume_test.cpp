@@ -96,6 +96,17 @@ TEST_F(BuildFromVolume, ContoursAloneMakeAPatientThatTheScenesCanUse) {
   for (const LintFinding& finding : LintPatient(patient).findings)
     ADD_FAILURE() << finding.code << " " << finding.where << ": " << finding.text;
   EXPECT_LT(Distance(patient.FindLandmark("fundus")->position, {-0.075, 0.095, -0.070}), 1e-9);
+  // liver and gallbladder are outlined, everything round them is the template's, and the ports say so
+  EXPECT_GE(patient.neighbours.size(), 8u);
+  EXPECT_EQ(patient.neighbours.size(), report->neighbours.size());
+  for (const Neighbour& neighbour : patient.neighbours) EXPECT_FALSE(neighbour.is_seen) << neighbour.name;
+  ASSERT_EQ(patient.ports.size(), kPortUseCount);
+  EXPECT_NE(patient.ports[1].reason.find("say nothing of this body"), std::string::npos);
+  EXPECT_TRUE(patient.table.has_value());
+  stack_.has_surroundings = false;
+  const auto bare = BuildPatient(stack_);
+  ASSERT_TRUE(bare.ok()) << bare.error().Text();
+  EXPECT_TRUE(bare->patient.neighbours.empty() && bare->patient.ports.empty() && !bare->patient.table);
   EXPECT_GE(patient.tubes.size(), 5u);
   for (const Tube& tube : patient.tubes) EXPECT_FALSE(tube.is_seen) << tube.name;
   // an umbilicus that is placed is the origin, and not there twice

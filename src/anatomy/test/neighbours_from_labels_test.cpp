@@ -387,7 +387,7 @@ TEST_F(NeighboursFromLabels, WithoutABodyPortsAreTheUsualOnesAndSayThat) {
         << NameOf(use);
   }
   EXPECT_THAT(report.patient.PortOf(PortUse::kAssistant)->reason,
-              HasSubstr("shows nothing of this body's wall"));
+              HasSubstr("say nothing of this body's wall"));
   for (const Neighbour& neighbour : report.patient.neighbours) EXPECT_FALSE(neighbour.is_seen);
 }
 

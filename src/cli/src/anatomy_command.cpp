@@ -18,7 +18,7 @@ namespace {
 
 struct BuildArguments {
   std::string control_points, images, window, output, reference, overlays;
-  bool without_overlays = false;
+  bool without_overlays = false, is_bare = false;
   double skipped_px = -1;
   int series = 0;  // 0: there is one
 };
@@ -34,6 +34,7 @@ core::Status Build(const BuildArguments& arguments) {
   }
   options.dicom_series = arguments.series;
   options.output = arguments.output;
+  options.has_surroundings = !arguments.is_bare;
   if (arguments.skipped_px >= 0) options.skipped_shift_px = arguments.skipped_px;
   if (!arguments.reference.empty()) options.reference = arguments.reference;
   if (!arguments.without_overlays) {
@@ -43,7 +44,7 @@ core::Status Build(const BuildArguments& arguments) {
   const core::Result<anatomy::BuildReport> report = anatomy::BuildPatient(options, bar.Follow());
   bar.Finish();
   if (!report) return report.error();
-  Print(anatomy::FormatReport(*report));
+  Print(anatomy::FormatReport(*report) + "\n" + anatomy::FormatSurroundings(*report));
   Say("\nWrote {1}\n", arguments.output);
   if (report->overlays > 0) {
     Say("Wrote {1} pictures to check by eye into {2}\n", report->overlays, options.overlays->c_str());
@@ -175,6 +176,8 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
                    "Folder for one picture a slice with the contours drawn in (default: PATIENT-overlays)")
       ->type_name("DIR");
   build->add_flag("--no-overlays", arguments->without_overlays, "Write no pictures");
+  build->add_flag("--bare", arguments->is_bare,
+                  "Organs, ducts and arteries alone: no neighbours from the template, no ports of its own");
   build->footer(
       "Prints a table of the organs and writes a picture of each contoured slice to check by eye.\n"
       "Nothing is written when any step fails.\n"

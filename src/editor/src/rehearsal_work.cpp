@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "trocar/anatomy/build_patient.h"
-#include "trocar/anatomy/move_port.h"
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
@@ -122,7 +121,6 @@ core::Result<RehearsedPatient> BuildFrom(const RehearsalState& state, const fs::
   built.patient = std::move(report->patient);
   built.notes = std::move(report->notes);
   for (std::string& sentence : report->sinking) built.notes.push_back(std::move(sentence));
-  if (built.patient.ports.empty()) anatomy::PlaceUsualPorts(built.patient);
   return built;
 }
 
@@ -227,13 +225,8 @@ std::vector<RehearsalLine> DescribeCheck(const RehearsedPatient& built) {
   const std::string seen = ListNeighbours(built.patient, true), placed = ListNeighbours(built.patient, false);
   if (!seen.empty()) lines.push_back({Kind::kPlain, core::TranslateWith("From the images: {1}", {seen})});
   if (!placed.empty())
-    lines.push_back(
-        {Kind::kPlain, core::TranslateWith("From the template, because the map lacks them: {1}", {placed})});
-  if (built.patient.neighbours.empty())
-    lines.push_back(
-        {Kind::kPlain,
-         core::Translate("None: contours give liver and gallbladder alone. The usual abdomen is drawn "
-                         "round them, and nothing touches it.")});
+    lines.push_back({Kind::kPlain,
+                     core::TranslateWith("From the template, because nothing outlines them: {1}", {placed})});
   if (built.notes.empty()) return lines;
   lines.push_back({Kind::kTitle, core::Translate("Notes")});
   for (const std::string& note : built.notes) lines.push_back({Kind::kPlain, core::TranslateComposed(note)});

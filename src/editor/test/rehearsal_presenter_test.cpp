@@ -192,7 +192,7 @@ TEST_F(RehearsalTest, ThePatientIsCheckedAndSaysWhatItIsMadeOf) {
   for (const RehearsalLine& line : Page().check) all += line.text + "\n";
   EXPECT_THAT(all, HasSubstr("The check finds nothing wrong"));
   EXPECT_THAT(all, HasSubstr("liver: "));
-  EXPECT_THAT(all, HasSubstr("From the template, because the map lacks them"));
+  EXPECT_THAT(all, HasSubstr("From the template, because nothing outlines them"));
   EXPECT_GT(screen_.triangles, 1000u) << "it is shown";
   all.clear();
   for (const RehearsalLine& line : Page().origin) all += line.text + "\n";
@@ -400,7 +400,7 @@ TEST_F(RehearsalTest, DrawnContoursBecomeAPatientAndStayWhereTheyWere) {
   EXPECT_THAT(Page().ports.list[1].reason, HasSubstr("usual place"));
   std::string all;
   for (const RehearsalLine& line : Page().check) all += line.text + "\n";
-  EXPECT_THAT(all, HasSubstr("contours give liver and gallbladder alone"));
+  EXPECT_THAT(all, HasSubstr("From the template, because nothing outlines them: stomach"));
   const fs::path points = screen_.points;
   presenter_->ChooseImages(Slices());
   Settle();

@@ -30,6 +30,8 @@ struct BuildOptions {
   /// How far the edges of skipped slices may move the contours interpolated there [pixels], 0 to 30; what the
   /// file says if not given.
   std::optional<double> skipped_shift_px;
+  bool has_surroundings =
+      true;              ///< neighbours from the template, ports and table; else organs and tubes alone
   std::stop_token stop;  ///< gives up before anything is written: kCancelled
 };
 
@@ -49,7 +51,7 @@ struct NeighbourReport {
 struct BuildReport {
   Patient patient;
   std::vector<contours::OrganReport> organs;
-  std::vector<NeighbourReport> neighbours;  ///< as Patient::neighbours; none from control points
+  std::vector<NeighbourReport> neighbours;  ///< as Patient::neighbours
   std::vector<std::string> sinking;         ///< sentences: which neighbours sink under the gas, and how far
   std::vector<std::string> notes;           ///< sentences: what the images have and the patient has not
   std::size_t overlays = 0;                 ///< pictures written

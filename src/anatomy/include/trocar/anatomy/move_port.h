@@ -14,7 +14,4 @@ namespace trocar::anatomy {
 /// \return kEditRefused with the rule that the place would break
 core::Result<Port> MovePort(const Patient& patient, PortUse use, double x, double y);
 
-/// Ports and table of the usual patient, for one whose images say nothing of the body round liver and gallbladder.
-void PlaceUsualPorts(Patient& patient);
-
 }  // namespace trocar::anatomy
