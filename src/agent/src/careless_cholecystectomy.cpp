@@ -16,6 +16,7 @@ constexpr double kFromTips = 0.0018;  // of a vessel's axis, so that the clip re
 constexpr double kAnother = 0.05;     // of a vessel's length, to another place for a clip
 constexpr double kBesideHold = 0.015, kBesideWeight = 4.0;  // of a place in the wall from the hold [m], [-]
 constexpr double kSpillSeconds = 8.0;                       // in which stones leave through a hole
+constexpr double kRinseFrom = 0.022;   // before what bleeds [m]
 constexpr double kBetweenLegs = 0.003;  // of a clip applier's middle line, where a vessel is to be [m]
 
 }  // namespace
@@ -216,6 +217,14 @@ void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scen
       break;
     case OperationErrorScenario::kInsertsBlind:
       InsertBlind();
+      break;
+    case OperationErrorScenario::kRinses:
+      Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = AssistantCommand::kRetract;
+      scissors();
+      CutTube(artery, 0.65);
+      LookAt(Place::OnTube(artery, 0.65), 0.0, 0.080);
+      Exchange(kRight, ToolKind::kSuctionIrrigator);
+      for (int round = 0; round < 4; ++round) Rinse(Place::Aim(artery, 0.65, kRinseFrom), 3.0, 4.0);
       break;
   }
   Wait(0.5);

@@ -51,6 +51,12 @@ void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) 
     case Kind::kBurn:
       controls_[h].coagulate = true;
       break;
+    case Kind::kRinse:
+      controls_[h].rinse = true;
+      break;
+    case Kind::kAspirate:
+      controls_[h].aspirate = true;
+      break;
     case Kind::kPressCutPedal:
       controls_[h].cut = true;
       break;
@@ -125,8 +131,10 @@ bool CholecystectomySurgeon::IsDone(const SurgeonAct& act, const Snapshot& seen)
       return false;
     }
     case Kind::kBurn:
+    case Kind::kRinse:
+    case Kind::kAspirate:
       if (act_seconds_ < act.seconds) return false;
-      controls_[h].coagulate = false;
+      controls_[h].coagulate = controls_[h].rinse = controls_[h].aspirate = false;
       return true;
     case Kind::kLook:
     case Kind::kLookFrom:

@@ -58,7 +58,8 @@ enum class OperationErrorScenario : std::uint8_t {
   kGraspsLiver,
   kPullsHard,
   kCutsLiver,
-  kInsertsBlind
+  kInsertsBlind,
+  kRinses
 };
 
 class CholecystectomySurgeon final : public Surgeon {
@@ -113,6 +114,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void CloseClip(std::size_t tube, double share);
   void CutTube(std::size_t tube, double share);
   void Burn(int hand, const Place& at, double seconds);
+  void Rinse(const Place& at, double rinse_seconds, double aspirate_seconds);
   void SetJaw(std::string doing, double jaw);
   void Dissect(DissectionGoal goal);
   bool GoOnDissecting(Dissection& work, const Snapshot& seen);

@@ -115,6 +115,17 @@ void CholecystectomySurgeon::Burn(int hand, const Place& at, double seconds) {
   act.seconds = seconds;
 }
 
+/// Washes a place from a little before it, and takes up what has gathered.
+void CholecystectomySurgeon::Rinse(const Place& at, double rinse_seconds, double aspirate_seconds) {
+  constexpr double kInPool = 0.003;  // [m]
+  Place pool = Place::Of(Place::Kind::kPool);
+  Reach(kRight, at, 0.5);
+  Add(SurgeonAct::Kind::kRinse, "rinse", rinse_seconds + 1.0).seconds = rinse_seconds;
+  pool.back = kInPool;
+  Reach(kRight, pool, 0.5);
+  Add(SurgeonAct::Kind::kAspirate, "aspirate", aspirate_seconds + 1.0).seconds = aspirate_seconds;
+}
+
 /// Turns the laparoscope so that it looks at a place from aside: by `turn` about the cystic duct.
 void CholecystectomySurgeon::LookAt(const Place& target, double turn, double distance) {
   SurgeonAct& act = Add(SurgeonAct::Kind::kLook, "look", 8.0);
@@ -176,6 +187,10 @@ Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const Snapshot& se
       return hand.BehindTip(place.back);
     case Place::Kind::kFromTip:
       return hand.Tip() + place.p;
+    case Place::Kind::kPool: {
+      const Vec3& p = seen.operation.flow.p_world_pool;
+      return p + place.back * math::Normalized(hand.Port() - p);
+    }
     case Place::Kind::kOverField:
       break;
   }

@@ -37,7 +37,8 @@ struct Place {
     kRightTip,     ///< of the tool that is seen
     kBehindTip,    ///< `back` along the shaft of `hand`
     kFromTip,      ///< of `hand`, by `p`
-    kOverField     ///< over what the picture is about, in the picture
+    kOverField,    ///< over what the picture is about, in the picture
+    kPool          ///< where liquid gathers, `back` towards the trocar
   } kind = Kind::kNone;
   std::int32_t hand = kRight;
   bool is_for_hook = false;  ///< where the tip stands when the middle of the hook's toe is there
@@ -119,7 +120,10 @@ struct SurgeonAct {
     kStopBleeding,
     kCoagulate,
     kTurnNeck,
-    kFundusFirst
+    kFundusFirst,
+    // pedals of the suction-irrigator
+    kRinse,
+    kAspirate
   } kind = Kind::kWait;
   std::string doing;
   double time_limit = 0;  ///< after which it is left [s]
@@ -144,7 +148,7 @@ struct SurgeonAct {
   AssistantCommand command = AssistantCommand::kWait;
   instrument::TrocarJoints camera;
 
-  bool IsDecision() const { return kind >= Kind::kChooseHold; }
+  bool IsDecision() const { return kind >= Kind::kChooseHold && kind <= Kind::kFundusFirst; }
   void VisitState(core::StateArchive& archive);
 };
 

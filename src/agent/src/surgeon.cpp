@@ -139,6 +139,8 @@ const SurgeonEntry kOperators[] = {
      MakeCarelessOperator<OperationErrorScenario::kClipsPartly>},
     {"bleeds", "cuts the cystic artery and watches", "bleeding", IsCholecystectomy,
      MakeCarelessOperator<OperationErrorScenario::kBleeds>},
+    {"rinses", "cuts the cystic artery, and rinses and aspirates while it bleeds", "bleeding",
+     IsCholecystectomy, MakeCarelessOperator<OperationErrorScenario::kRinses>},
     {"slips_clip", "closes a clip around the edge of the cystic artery and cuts it", "clip_slipped",
      IsCholecystectomy, MakeCarelessOperator<OperationErrorScenario::kSlipsClip>},
     {"perforates", "burns the gallbladder", "gallbladder_perforated", IsCholecystectomy,

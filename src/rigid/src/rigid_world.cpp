@@ -140,10 +140,12 @@ struct RigidWorld::Content {
       sizes.m_defaultMaxPersistentManifoldPoolSize = kPooledManifolds;
       sizes.m_defaultMaxCollisionAlgorithmPoolSize = kPooledManifolds;
       configuration = std::make_unique<btDefaultCollisionConfiguration>(sizes);
+      // it fills two tables of 36 x 36; without bodies it remembers nothing, so one does for all worlds
+      dispatcher = std::make_unique<btCollisionDispatcher>(configuration.get());
     }
+    TROCAR_ASSERT(dispatcher->getNumManifolds() == 0);
     solver = std::make_unique<btSequentialImpulseConstraintSolver>();
     broadphase = std::make_unique<btDbvtBroadphase>();
-    dispatcher = std::make_unique<btCollisionDispatcher>(configuration.get());
     world = std::make_unique<btDiscreteDynamicsWorld>(dispatcher.get(), broadphase.get(), solver.get(),
                                                       configuration.get());
     world->setGravity(ToBullet(gravity));

@@ -63,6 +63,9 @@ bool IsFree(const Snapshot& now) {
 bool IsInBag(const Snapshot& now) {
   return now.operation.is_in_bag;
 }
+bool IsRinsing(const Snapshot& now) {
+  return now.operation.is_rinsing[scene::kRight];
+}
 bool Bleeds(const Snapshot& now) {
   const auto leaks = std::span(now.operation.flow.leaks).first(now.operation.flow.leak_count);
   return std::any_of(leaks.begin(), leaks.end(), [](const simulation::LeakSnapshot& leak) {
@@ -206,6 +209,7 @@ std::vector<SeriesSitting> ListPictureSeries() {
         {"08-bed", "the gallbladder is taken off its bed", IsDetached<45>, 0.5},
         {"09-free", "the gallbladder is free, the bed lies open", IsFree, 0.5},
         {"10-bag", "the gallbladder is in the bag", IsInBag, 0.5}}},
+      {"cholecystectomy", "rinses", {{"11-rinsing", "water on the field while the artery bleeds", IsRinsing, 2}}},
       {"cholecystectomy", "bleeds", {{"12-bleeding", "an accident: the cystic artery bleeds", Bleeds, 35}}},
       {"camera_navigation_30",
        "expert",
