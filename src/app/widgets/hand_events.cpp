@@ -33,7 +33,10 @@ constexpr guint kFirstButton = 1, kLastButton = 3;
 }  // namespace
 
 HandEvents::HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& panel)
-    : window_(window), picture_(picture), panel_(panel), lock_(picture) {
+    : window_(window),
+      picture_(picture),
+      panel_(panel),
+      lock_(picture, [this](const PointerLock::Motion& motion) { OnMotion(motion); }) {
   const auto keys = Gtk::EventControllerKey::create();
   keys->set_propagation_phase(Gtk::PropagationPhase::CAPTURE);
   keys->signal_key_pressed().connect(sigc::mem_fun(*this, &HandEvents::OnKeyPressed), false);
@@ -41,7 +44,7 @@ HandEvents::HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& p
   window.add_controller(keys);
 
   const auto motion = Gtk::EventControllerMotion::create();
-  motion->signal_motion().connect(sigc::mem_fun(*this, &HandEvents::OnMotion));
+  motion->signal_motion().connect([this](double x, double y) { lock_.See(x, y); });
   motion->signal_enter().connect([this](double, double) {
     if (!lock_.IsHeld()) lock_.Forget();
   });
@@ -185,10 +188,9 @@ void HandEvents::OnKeyReleased(guint keyval, guint, Gdk::ModifierType state) {
   if (meaning.action == presenter::Action::kHoldLaparoscope) control_->HoldLaparoscope(false);
 }
 
-void HandEvents::OnMotion(double x, double y) {
-  const auto motion = lock_.See(x, y);
-  if (!motion || control_ == nullptr || control_->IsPaused()) return;
-  if (is_taken_ || control_->IsLaparoscopeHeld()) control_->Device().MovePointer(motion->dx, motion->dy);
+void HandEvents::OnMotion(const PointerLock::Motion& motion) {
+  if (control_ == nullptr || control_->IsPaused()) return;
+  if (is_taken_ || control_->IsLaparoscopeHeld()) control_->Device().MovePointer(motion.dx, motion.dy);
 }
 
 bool HandEvents::OnPicturePointer(const Glib::RefPtr<const Gdk::Event>& event) {

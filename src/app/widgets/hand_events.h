@@ -36,7 +36,7 @@ class HandEvents {
   void AskKey(std::function<void(std::uint32_t)> told);
   bool IsPointerTaken() const { return is_taken_; }
   /// Whether a pointer that is taken stays over the picture.
-  bool CanHoldPointer() const { return lock_.CanHold(); }
+  bool CanHoldPointer() { return lock_.CanHold(); }
   /// Keys go to somebody else, who has the whole window: only Ctrl+Q and full screen stay.
   void SetResting(bool is_resting) { is_resting_ = is_resting; }
   /// \param use  what a key means while the hands rest; it returns whether it was used
@@ -54,7 +54,7 @@ class HandEvents {
  private:
   bool OnKeyPressed(guint keyval, guint keycode, Gdk::ModifierType state);
   void OnKeyReleased(guint keyval, guint keycode, Gdk::ModifierType state);
-  void OnMotion(double x, double y);
+  void OnMotion(const PointerLock::Motion& motion);
   bool OnPicturePointer(const Glib::RefPtr<const Gdk::Event>& event);
   void OnButton(guint button, bool is_down);
   void ReleaseAll();

@@ -49,7 +49,14 @@ std::optional<std::pair<int, int>> FindInWindow(Gtk::Widget& picture, double x, 
 
 }  // namespace
 
-bool PointerLock::CanHold() const {
+WaylandPointer* PointerLock::FindWayland() {
+  if (!std::exchange(has_looked_for_wayland_, true))
+    wayland_ = WaylandPointer::Find(picture_, [this](double dx, double dy) { moved_({dx, dy}); });
+  return wayland_.get();
+}
+
+bool PointerLock::CanHold() {
+  if (FindWayland() != nullptr) return true;
 #ifdef GDK_WINDOWING_X11
   return FindXPlace(picture_).has_value();
 #else
@@ -59,6 +66,7 @@ bool PointerLock::CanHold() const {
 
 bool PointerLock::Take() {
   Forget();
+  if (WaylandPointer* wayland = FindWayland()) return is_held_ = wayland->Lock();
 #ifdef GDK_WINDOWING_X11
   const auto place = FindXPlace(picture_);
   if (!place) return false;
@@ -76,6 +84,7 @@ bool PointerLock::Take() {
 void PointerLock::Release() {
   if (!is_held_) return;
   is_held_ = false;
+  if (wayland_) wayland_->Unlock();
 #ifdef GDK_WINDOWING_X11
   if (const auto place = FindXPlace(picture_)) {
     XUngrabPointer(place->display, CurrentTime);
@@ -109,7 +118,14 @@ PointerLock::Motion PointerLock::JumpToMiddle() {
   return unseen;
 }
 
-std::optional<PointerLock::Motion> PointerLock::See(double x, double y) {
+void PointerLock::See(double x, double y) {
+  // a locked pointer stays where it is; its motions come by themselves
+  if (wayland_ && wayland_->IsLocked()) return Forget();
+  if (const auto motion = FindMotion(x, y)) moved_(*motion);
+}
+
+/// \return how it was moved; nothing where that is not known
+std::optional<PointerLock::Motion> PointerLock::FindMotion(double x, double y) {
   const double middle_x = 0.5 * picture_.get_width(), middle_y = 0.5 * picture_.get_height();
   const double off = std::hypot(x - middle_x, y - middle_y);
   const double reach = kReach * std::min(picture_.get_width(), picture_.get_height());
@@ -125,7 +141,7 @@ std::optional<PointerLock::Motion> PointerLock::See(double x, double y) {
   if (has_last_) motion = Motion{x - last_x_, y - last_y_};
   has_last_ = true;
   last_x_ = x, last_y_ = y;
-  if (is_held_ && off > reach) {
+  if (is_held_ && !wayland_ && off > reach) {
     const Motion unseen = JumpToMiddle();
     if (motion) motion = Motion{motion->dx + unseen.dx, motion->dy + unseen.dy};
   }

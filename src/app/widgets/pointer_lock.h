@@ -2,41 +2,54 @@
 /// \file pointer_lock.h  Keeps the hidden pointer over the picture while it moves a hand, so that a hand is never left behind.
 ///
 /// GTK 4 has no such thing, so it is the platform's: under X11 the pointer is grabbed, confined to the window, and set back to the
-/// picture's middle before it comes to an edge. Elsewhere nothing holds it, and CanHold() says so.
+/// picture's middle before it comes to an edge; under Wayland the compositor locks it. Where neither can be had nothing holds it, and
+/// CanHold() says so.
 #pragma once
 
 #include <gtkmm.h>
 
+#include <functional>
+#include <memory>
 #include <optional>
+
+#include "wayland_pointer.h"
 
 namespace trocar::app {
 
 class PointerLock {
  public:
-  explicit PointerLock(Gtk::Widget& picture) : picture_(picture) {}
+  struct Motion {
+    double dx = 0, dy = 0;  ///< [pixels]
+  };
+
+  /// \param moved  gets how the pointer is moved, held or not
+  PointerLock(Gtk::Widget& picture, std::function<void(const Motion&)> moved)
+      : picture_(picture), moved_(std::move(moved)) {}
   ~PointerLock() { Release(); }
   PointerLock(const PointerLock&) = delete;
   PointerLock& operator=(const PointerLock&) = delete;
 
-  /// Whether the picture's display lets a pointer be held: X11 does.
-  bool CanHold() const;
+  /// Whether the picture's display lets a pointer be held: X11 does, and most of Wayland's.
+  bool CanHold();
   /// \return whether it is held now; another program may hold it
   bool Take();
   void Release();
   bool IsHeld() const { return is_held_; }
 
-  struct Motion {
-    double dx = 0, dy = 0;  ///< [pixels]
-  };
-  /// The pointer is seen somewhere in the picture. \return how it was moved; nothing where that is not known
-  std::optional<Motion> See(double x, double y);
+  /// The pointer is seen somewhere in the picture.
+  void See(double x, double y);
   /// It has left, or comes back: the next place is a beginning.
   void Forget() { has_last_ = is_jumping_ = false; }
 
  private:
+  std::optional<Motion> FindMotion(double x, double y);
   Motion JumpToMiddle();
+  WaylandPointer* FindWayland();
 
   Gtk::Widget& picture_;
+  std::function<void(const Motion&)> moved_;
+  std::unique_ptr<WaylandPointer> wayland_;
+  bool has_looked_for_wayland_ = false;
   bool is_held_ = false;
   bool has_last_ = false;
   double last_x_ = 0, last_y_ = 0;  // [pixels]

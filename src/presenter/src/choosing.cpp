@@ -46,7 +46,7 @@ void SimulatorPresenter::CloseRehearsal() {
 void SimulatorPresenter::OperateOn(const std::filesystem::path& patient) {
   ChoosePatient(patient);
   TaskRequest request;
-  request.task = kOperation;
+  request.task = kOperationTask;
   request.choice.patient_folder = patient;
   Open(request);
 }

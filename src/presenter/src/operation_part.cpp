@@ -17,13 +17,13 @@ using assessment::Milestone;
 
 bool IsPart(const assessment::Step& step) {
   const bool is_whole = step.from == Milestone::kStart && step.until == Milestone::kCompleted;
-  return step.operation == kOperation && !is_whole && step.patient.Text().empty();
+  return step.operation == kOperationTask && !is_whole && step.patient.Text().empty();
 }
 
 }  // namespace
 
 core::Result<std::vector<OperationPart>> ListOperationParts() {
-  const auto course = assessment::FindCourse(kOperation);
+  const auto course = assessment::FindCourse(kOperationTask);
   if (!course.ok()) return course.error();
   std::vector<OperationPart> parts;
   for (const assessment::Step& step : course->steps) {
@@ -33,7 +33,7 @@ core::Result<std::vector<OperationPart>> ListOperationParts() {
 }
 
 core::Result<centre::Start> PreparePart(const Options& options, const PartProgress& progress) {
-  const auto course = assessment::FindCourse(kOperation);
+  const auto course = assessment::FindCourse(kOperationTask);
   if (!course.ok()) return course.error();
   auto step = assessment::FindStep(*course, options.operation.part);
   if (!step.ok()) return step.error();

@@ -52,9 +52,9 @@ core::Result<LoadedScene> MakeChosenScene(const Options& options, const PartProg
     if (!made) return made.error();
     return LoadedScene{std::move(*made), std::nullopt};
   }
-  if (options.task != kOperation) {
+  if (options.task != kOperationTask) {
     return core::Error{core::ErrorCode::kUnknownName,
-                       "\"" + options.task + "\" has no parts; " + kOperation + " has"};
+                       "\"" + options.task + "\" has no parts; " + kOperationTask + " has"};
   }
   auto start = PreparePart(options, progress);
   if (!start) return start.error();

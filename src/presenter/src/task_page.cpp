@@ -83,7 +83,7 @@ core::Status AddOperation(const fs::path& data, const fs::path& patient, TaskPag
     row.name = name, row.about = about;
     for (const scene::OperationLevel& level : *levels)
       row.levels.push_back({level.key, core::Translate(level.about), ""});
-    row.request.task = kOperation;
+    row.request.task = kOperationTask;
     row.request.part = part;
     row.request.choice.patient_folder = patient;
     for (const auto& [key, picture] : kOperationPictures) {
@@ -137,7 +137,7 @@ void AddBestResults(const centre::BestResults& results, TaskPage& page) {
     for (TaskPage::Row& row : group.rows) {
       if (!row.request.part.empty() || row.request.task.empty()) continue;
       for (TaskPage::Level& level : row.levels) {
-        const bool is_operation = row.request.task == kOperation;
+        const bool is_operation = row.request.task == kOperationTask;
         level.best =
             centre::DescribeBest(results, row.request.task, is_operation ? KeepLevel(level.key) : level.key);
       }

@@ -42,7 +42,7 @@ TEST(OperationParts, AreTheStepsOfTheCourse) {
 
 TEST(OperationParts, TheFirstBeginsAtOnceAtItsLevel) {
   Options options;
-  options.task = kOperation;
+  options.task = kOperationTask;
   options.operation.part = "critical-view";
   options.level = "hard";
   const auto start = PreparePart(options, {});
@@ -56,7 +56,7 @@ TEST(OperationParts, TheFirstBeginsAtOnceAtItsLevel) {
 
 TEST(OperationParts, APatientThatIsNotThereAndAnUnknownPartAreSaid) {
   Options options;
-  options.task = kOperation;
+  options.task = kOperationTask;
   options.operation.part = "appendix";
   EXPECT_EQ(PreparePart(options, {}).error().code, core::ErrorCode::kUnknownName);
   options.operation.part = "bed";
@@ -71,7 +71,7 @@ TEST(OperationParts, APatientThatIsNotThereAndAnUnknownPartAreSaid) {
 // The expert operates for minutes; whoever does not want to wait is not kept.
 TEST(OperationParts, ThePreparationCanBeGivenUp) {
   Options options;
-  options.task = kOperation;
+  options.task = kOperationTask;
   options.operation.part = "clip-and-cut";
   options.threads = 1;
   ::setenv("TROCAR_CACHE_HOME", "/nowhere", 1);

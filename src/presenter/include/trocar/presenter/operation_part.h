@@ -15,7 +15,7 @@
 namespace trocar::presenter {
 
 /// The operation that is delivered.
-inline constexpr const char* kOperation = "cholecystectomy";
+inline constexpr const char* kOperationTask = "cholecystectomy";
 
 /// A part is a step of the delivered course of that operation, on any patient and at any level.
 struct OperationPart {

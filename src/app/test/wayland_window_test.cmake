@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+# Under Wayland the compositor holds the pointer: pushed far beyond the display's edge and as far back, the hand is where it was. Where
+# it does not (the control, whose compositor grants no lock), the hand stops at the edge and ends elsewhere.
+file(REMOVE_RECURSE ${FOLDER})
+file(WRITE ${FOLDER}/run.sh [[
+set -u
+check=$1 folder=$2 sway=$3 constraint=$4
+shift 4
+export XDG_RUNTIME_DIR=$(mktemp -d) WLR_BACKENDS=headless WLR_RENDERER=pixman WLR_LIBINPUT_NO_DEVICES=1 LIBGL_ALWAYS_SOFTWARE=1
+export SWAYSOCK=$XDG_RUNTIME_DIR/sway WAYLAND_DISPLAY=wayland-1 GDK_BACKEND=wayland
+unset DISPLAY
+cat >"$XDG_RUNTIME_DIR/config" <<CONFIG
+output HEADLESS-1 resolution 1280x800
+default_border none
+xwayland disable
+seat seat0 pointer_constraint $constraint
+for_window [app_id=".*"] fullscreen enable
+CONFIG
+# it does not run as root
+if [ "$(id -u)" = 0 ]; then
+  chown -R nobody "$XDG_RUNTIME_DIR"
+  env --unset=WAYLAND_DISPLAY setpriv --reuid=nobody --regid=nogroup --clear-groups "$sway" -c "$XDG_RUNTIME_DIR/config" >"$folder/sway.txt" 2>&1 &
+else
+  env --unset=WAYLAND_DISPLAY "$sway" -c "$XDG_RUNTIME_DIR/config" >"$folder/sway.txt" 2>&1 &
+fi
+compositor=$!
+wait_for() { for _ in $(seq 300); do if "$@"; then return 0; fi; sleep 0.2; done; echo "no: $*" >&2; return 1; }
+is_open() { ls "$folder"/recordings/*.trocar >/dev/null 2>&1; }
+status=1
+if wait_for test -S "$XDG_RUNTIME_DIR/wayland-1"; then
+  "$@" >"$folder/output.txt" 2>&1 &
+  window=$!
+  if wait_for is_open; then
+    sleep 8
+    "$check" use
+    status=$?
+  fi
+  # the second time it does not ask
+  for _ in 1 2; do swaymsg '[app_id=".*"]' kill >/dev/null; sleep 2; done
+  if kill -0 $window 2>/dev/null; then kill $window; fi
+  wait $window
+fi
+kill $compositor 2>/dev/null
+wait $compositor 2>/dev/null
+rm -rf "$XDG_RUNTIME_DIR"
+exit $status
+]])
+set(ENV{GTK_A11Y} none)
+
+# use_hand(CONSTRAINT OUTPUT...): what the hand did, at most and at the end [mrad]
+function(use_hand constraint most last)
+  file(REMOVE_RECURSE ${FOLDER}/recordings)
+  file(MAKE_DIRECTORY ${FOLDER}/recordings)
+  execute_process(
+    COMMAND ${DBUS} -- sh ${FOLDER}/run.sh ${CHECK} ${FOLDER} ${SWAY} ${constraint} ${WINDOW} --task peg_transfer
+      --settings ${FOLDER}/window.json --recordings ${FOLDER}/recordings --store ${FOLDER}/store.sqlite --threads 1
+    RESULT_VARIABLE status ERROR_VARIABLE errors TIMEOUT 200)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "the window under Wayland: ${errors}")
+  endif()
+  file(GLOB recordings ${FOLDER}/recordings/*.trocar)
+  execute_process(COMMAND ${CHECK} judge ${recordings} OUTPUT_VARIABLE found ERROR_VARIABLE errors RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "the recording: ${errors}")
+  endif()
+  list(GET found 0 far)
+  list(GET found 1 end)
+  message(STATUS "constraint ${constraint}: ${far} mrad at most, ${end} mrad at the end")
+  set(${most} ${far} PARENT_SCOPE)
+  set(${last} ${end} PARENT_SCOPE)
+endfunction()
+
+use_hand(enable held_most held_last)
+use_hand(disable free_most free_last)
+# the way of a tip in the picture is no even turn of its shaft: a tenth is left
+math(EXPR held_tenths "10 * ${held_last}")
+if(held_most LESS 100 OR held_tenths GREATER held_most)
+  message(FATAL_ERROR "held, the hand should go far and come back")
+endif()
+math(EXPR free_twice "2 * ${free_last}")
+if(free_last LESS 100 OR free_twice LESS free_most)
+  message(FATAL_ERROR "the control: without a lock the way back should be longer than the way there")
+endif()
