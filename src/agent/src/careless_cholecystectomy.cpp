@@ -16,7 +16,7 @@ constexpr double kFromTips = 0.0018;  // of a vessel's axis, so that the clip re
 constexpr double kAnother = 0.05;     // of a vessel's length, to another place for a clip
 constexpr double kBesideHold = 0.015, kBesideWeight = 4.0;  // of a place in the wall from the hold [m], [-]
 constexpr double kSpillSeconds = 8.0;                       // in which stones leave through a hole
-constexpr double kRinseFrom = 0.022;   // before what bleeds [m]
+constexpr double kRinseFrom = 0.022;                        // before what bleeds [m]
 constexpr double kBetweenLegs = 0.003;  // of a clip applier's middle line, where a vessel is to be [m]
 
 }  // namespace
