@@ -157,8 +157,8 @@ class CholecystectomySurgeon final : public Surgeon {
   void CheckPlacedClip(const SurgeonAct& act, const Snapshot& seen);
   void FreeLowerThird(int rounds);
   void ShowCriticalView(int rounds);
-  void LookFromSide(int side, int tries);
-  std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side);
+  void LookFromSide(int side, int tries, bool is_last_hold = false);
+  std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side, double aside);
   std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
   void Divide(std::vector<std::size_t> tubes, int rounds = 3);
   void PlanDivision(const SurgeonAct& act, const Snapshot& seen);
