@@ -2,6 +2,7 @@
 #include "surround_patient.h"
 
 #include <cmath>
+#include <utility>
 
 #include "neighbour_template.h"
 #include "port_placement.h"

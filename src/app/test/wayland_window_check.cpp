@@ -2,6 +2,7 @@
 /// \file wayland_window_check.cpp  Takes the pointer near the picture's right edge under Wayland, pushes the mouse far to the right and
 /// as far back, and says from the recording what the hand did.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 

@@ -31,10 +31,11 @@ class PointerLock {
 
   /// Whether the picture's display lets a pointer be held: X11 does, and most of Wayland's.
   bool CanHold();
-  /// \return whether it is held now; another program may hold it
+  /// \return whether it is held, or asked for (Wayland); another program may hold it
   bool Take();
   void Release();
-  bool IsHeld() const { return is_held_; }
+  /// Under Wayland once the compositor has granted it; one that never does leaves the pointer free.
+  bool IsHeld() const { return is_held_ && (!wayland_ || wayland_->IsLocked()); }
 
   /// The pointer is seen somewhere in the picture.
   void See(double x, double y);

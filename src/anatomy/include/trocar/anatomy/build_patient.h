@@ -30,9 +30,8 @@ struct BuildOptions {
   /// How far the edges of skipped slices may move the contours interpolated there [pixels], 0 to 30; what the
   /// file says if not given.
   std::optional<double> skipped_shift_px;
-  bool has_surroundings =
-      true;              ///< neighbours from the template, ports and table; else organs and tubes alone
-  std::stop_token stop;  ///< gives up before anything is written: kCancelled
+  bool has_surroundings = true;  ///< template neighbours, ports and table; else organs and tubes alone
+  std::stop_token stop;          ///< gives up before anything is written: kCancelled
 };
 
 /// One neighbour in the table of results.
