@@ -180,4 +180,23 @@ std::vector<Breach> FindBreaches(const Restriction& restriction, const fs::path&
   return breaches;
 }
 
+std::vector<Breach> FindCalls(const std::string& function, const fs::path& folder) {
+  std::vector<Breach> breaches;
+  for (const fs::path& file : FindSources(folder)) {
+    const std::string name = fs::relative(file, folder).generic_string();
+    const core::Result<std::string> text = core::ReadFile(file);
+    if (!text) {
+      breaches.push_back({name, 0, text.error().Text()});
+      continue;
+    }
+    std::istringstream lines(*text);
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      if (line.find(function + "()") != std::string::npos)
+        breaches.push_back({name, number, "calls " + function});
+    }
+  }
+  return breaches;
+}
+
 }  // namespace trocar::layers

@@ -52,4 +52,7 @@ std::vector<Breach> FindBreachesOfModule(const Layers& layers, const std::filesy
 /// restriction names, or a file of the folder itself. A folder without files is a breach, too.
 std::vector<Breach> FindBreaches(const Restriction& restriction, const std::filesystem::path& source);
 
+/// Calls of a function without arguments in every .h and .cpp below `folder`.
+std::vector<Breach> FindCalls(const std::string& function, const std::filesystem::path& folder);
+
 }  // namespace trocar::layers

@@ -82,6 +82,16 @@ TEST(Layers, ReachEverythingUpTheList) {
   EXPECT_FALSE(layers.at("core").contains("math"));
 }
 
+// GoogleTest's folder is one for all processes, and ctest runs many at a time.
+TEST(Layers, NoTestWritesIntoASharedFolder) {
+  for (const char* folder : {"src", "tests", "bench"}) {
+    for (const Breach& breach : FindCalls("TempDir", kRoot / folder)) {
+      ADD_FAILURE() << folder << "/" << breach.file << ":" << breach.line << ": " << breach.what
+                    << "; use test::TemporaryFolder of trocar_test/temporary_folder.h";
+    }
+  }
+}
+
 // Negative control: the check finds what is planted.
 class Planted : public testing::Test {
  protected:
@@ -111,6 +121,16 @@ TEST_F(Planted, BenchmarksAreLookedAtToo) {
 
 TEST_F(Planted, SidewaysIncludeIsFoundHoweverItIsWritten) {
   EXPECT_THAT(Find("tissue/test/a_test.cpp", "  #  include <trocar/collision/queries.h>\n"), SizeIs(1));
+}
+
+TEST_F(Planted, SharedFolderIsFound) {
+  const std::string call = "TempDir";
+  ASSERT_TRUE(core::WriteFile(Folder() / "tissue/test/a_test.cpp",
+                              "test::TemporaryFolder folder;\nfs::path b = testing::" + call + "();\n")
+                  .ok());
+  const auto breaches = FindCalls(call, Folder());
+  ASSERT_THAT(breaches, SizeIs(1));
+  EXPECT_EQ(breaches[0].line, 2);
 }
 
 class PlantedInRestricted : public Planted {

@@ -13,6 +13,7 @@
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/simulation.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::agent {
 
@@ -58,14 +59,13 @@ class OtherNames : public testing::Test {
     ASSERT_TRUE(usual_ && renamed_);
   }
   static std::shared_ptr<const Scene> ReadBack(const anatomy::Patient& patient) {
-    const fs::path folder = fs::path(testing::TempDir()) / "patient_of_other_names";
-    fs::remove_all(folder);
+    const test::TemporaryFolder temporary;
+    const fs::path folder = temporary.Path() / "patient";
     const auto wrote = anatomy::WritePatient(folder, patient);
     EXPECT_TRUE(wrote.ok()) << wrote.error().Text();
     // a renamed patient has no landmark "fundus": the scene's is found by its role
     auto scene = ReadScene(kScene, folder);
     EXPECT_TRUE(scene.ok()) << scene.error().Text();
-    fs::remove_all(folder);
     return scene.ok() ? std::make_shared<const Scene>(std::move(*scene)) : nullptr;
   }
 
@@ -130,11 +130,10 @@ TEST_F(OtherNames, WithoutRolesTheyAreStrangers) {
   for (anatomy::Organ& organ : patient.organs) organ.role = roles::OrganRole::kOther;
   for (anatomy::Tube& tube : patient.tubes) tube.role = roles::TubeRole::kOther;
   for (anatomy::Landmark& landmark : patient.landmarks) landmark.role = roles::LandmarkRole::kOther;
-  const fs::path folder = fs::path(testing::TempDir()) / "patient_of_strangers";
-  fs::remove_all(folder);
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.Path() / "patient";
   ASSERT_TRUE(anatomy::WritePatient(folder, patient).ok());
   const auto scene = ReadScene(kScene, folder);
-  fs::remove_all(folder);
   ASSERT_FALSE(scene.ok());
   EXPECT_NE(scene.error().message.find("fundus"), std::string::npos) << scene.error().Text();
 }

@@ -11,6 +11,7 @@
 #include "trocar/anatomy/phantom.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -21,9 +22,6 @@ using core::ErrorCode;
 class BuildFromVolume : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("volume_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
     const auto patient = GeneratePatient(3);
     ASSERT_TRUE(patient.ok()) << patient.error().Text();
     PhantomOptions coarse;
@@ -37,7 +35,6 @@ class BuildFromVolume : public testing::Test {
     volume_.control_points = folder_ / "volume_points.json";
     volume_.images = folder_ / "volume.nrrd";
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   /// The slices in one colour NRRD, whose numbers begin with 0; and control points without a pattern.
   void WriteVolume() const {
@@ -71,7 +68,8 @@ class BuildFromVolume : public testing::Test {
     ASSERT_TRUE(contours::WriteControlPoints(folder_ / "volume_points.json", *points).ok());
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.Path() / "phantom";
   BuildOptions stack_, volume_;
 };
 

@@ -13,6 +13,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/meshing/nearest_surface.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -108,28 +109,22 @@ class VisibleHuman : public testing::Test {
   void SetUp() override {
     if (!fs::exists(kData / "slices"))
       GTEST_SKIP() << (kData / "slices").string() << " is not there; the photographs are needed";
-    base_ = fs::path(testing::TempDir()) /
-            ("visible_human_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(base_);
-    fs::create_directories(base_);
-  }
-  void TearDown() override {
-    if (!base_.empty()) fs::remove_all(base_);
   }
   std::size_t EntriesInBase() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(base_), fs::directory_iterator()));
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(base_.Path()), fs::directory_iterator()));
   }
 
-  fs::path base_;
+  test::TemporaryFolder base_;
 };
 
 TEST_F(VisibleHuman, BuildsFromPhotographsWithinTheReferenceBounds) {
   BuildOptions options;
   options.control_points = kAssets / "control_points.json";
   options.images = kData / "slices";
-  options.output = base_ / "patient";
+  options.output = base_.Path() / "patient";
   options.reference = kData / "reference/labels.nii.gz";
-  options.overlays = base_ / "overlays";
+  options.overlays = base_.Path() / "overlays";
   const auto report = BuildPatient(options);
   ASSERT_TRUE(report.ok()) << report.error().Text();
   SCOPED_TRACE(FormatReport(*report));
@@ -142,11 +137,11 @@ TEST_F(VisibleHuman, BuildsFromPhotographsWithinTheReferenceBounds) {
   EXPECT_GE(gallbladder.judgement->dice, 0.70);
   EXPECT_LE(gallbladder.largest_shift_px, 2.5 + 1e-9);
   EXPECT_GT(report->overlays, 30u);
-  EXPECT_TRUE(fs::exists(base_ / "overlays/overlay-0546.png"));
+  EXPECT_TRUE(fs::exists(base_.Path() / "overlays/overlay-0546.png"));
   ExpectUsablePatient(report->patient);
 
   // what was written reads back, and is the patient in the repository
-  const auto written = ReadPatient(base_ / "patient");
+  const auto written = ReadPatient(base_.Path() / "patient");
   ASSERT_TRUE(written.ok()) << written.error().Text();
   const auto builtin = ReadPatient(kAssets / "patient");
   ASSERT_TRUE(builtin.ok()) << builtin.error().Text();
@@ -172,21 +167,21 @@ TEST_F(VisibleHuman, SlicesOfTheStructuresAreCloseEnough) {
 TEST_F(VisibleHuman, BadInputWritesNothing) {
   BuildOptions options;
   options.control_points = kAssets / "control_points.json";
-  options.output = base_ / "patient";
-  options.overlays = base_ / "overlays";
-  options.images = base_ / "nowhere";
+  options.output = base_.Path() / "patient";
+  options.overlays = base_.Path() / "overlays";
+  options.images = base_.Path() / "nowhere";
   EXPECT_EQ(BuildPatient(options).error().code, ErrorCode::kImageFolderMissing);
   options.images = kData / "reference";
   EXPECT_EQ(BuildPatient(options).error().code, ErrorCode::kImageSliceMissing);
   options.images = kData / "slices";
-  options.control_points = base_ / "none.json";
+  options.control_points = base_.Path() / "none.json";
   EXPECT_EQ(BuildPatient(options).error().code, ErrorCode::kFileMissing);
   EXPECT_EQ(EntriesInBase(), 0u);
 
   std::string text = *core::ReadFile(kAssets / "control_points.json");
   text.replace(text.find("\"width\": 1280"), 13, "\"width\": 1279");
-  ASSERT_TRUE(core::WriteFile(base_ / "points.json", text).ok());
-  options.control_points = base_ / "points.json";
+  ASSERT_TRUE(core::WriteFile(base_.Path() / "points.json", text).ok());
+  options.control_points = base_.Path() / "points.json";
   EXPECT_EQ(BuildPatient(options).error().code, ErrorCode::kImageSizeDiffers);
   EXPECT_EQ(EntriesInBase(), 1u);
 }

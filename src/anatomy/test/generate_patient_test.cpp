@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -15,6 +14,7 @@
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/meshing/nearest_surface.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -219,9 +219,8 @@ TEST(GeneratePatient, PathologiesChangeTheOrgans) {
 }
 
 TEST(GeneratePatient, ComesBackFromItsFolder) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(testing::TempDir()) / "generated_patient";
-  fs::remove_all(folder);
+  const test::TemporaryFolder temporary;
+  const auto folder = temporary.Path() / "patient";
   const auto patient = GeneratePatient(9);
   ASSERT_TRUE(patient.ok());
   ASSERT_TRUE(WritePatient(folder, *patient).ok());
@@ -229,7 +228,6 @@ TEST(GeneratePatient, ComesBackFromItsFolder) {
   ASSERT_TRUE(read.ok()) << read.error().Text();
   EXPECT_EQ(read->parameters, patient->parameters);
   EXPECT_GE(read->parameters.size(), ParameterRules().size() + 9);
-  fs::remove_all(folder);
 }
 
 TEST(GeneratePatient, TheGallbladderLiesAsInclinedAsItIsSet) {

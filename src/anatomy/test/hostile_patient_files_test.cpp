@@ -10,6 +10,7 @@
 #include "trocar/anatomy/patient.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -19,19 +20,12 @@ using core::ErrorCode;
 
 class HostileFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("hostile_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   ErrorCode PointsCode(const std::string& text) const {
-    EXPECT_TRUE(core::WriteFile(folder_ / "points.json", text).ok());
-    const auto points = contours::ReadControlPoints(folder_ / "points.json");
+    EXPECT_TRUE(core::WriteFile(folder_.Path() / "points.json", text).ok());
+    const auto points = contours::ReadControlPoints(folder_.Path() / "points.json");
     return points.ok() ? ErrorCode::kNone : points.error().code;
   }
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(HostileFiles, ControlPoints) {
@@ -44,17 +38,18 @@ TEST_F(HostileFiles, ControlPoints) {
   EXPECT_EQ(PointsCode(std::string("\0\0\0", 3)), ErrorCode::kJsonSyntax);
   EXPECT_EQ(PointsCode(""), ErrorCode::kJsonSyntax);
   EXPECT_EQ(PointsCode("{\"format\": \"trocar-control-points\", \"version\": 1e308}"), ErrorCode::kJsonField);
-  ASSERT_EQ(::mkfifo((folder_ / "pipe.json").c_str(), 0600), 0);
-  EXPECT_EQ(contours::ReadControlPoints(folder_ / "pipe.json").error().code, ErrorCode::kFileUnreadable);
-  EXPECT_EQ(contours::ReadControlPoints(folder_).error().code, ErrorCode::kFileUnreadable);
+  ASSERT_EQ(::mkfifo((folder_.Path() / "pipe.json").c_str(), 0600), 0);
+  EXPECT_EQ(contours::ReadControlPoints(folder_.Path() / "pipe.json").error().code,
+            ErrorCode::kFileUnreadable);
+  EXPECT_EQ(contours::ReadControlPoints(folder_.Path()).error().code, ErrorCode::kFileUnreadable);
   EXPECT_EQ(contours::ReadControlPoints("/dev/zero").error().code, ErrorCode::kFileUnreadable);
-  EXPECT_EQ(contours::ReadControlPoints(folder_ / "none.json").error().code, ErrorCode::kFileMissing);
+  EXPECT_EQ(contours::ReadControlPoints(folder_.Path() / "none.json").error().code, ErrorCode::kFileMissing);
 }
 
 TEST_F(HostileFiles, PatientFolders) {
   const auto patient = GeneratePatient(1);
   ASSERT_TRUE(patient.ok());
-  const fs::path whole = folder_ / "whole";
+  const fs::path whole = folder_.Path() / "whole";
   ASSERT_TRUE(WritePatient(whole, *patient).ok());
   fs::path mesh;
   for (const auto& entry : fs::directory_iterator(whole)) {

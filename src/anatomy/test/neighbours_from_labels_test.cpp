@@ -19,6 +19,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/meshing/nearest_surface.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -155,14 +156,6 @@ class TrunkMap {
 
 class NeighboursFromLabels : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("neighbours_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   BuildReport Build(const TrunkMap& body, const std::string& names = "") {
     LabelOptions options;
     options.labels = folder_ / "map.nii";
@@ -188,7 +181,8 @@ class NeighboursFromLabels : public testing::Test {
     return deepest;
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.Path();
 };
 
 TEST_F(NeighboursFromLabels, HaveTheVolumeOfTheirVoxelsAndNoSlivers) {
@@ -495,13 +489,12 @@ TEST_F(NeighboursFromLabels, OfTheVisibleHumanHaveTheirVolume) {
 TEST(PatientSurroundings, AreLeftOutOfAFileThatHasNone) {
   const Patient patient =
       *ReadPatient(fs::path(TROCAR_SOURCE_DIR) / "assets/patients/visible-human-male/patient");
-  const fs::path folder = fs::path(testing::TempDir()) / "without_surroundings";
-  fs::remove_all(folder);
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.Path() / "patient";
   ASSERT_TRUE(WritePatient(folder, patient).ok());
   const auto text = core::ReadFile(folder / "patient.json");
   for (const char* key : {"\"neighbours\"", "\"ports\"", "\"table\""})
     EXPECT_EQ(text->find(key), std::string::npos) << key;
-  fs::remove_all(folder);
 }
 
 TEST(PatientSurroundings, ThatAreInconsistentAreRefused) {

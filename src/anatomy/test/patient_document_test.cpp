@@ -7,6 +7,7 @@
 
 #include "trocar/anatomy/patient_edit.h"
 #include "trocar/math/random.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -175,24 +176,17 @@ TEST(PatientDocument, NewEditForgetsWhatWasUndoneAndTheOldestSteps) {
 
 class PatientDocumentFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    base_ = fs::path(testing::TempDir()) /
-            ("document_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(base_);
-    fs::create_directories(base_);
-    fs::copy(kBuiltIn, base_ / "patient", fs::copy_options::recursive);
-  }
-  void TearDown() override { fs::remove_all(base_); }
+  void SetUp() override { fs::copy(kBuiltIn, base_.Path() / "patient", fs::copy_options::recursive); }
   PatientDocument Open(bool is_recovered = false) {
-    auto document = PatientDocument::Open(base_ / "patient", is_recovered);
+    auto document = PatientDocument::Open(base_.Path() / "patient", is_recovered);
     EXPECT_TRUE(document.ok()) << document.error().Text();
     return std::move(document).value();
   }
-  fs::path base_;
+  test::TemporaryFolder base_;
 };
 
 TEST_F(PatientDocumentFolder, AutosaveIsFoundRecoveredAndRemovedBySaving) {
-  const fs::path folder = base_ / "patient";
+  const fs::path folder = base_.Path() / "patient";
   Content edited = [&] {
     PatientDocument document = Open();
     EXPECT_FALSE(PatientDocument::HasAutosave(folder));
@@ -221,8 +215,8 @@ TEST_F(PatientDocumentFolder, SavingElsewhereLeavesTheFirstPatient) {
   PatientDocument document = Open();
   ASSERT_TRUE(document.Edit("fundus", MoveFundus).ok());
   const Content original(Open());
-  ASSERT_TRUE(document.Save(base_ / "other").ok());
-  EXPECT_EQ(document.Folder(), base_ / "other");
+  ASSERT_TRUE(document.Save(base_.Path() / "other").ok());
+  EXPECT_EQ(document.Folder(), base_.Path() / "other");
   EXPECT_EQ(Content(Open()), original);
   // undo after saving makes it dirty again
   document.Undo();
@@ -234,16 +228,16 @@ TEST_F(PatientDocumentFolder, SavingElsewhereLeavesTheFirstPatient) {
 TEST_F(PatientDocumentFolder, FailedSaveStaysDirty) {
   PatientDocument document = Open();
   ASSERT_TRUE(document.Edit("fundus", MoveFundus).ok());
-  fs::create_directories(base_ / "mine");
+  fs::create_directories(base_.Path() / "mine");
   {
-    std::FILE* file = std::fopen((base_ / "mine/notes.txt").c_str(), "w");
+    std::FILE* file = std::fopen((base_.Path() / "mine/notes.txt").c_str(), "w");
     std::fclose(file);
   }
-  const auto status = document.Save(base_ / "mine");  // somebody's folder
+  const auto status = document.Save(base_.Path() / "mine");  // somebody's folder
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, core::ErrorCode::kFileUnwritable);
   EXPECT_TRUE(document.IsDirty());
-  EXPECT_EQ(document.Folder(), base_ / "patient");
+  EXPECT_EQ(document.Folder(), base_.Path() / "patient");
 }
 
 TEST(PatientDocument, MissingFolderIsAnError) {

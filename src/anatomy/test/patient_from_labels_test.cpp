@@ -13,6 +13,7 @@
 
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -106,32 +107,24 @@ std::string FormatNrrd(const std::vector<std::uint8_t>& labels, int liver, int g
 
 class FromLabels : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("labels_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path Write(const char* name, const std::string& content) {
-    EXPECT_TRUE(core::WriteFile(folder_ / name, content).ok());
-    return folder_ / name;
+    EXPECT_TRUE(core::WriteFile(folder_.Path() / name, content).ok());
+    return folder_.Path() / name;
   }
   core::Result<BuildReport> Build(const fs::path& labels, int liver = 0, int gallbladder = 0) {
     LabelOptions options;
-    options.labels = labels, options.output = folder_ / "patient";
+    options.labels = labels, options.output = folder_.Path() / "patient";
     options.liver = liver, options.gallbladder = gallbladder;
     options.spacing_mm = 2.0;
     return BuildPatientFromLabels(options);
   }
   core::Error Failure(const fs::path& labels, int liver = 0, int gallbladder = 0) {
     const auto report = Build(labels, liver, gallbladder);
-    EXPECT_FALSE(fs::exists(folder_ / "patient"));
+    EXPECT_FALSE(fs::exists(folder_.Path() / "patient"));
     return report.ok() ? core::Error{} : report.error();
   }
 
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 void ExpectThatBody(const BuildReport& report) {
@@ -178,7 +171,7 @@ TEST_F(FromLabels, BuildsAPatientFromNifti) {
   ASSERT_TRUE(report.ok()) << report.error().Text();
   ExpectThatBody(*report);
   EXPECT_THAT(report->patient.provenance, HasSubstr("TotalSegmentator"));
-  EXPECT_TRUE(ReadPatient(folder_ / "patient").ok());
+  EXPECT_TRUE(ReadPatient(folder_.Path() / "patient").ok());
 }
 
 /// The same file with wider samples, whose labels are these.
@@ -199,7 +192,7 @@ TEST_F(FromLabels, TakesLabelsOfEveryWidth) {
   const auto narrow = Build(Write("narrow.nii", plain));
   ASSERT_TRUE(narrow.ok());
   const auto expect_same = [&](const std::string& content, int liver, int gallbladder) {
-    fs::remove_all(folder_ / "patient");
+    fs::remove_all(folder_.Path() / "patient");
     const auto wide = Build(Write("wide.nii", content), liver, gallbladder);
     ASSERT_TRUE(wide.ok()) << wide.error().Text();
     for (std::size_t i = 0; i < 2; ++i)
@@ -212,7 +205,7 @@ TEST_F(FromLabels, TakesLabelsOfEveryWidth) {
   expect_same(WithLabelTable(Widened<std::uint16_t>(plain, 512, 65535, 300),
                              {{65535, "liver"}, {300, "gallbladder"}, {7, "spleen"}}),
               0, 0);
-  fs::remove_all(folder_ / "patient");
+  fs::remove_all(folder_.Path() / "patient");
   const core::Error error = Failure(Write("odd.nii", Widened<std::uint16_t>(plain, 512, 65535, 40000)));
   EXPECT_EQ(error.code, ErrorCode::kLabelsMismatch);
   EXPECT_THAT(error.message, HasSubstr("it has 40000, 65535"));
@@ -288,7 +281,7 @@ TEST_F(FromLabels, ObeysATableOfNames) {
   const auto report = BuildPatientFromLabels(options);
   ASSERT_TRUE(report.ok()) << report.error().Text();
   ExpectThatBody(*report);
-  options.names = folder_ / "none.txt";
+  options.names = folder_.Path() / "none.txt";
   EXPECT_EQ(BuildPatientFromLabels(options).error().code, ErrorCode::kFileMissing);
 }
 
@@ -364,17 +357,17 @@ TEST_F(FromLabels, SaysWhatItLeavesOut) {
       for (int i = 40; i < 68; ++i) labels[(static_cast<std::size_t>(k) * kY + j) * kX + i] = 1;
     }
   }
-  fs::remove_all(folder_ / "patient");
+  fs::remove_all(folder_.Path() / "patient");
   EXPECT_THAT(Failure(Write("two.nii", FormatNifti(labels))).message, HasSubstr("--largest-part"));
   LabelOptions options;
-  options.labels = folder_ / "two.nii", options.spacing_mm = 2.0, options.takes_largest_part = true;
+  options.labels = folder_.Path() / "two.nii", options.spacing_mm = 2.0, options.takes_largest_part = true;
   const auto largest = BuildPatientFromLabels(options);
   ASSERT_TRUE(largest.ok()) << largest.error().Text();
   EXPECT_NEAR(largest->organs[0].volume_ml, whole->organs[0].volume_ml, 0.5);
 }
 
 TEST_F(FromLabels, JoinsAFolderOfMasks) {
-  const fs::path masks = folder_ / "segmentations";
+  const fs::path masks = folder_.Path() / "segmentations";
   fs::create_directories(masks);
   auto liver = MakeLabels(1, 0), gallbladder = MakeLabels(0, 1);
   Write("segmentations/liver.nii", FormatNifti(liver));
@@ -405,7 +398,7 @@ TEST_F(FromLabels, NamesTheLabelThatIsMissing) {
 }
 
 TEST_F(FromLabels, RefusesDamagedFiles) {
-  EXPECT_EQ(Failure(folder_ / "nowhere.nii").code, ErrorCode::kFileMissing);
+  EXPECT_EQ(Failure(folder_.Path() / "nowhere.nii").code, ErrorCode::kFileMissing);
   EXPECT_EQ(Failure(Write("text.nii", "not an image")).code, ErrorCode::kImageUndecodable);
   const std::string whole = FormatNifti(MakeLabels(5, 4));
   for (const std::size_t length : {100u, 348u, 352u, 5000u, 100'000u}) {

@@ -10,6 +10,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_file.h"
 #include "trocar/geometry/primitives.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -41,17 +42,9 @@ Patient MakePatient() {
 
 class PatientFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    base_ = fs::path(testing::TempDir()) /
-            ("patient_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(base_);
-    fs::create_directories(base_);
-    folder_ = base_ / "patient";
-  }
-  void TearDown() override { fs::remove_all(base_); }
-
   std::size_t EntriesInBase() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(base_), fs::directory_iterator()));
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(base_.Path()), fs::directory_iterator()));
   }
   void Rewrite(const std::string& from, const std::string& to) {
     std::string text = *core::ReadFile(folder_ / "patient.json");
@@ -60,7 +53,8 @@ class PatientFolder : public testing::Test {
     ASSERT_TRUE(core::WriteFile(folder_ / "patient.json", text.replace(at, from.size(), to)).ok());
   }
 
-  fs::path base_, folder_;
+  test::TemporaryFolder base_;
+  const fs::path folder_ = base_.Path() / "patient";
 };
 
 TEST_F(PatientFolder, StatesTheRolesThatNamesDoNotSay) {
@@ -165,12 +159,12 @@ TEST_F(PatientFolder, ReplacesAPatientButNoOtherFolder) {
   second.name = "Second";
   ASSERT_TRUE(WritePatient(folder_, second).ok());
   EXPECT_EQ(ReadPatient(folder_)->name, "Second");
-  fs::create_directories(base_ / "photos");
-  ASSERT_TRUE(core::WriteFile(base_ / "photos" / "holiday.txt", "keep").ok());
-  const auto status = WritePatient(base_ / "photos", second);
+  fs::create_directories(base_.Path() / "photos");
+  ASSERT_TRUE(core::WriteFile(base_.Path() / "photos" / "holiday.txt", "keep").ok());
+  const auto status = WritePatient(base_.Path() / "photos", second);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kFileUnwritable);
-  EXPECT_TRUE(fs::exists(base_ / "photos" / "holiday.txt"));
+  EXPECT_TRUE(fs::exists(base_.Path() / "photos" / "holiday.txt"));
   EXPECT_EQ(EntriesInBase(), 2u);
 }
 
@@ -213,7 +207,7 @@ TEST_F(PatientFolder, RefusesEveryTruncation) {
   ASSERT_TRUE(ReadPatient(folder_).ok());
   fs::remove(folder_ / "liver.ply");
   EXPECT_EQ(ReadPatient(folder_).error().code, ErrorCode::kFileMissing);
-  EXPECT_EQ(ReadPatient(base_ / "nowhere").error().code, ErrorCode::kFileMissing);
+  EXPECT_EQ(ReadPatient(base_.Path() / "nowhere").error().code, ErrorCode::kFileMissing);
 }
 
 TEST(CheckPatient, FindsEachFault) {

@@ -13,6 +13,7 @@
 #include "trocar/anatomy/build_patient.h"
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -190,13 +191,8 @@ TEST(Phantom, RefusesWhatItCannotDraw) {
 
 class PhantomFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("phantom_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.Path() / "phantom";
 };
 
 TEST_F(PhantomFolder, GoesThroughTheWholeChain) {

@@ -8,6 +8,7 @@
 #include "run_trocar.h"
 #include "trocar/anatomy/patient.h"
 #include "trocar/cli/run_command.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
 namespace {
@@ -23,13 +24,8 @@ int RunWords(std::vector<std::string> words) {
 
 class AnatomyCommand : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("anatomy_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.Path() / "patient";
 };
 
 TEST_F(AnatomyCommand, GenerateWritesAPatientThatListsItsParameters) {

@@ -12,6 +12,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/images/image_stack.h"
 #include "trocar/images/png_file.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
 namespace {
@@ -23,17 +24,14 @@ using testing::StartsWith;
 class ImagesCommand : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("images_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
     for (int i = 3; i <= 9; ++i) {
       const images::ColorImage picture{
           40, 30, std::vector<std::uint8_t>(40 * 30 * 3, static_cast<std::uint8_t>(20 * i))};
-      ASSERT_TRUE(images::WritePng(folder_ / "stack" / ("s" + std::to_string(i) + ".png"), picture).ok());
+      ASSERT_TRUE(
+          images::WritePng(folder_.Path() / "stack" / ("s" + std::to_string(i) + ".png"), picture).ok());
     }
   }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string Path(const std::string& name) const { return folder_ / name; }
+  std::string Path(const std::string& name) const { return folder_.Path() / name; }
   Printed Run(std::vector<std::string> words) const {
     words.insert(words.begin(), {"anatomy", "images"});
     return RunTrocar(words);
@@ -51,7 +49,7 @@ class ImagesCommand : public testing::Test {
     EXPECT_EQ(std::count(printed.err.begin(), printed.err.end(), '\n'), 1) << printed.err;
   }
 
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(ImagesCommand, SaysWhatASeriesIs) {
@@ -93,7 +91,7 @@ TEST_F(ImagesCommand, AsksAndExplains) {
 
 TEST_F(ImagesCommand, DamagedFilesAreOneLineAndNoPreview) {
   const auto refuses = [&](const std::string& name, const std::string& content, const std::string& code) {
-    ASSERT_TRUE(core::WriteFile(folder_ / name, content).ok());
+    ASSERT_TRUE(core::WriteFile(folder_.Path() / name, content).ok());
     ExpectRefused(Run(With({Path(name), "--preview", Path("preview.png")})), code);
     EXPECT_FALSE(fs::exists(Path("preview.png")));
   };

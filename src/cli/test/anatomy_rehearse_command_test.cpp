@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A simulated user on a coarse phantom: small enough for every run of the tests.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "run_trocar.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
 namespace {
@@ -19,15 +19,14 @@ namespace fs = std::filesystem;
 class RehearseCommand : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new fs::path(fs::path(testing::TempDir()) / ("rehearse_phantom_" + std::to_string(getpid())));
-    fs::remove_all(*folder_);
+    folder_ = new test::TemporaryFolder;
     const Printed printed = RunTrocar(
-        {"anatomy", "phantom", "--seed", "7", "--pixel-mm", "2", "--slice-mm", "4", "-o", folder_->string()});
+        {"anatomy", "phantom", "--seed", "7", "--pixel-mm", "2", "--slice-mm", "4", "-o", PathOf("phantom")});
     ASSERT_EQ(printed.status, 0) << printed.err;
   }
   static void TearDownTestSuite() {
-    fs::remove_all(*folder_);
     delete folder_;
+    folder_ = nullptr;
   }
   static Printed Run(std::vector<std::string> words) {
     words.insert(words.begin(), "anatomy");
@@ -35,16 +34,18 @@ class RehearseCommand : public testing::Test {
                                        {"--reference", "labels.nrrd"},
                                        {"--control-points", "control_points.json"}}) {
       words.push_back(option);
-      words.push_back((*folder_ / name).string());
+      words.push_back(PathOf("phantom" / fs::path(name)));
     }
     return RunTrocar(words);
   }
-  static inline fs::path* folder_ = nullptr;
+  static std::string PathOf(const fs::path& name) { return (folder_->Path() / name).string(); }
+
+  static inline test::TemporaryFolder* folder_ = nullptr;
 };
 
 TEST_F(RehearseCommand, MeasuresThatTheAdaptionHalvesTheError) {
   const Printed printed = Run({"rehearse", "--organ", "liver", "--every", "2", "--runs", "2", "--json",
-                               "--overlays", (*folder_ / "overlays").string()});
+                               "--overlays", PathOf("overlays")});
   ASSERT_EQ(printed.status, 0) << printed.err;
   const auto organs = nlohmann::json::parse(printed.out).at("organs");
   ASSERT_EQ(organs.size(), 1u);
@@ -56,7 +57,7 @@ TEST_F(RehearseCommand, MeasuresThatTheAdaptionHalvesTheError) {
   EXPECT_NEAR(placed, 1.9, 0.3);
   EXPECT_LT(adapted, 0.5 * placed);
   EXPECT_GT(organs[0].at("dice_adapted").at("mean").get<double>(), 0.94);
-  EXPECT_FALSE(fs::is_empty(*folder_ / "overlays"));
+  EXPECT_FALSE(fs::is_empty(PathOf("overlays")));
 }
 
 TEST_F(RehearseCommand, PrintsATableAndRefusesAnOrganThatIsNotThere) {

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "run_trocar.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
 namespace {
@@ -11,15 +12,11 @@ namespace fs = std::filesystem;
 
 class DatasetCommandTest : public testing::Test {
  protected:
-  void SetUp() override { fs::remove_all(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      (std::string("dataset_command_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(DatasetCommandTest, MakesASetThatItsReaderAccepts) {
-  const std::string set = (folder_ / "set").string();
+  const std::string set = (folder_.Path() / "set").string();
   const Printed made = RunTrocar({"dataset", "--layout", "trocar", "--task", "peg_transfer", "--seeds", "3:4",
                                   "--size", "64x48", "--every", "0.5", "--most-seconds", "1", "-o", set});
   ASSERT_EQ(made.status, 0) << made.err;
@@ -29,21 +26,21 @@ TEST_F(DatasetCommandTest, MakesASetThatItsReaderAccepts) {
   const Printed again = RunTrocar({"dataset", "--layout", "trocar", "--task", "peg_transfer", "-o", set});
   EXPECT_EQ(again.status, 1);
   EXPECT_NE(again.err.find("E-IO-003"), std::string::npos) << again.err;
-  fs::remove(folder_ / "set" / "video_00004.h5");
+  fs::remove(folder_.Path() / "set" / "video_00004.h5");
   const Printed damaged = RunTrocar({"dataset", "verify", set});
   EXPECT_EQ(damaged.status, 1);
   EXPECT_NE(damaged.err.find("E-DAT-001"), std::string::npos) << damaged.err;
 }
 
 TEST_F(DatasetCommandTest, RefusesWhatItDoesNotKnow) {
-  const std::string set = (folder_ / "set").string();
+  const std::string set = (folder_.Path() / "set").string();
   EXPECT_NE(RunTrocar({"dataset", "--layout", "movies", "-o", set}).err.find("E-SCN-003"), std::string::npos);
   for (const char* seeds : {"1:", "a", "2:1", "1:2:3", "-1"}) {
     const Printed refused = RunTrocar({"dataset", "--layout", "cholec80", "--seeds", seeds, "-o", set});
     EXPECT_EQ(refused.status, 2) << seeds;
   }
   EXPECT_EQ(RunTrocar({"dataset"}).status, 2);
-  EXPECT_FALSE(fs::exists(folder_));
+  EXPECT_TRUE(fs::is_empty(folder_.Path()));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -15,6 +14,7 @@
 #include "trocar/device/device_store.h"
 #include "trocar/device/emulator.h"
 #include "trocar/device/hand_recording.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
 namespace {
@@ -24,17 +24,11 @@ namespace fs = std::filesystem;
 /// Commands beside an emulator that runs in real time, with a settings folder of the test's own.
 class DevicesCommand : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / ("trocar_devices_command_" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    ::setenv("TROCAR_CONFIG_DIR", folder_.c_str(), 1);
-  }
+  void SetUp() override { ::setenv("TROCAR_CONFIG_DIR", folder_.Path().c_str(), 1); }
   void TearDown() override {
     is_running_ = false;
     if (thread_.joinable()) thread_.join();
     ::unsetenv("TROCAR_CONFIG_DIR");
-    fs::remove_all(folder_);
   }
   static device::TrackedHandsSettings Hands() { return *device::MakeHandsSettings(device::DefaultTracker()); }
   /// \return the device's name
@@ -53,10 +47,10 @@ class DevicesCommand : public testing::Test {
     });
     return kind + ":" + host_->Address();
   }
-  std::string Path(const char* name) const { return folder_ / name; }
-  device::DeviceStore Store() const { return device::LoadDeviceStore(folder_ / "devices.json").store; }
+  std::string Path(const char* name) const { return folder_.Path() / name; }
+  device::DeviceStore Store() const { return device::LoadDeviceStore(folder_.Path() / "devices.json").store; }
 
-  fs::path folder_;
+  test::TemporaryFolder folder_;
   std::unique_ptr<device::EmulatorHost> host_;
   std::atomic<bool> is_running_{true};
   std::thread thread_;
@@ -114,7 +108,7 @@ TEST_F(DevicesCommand, RefusesAJawThatDoesNotMove) {
   const Printed printed = RunTrocar({"devices", "calibrate", "jaw", name, "--seconds", "1", "--wait", "0"});
   EXPECT_EQ(printed.status, 1);
   EXPECT_EQ(printed.err.substr(0, 18), "trocar: E-DEV-021 ");
-  EXPECT_FALSE(fs::exists(folder_ / "devices.json"));
+  EXPECT_FALSE(fs::exists(folder_.Path() / "devices.json"));
 }
 
 TEST_F(DevicesCommand, EmulatesAndPrintsTheNameToUse) {
@@ -142,7 +136,7 @@ TEST_F(DevicesCommand, RefusesWrongUse) {
 }
 
 TEST_F(DevicesCommand, WarnsOfDamagedSettingsAndGoesOn) {
-  ASSERT_TRUE(core::WriteFile(folder_ / "devices.json", "{").ok());
+  ASSERT_TRUE(core::WriteFile(folder_.Path() / "devices.json", "{").ok());
   const std::string name = Emulate(device::MoveHands(Hands(), device::CalcHandMotion));
   const Printed printed = RunTrocar({"devices", "test", name, "--seconds", "0.3"});
   EXPECT_EQ(printed.status, 0);

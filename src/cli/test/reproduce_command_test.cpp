@@ -9,6 +9,7 @@
 #include "run_trocar.h"
 #include "trocar/bench/experiment.h"
 #include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
 namespace {
@@ -35,8 +36,8 @@ std::vector<std::string> FindStructure(const std::string& document) {
 // docs/replicability.md is generated: every experiment and every column stands there as the program writes it.
 // Times differ from machine to machine and are not compared.
 TEST(Reproduce, TheCommittedDocumentHasTheStructureThatTheProgramWrites) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "reproduce";
-  std::filesystem::create_directories(folder);
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.Path();
   const auto committed = core::ReadFile(std::string(TROCAR_SOURCE_DIR) + "/docs/replicability.md");
   ASSERT_TRUE(committed);
   const std::string copy = (folder / "copy.md").string();

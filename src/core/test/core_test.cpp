@@ -11,6 +11,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/statistics.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::core {
 namespace {
@@ -69,26 +70,23 @@ TEST(StateHash, ChangesWithTheLastBitAndTheOrder) {
 
 class SafeFile : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("trocar_safe_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(SafeFile, ReadsBackWhatItWroteAndLeavesNothingElse) {
-  ASSERT_TRUE(WriteFile(folder_ / "deep" / "a.txt", "one").ok());
-  ASSERT_TRUE(WriteFile(folder_ / "deep" / "a.txt", "two").ok());
-  EXPECT_EQ(*ReadFile(folder_ / "deep" / "a.txt"), "two");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "deep"), {}), 1);
+  ASSERT_TRUE(WriteFile(folder_.Path() / "deep" / "a.txt", "one").ok());
+  ASSERT_TRUE(WriteFile(folder_.Path() / "deep" / "a.txt", "two").ok());
+  EXPECT_EQ(*ReadFile(folder_.Path() / "deep" / "a.txt"), "two");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.Path() / "deep"), {}), 1);
 }
 
 TEST_F(SafeFile, NamesWhatIsWrong) {
-  EXPECT_EQ(ReadFile(folder_ / "absent").error().code, ErrorCode::kFileMissing);
-  EXPECT_EQ(ReadFile(folder_).error().code, ErrorCode::kFileUnreadable);
-  ASSERT_TRUE(WriteFile(folder_ / "long", "12345").ok());
-  EXPECT_EQ(ReadFile(folder_ / "long", 4).error().code, ErrorCode::kFileTooLarge);
-  EXPECT_EQ(WriteFile(folder_ / "long" / "below-a-file", "x").error().code, ErrorCode::kFileUnwritable);
+  EXPECT_EQ(ReadFile(folder_.Path() / "absent").error().code, ErrorCode::kFileMissing);
+  EXPECT_EQ(ReadFile(folder_.Path()).error().code, ErrorCode::kFileUnreadable);
+  ASSERT_TRUE(WriteFile(folder_.Path() / "long", "12345").ok());
+  EXPECT_EQ(ReadFile(folder_.Path() / "long", 4).error().code, ErrorCode::kFileTooLarge);
+  EXPECT_EQ(WriteFile(folder_.Path() / "long" / "below-a-file", "x").error().code,
+            ErrorCode::kFileUnwritable);
 }
 
 }  // namespace

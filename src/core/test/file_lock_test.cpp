@@ -10,18 +10,15 @@
 #include <string>
 
 #include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::core {
 namespace {
 
 class FileLockTest : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("trocar_lock_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  std::filesystem::path path_ = folder_ / "sub" / "a.lock";
+  test::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_.Path() / "sub" / "a.lock";
 };
 
 TEST_F(FileLockTest, IsHeldByOneAndNamesIt) {
@@ -72,10 +69,10 @@ TEST_F(FileLockTest, OutlivesNoProgram) {
 
 TEST_F(FileLockTest, DoesNotFollowALink) {
   std::filesystem::create_directories(path_.parent_path());
-  ASSERT_TRUE(WriteFile(folder_ / "precious", "kept").ok());
-  std::filesystem::create_symlink(folder_ / "precious", path_);
+  ASSERT_TRUE(WriteFile(folder_.Path() / "precious", "kept").ok());
+  std::filesystem::create_symlink(folder_.Path() / "precious", path_);
   EXPECT_EQ(FileLock::Take(path_).error().code, ErrorCode::kFileUnwritable);
-  EXPECT_EQ(ReadFile(folder_ / "precious").value(), "kept");
+  EXPECT_EQ(ReadFile(folder_.Path() / "precious").value(), "kept");
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -11,6 +10,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/device/hand_recording.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::device {
 namespace {
@@ -20,13 +20,7 @@ using core::ErrorCode;
 
 class DeviceFilesTest : public testing::Test {
  protected:
-  DeviceFilesTest()
-      : folder_(fs::path(testing::TempDir()) / ("trocar_devices_" + std::to_string(::getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~DeviceFilesTest() override { fs::remove_all(folder_); }
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 DeviceStore MakeStore() {
@@ -46,7 +40,7 @@ DeviceStore MakeStore() {
 }
 
 TEST_F(DeviceFilesTest, StoreComesBackAsItWas) {
-  const fs::path path = folder_ / "new/devices.json";
+  const fs::path path = folder_.Path() / "new/devices.json";
   ASSERT_TRUE(SaveDeviceStore(path, MakeStore()).ok());
   const LoadedStore loaded = LoadDeviceStore(path);
   EXPECT_FALSE(loaded.complaint.has_value());
@@ -57,7 +51,7 @@ TEST_F(DeviceFilesTest, StoreComesBackAsItWas) {
 }
 
 TEST_F(DeviceFilesTest, NoFileMeansDefaultsWithoutComplaint) {
-  const LoadedStore loaded = LoadDeviceStore(folder_ / "devices.json");
+  const LoadedStore loaded = LoadDeviceStore(folder_.Path() / "devices.json");
   EXPECT_FALSE(loaded.complaint.has_value());
   EXPECT_EQ(loaded.store, DeviceStore{});
   EXPECT_EQ(loaded.store.Tracker("liberty"), DefaultTracker());
@@ -65,7 +59,7 @@ TEST_F(DeviceFilesTest, NoFileMeansDefaultsWithoutComplaint) {
 
 // faults G6: every truncation and wrong field is a message, the defaults work, the file is not lost
 TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
-  const fs::path path = folder_ / "devices.json";
+  const fs::path path = folder_.Path() / "devices.json";
   ASSERT_TRUE(SaveDeviceStore(path, MakeStore()).ok());
   const std::string good = *core::ReadFile(path);
   for (std::size_t length = 0; length < good.size() - 2; length += 61) {
@@ -96,7 +90,7 @@ TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
 
 // what the fits refuse, the file may not bring in: the same limits, either side of each
 TEST_F(DeviceFilesTest, BoundsTipAndTrocarAsTheFitsDo) {
-  const fs::path path = folder_ / "devices.json";
+  const fs::path path = folder_.Path() / "devices.json";
   const auto complains = [&](const std::function<void(TrackerEntry&)>& change) {
     DeviceStore store = MakeStore();
     change(store.trackers["fastrak"]);
@@ -127,7 +121,7 @@ TEST_F(DeviceFilesTest, AHandWithForceHasNoClutch) {
   EXPECT_EQ(none.Buttons("gamepad"), DefaultButtons());
   EXPECT_EQ(none.Buttons("haptics")[0][0], HandAct::kCut);
   EXPECT_EQ(none.Buttons("haptics")[1][4], HandAct::kNone);
-  const fs::path path = folder_ / "devices.json";
+  const fs::path path = folder_.Path() / "devices.json";
   const auto complains = [&](const std::string& acts) {
     EXPECT_TRUE(
         core::WriteFile(path, R"({"version": 1, "buttons": {"haptics": {"left": [)" + acts + "]}}}").ok());
@@ -140,8 +134,8 @@ TEST_F(DeviceFilesTest, AHandWithForceHasNoClutch) {
 }
 
 TEST_F(DeviceFilesTest, StoreLiesInThePersonsFolder) {
-  ::setenv("TROCAR_CONFIG_DIR", folder_.c_str(), 1);
-  EXPECT_EQ(FindDeviceStore(), folder_ / "devices.json");
+  ::setenv("TROCAR_CONFIG_DIR", folder_.Path().c_str(), 1);
+  EXPECT_EQ(FindDeviceStore(), folder_.Path() / "devices.json");
   ::unsetenv("TROCAR_CONFIG_DIR");
   EXPECT_EQ(FindDeviceStore().filename(), "devices.json");
 }
@@ -170,7 +164,7 @@ class HandPlayerTest : public DeviceFilesTest {
  protected:
   /// Starts a player of these frames.
   void Play(const std::vector<HandFrame>& frames) {
-    const fs::path path = folder_ / "hands.csv";
+    const fs::path path = folder_.Path() / "hands.csv";
     ASSERT_TRUE(core::WriteFile(path, FormatHandFrames(frames)).ok());
     player_ = std::make_unique<HandPlayer>(path, clock_);
   }
@@ -288,7 +282,7 @@ TEST(HandRecording, RefusesDamageWithTheLine) {
 }
 
 TEST_F(DeviceFilesTest, PlayerPlaysWhatWasRecorded) {
-  const fs::path path = folder_ / "hands.csv";
+  const fs::path path = folder_.Path() / "hands.csv";
   const auto frames = MakeFrames();
   ASSERT_TRUE(core::WriteFile(path, FormatHandFrames(frames)).ok());
   ManualClock clock;
@@ -399,13 +393,13 @@ TEST(SerialPort, CarriesEveryByteAsItIs) {
 }
 
 TEST(SerialPort, AreListedByIdFirst) {
-  const fs::path dev = fs::path(testing::TempDir()) / ("trocar_dev_" + std::to_string(::getpid()));
+  const test::TemporaryFolder folder;
+  const fs::path& dev = folder.Path();
   fs::create_directories(dev / "serial/by-id");
   for (const char* name : {"ttyUSB0", "ttyACM0", "ttyS0", "null"})
     ASSERT_TRUE(core::WriteFile(dev / name, "").ok());
   fs::create_symlink("../../ttyUSB0", dev / "serial/by-id/usb-Polhemus_LIBERTY-if00-port0");
   const auto ports = ListSerialPorts(dev.string());
-  fs::remove_all(dev);
   ASSERT_EQ(ports.size(), 2u);
   EXPECT_EQ(ports[0].description, "Polhemus LIBERTY");
   EXPECT_NE(ports[0].path.find("by-id"), std::string::npos);

@@ -2,7 +2,6 @@
 #include "trocar/device/jaw_sensor.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "emulated_line.h"
 #include "trocar/device/hand_rig.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::device {
 namespace {
@@ -294,7 +294,8 @@ TEST_F(JawSensorHid, AFrozenBoardIsNotSeenAndLostWhereItSendsItsClock) {
 
 // the emulated sensor gives what the text sensor would: packets, one report each
 TEST(JawSensorHidEmulator, IsReadByItsSocket) {
-  const std::string path = testing::TempDir() + "/trocar_jaw_hid_" + std::to_string(::getpid());
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path() / "jaw_hid";
   auto host = *EmulatorHost::MakeLocal(MakeJawEmulator({{}, CalcHandMotion, JawFormat::kHid}), path,
                                        kHidReportSize, {{FaultKind::kUnplug, 2.0, 1e9, 0}});
   EXPECT_EQ(EmulatorHost::MakeLocal(MakeJawEmulator({{}, CalcRest}), path, kHidReportSize).error().code,

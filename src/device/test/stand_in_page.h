@@ -10,27 +10,26 @@
 #include <cstdlib>
 #include <filesystem>
 #include <new>
-#include <string>
 
 #include "stand_in_hd.h"
+#include "trocar_test/temporary_folder.h"
 
 /// As long as it lives, every stand-in that this process or its children load has its state here.
 class StandInPage {
  public:
-  StandInPage()
-      : path_(std::filesystem::path(testing::TempDir()) / ("trocar_stand_in_" + std::to_string(::getpid()))) {
-    const int file = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  StandInPage() {
+    const std::filesystem::path path = folder_.Path() / "page";
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     EXPECT_EQ(::ftruncate(file, sizeof(StandInState)), 0);
     void* memory = ::mmap(nullptr, sizeof(StandInState), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     ::close(file);
     EXPECT_NE(memory, MAP_FAILED);
     state_ = new (memory) StandInState;
-    ::setenv(kStandInPage, path_.c_str(), 1);
+    ::setenv(kStandInPage, path.c_str(), 1);
   }
   ~StandInPage() {
     ::unsetenv(kStandInPage);
     ::munmap(state_, sizeof(StandInState));
-    std::filesystem::remove(path_);
   }
   StandInPage(const StandInPage&) = delete;
   StandInPage& operator=(const StandInPage&) = delete;
@@ -38,6 +37,6 @@ class StandInPage {
   StandInState* Get() const { return state_; }
 
  private:
-  std::filesystem::path path_;
+  trocar::test::TemporaryFolder folder_;
   StandInState* state_ = nullptr;
 };

@@ -16,6 +16,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/images/image_series.h"
 #include "trocar_test/made_images.h"
+#include "trocar_test/temporary_folder.h"
 #include "volume_file.h"
 
 namespace trocar::images {
@@ -428,9 +429,8 @@ class DamagedImage : public testing::TestWithParam<Case> {};
 
 TEST_P(DamagedImage, EndsInItsCode) {
   const Case& c = GetParam();
-  const fs::path folder = fs::path(testing::TempDir()) / ("damaged_" + std::string(c.name));
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const TemporaryFolder temporary;
+  const fs::path& folder = temporary.Path();
   const fs::path path = std::string_view(c.file).empty() ? folder : folder / c.file;
   std::string content;
   if (c.make) {
@@ -462,11 +462,10 @@ TEST_P(DamagedImage, EndsInItsCode) {
   ASSERT_FALSE(series.ok()) << "it was opened";
   EXPECT_EQ(core::CodeText(series.error().code), core::CodeText(c.code)) << series.error().Text();
   EXPECT_LE(after.ru_maxrss - before.ru_maxrss, static_cast<long>(kBudget >> 10));
-  EXPECT_EQ(series.error().message.find("Doe"), std::string::npos) << series.error().message;
+  EXPECT_EQ(series.error().message.find("Jane"), std::string::npos) << series.error().message;
   if (c.make) {
     EXPECT_EQ(*core::ReadFile(path), content);
   }
-  fs::remove_all(folder);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DamagedImage, testing::ValuesIn(MakeCases()),

@@ -15,6 +15,7 @@
 #include "trocar/images/contact_sheet.h"
 #include "trocar/images/png_file.h"
 #include "trocar_test/made_images.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::images {
 namespace {
@@ -34,15 +35,10 @@ ColorImage MakePicture(int number) {
 class SeriesFolder : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("series_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
     known_.pixel_mm = 0.5;
     known_.slice_mm = 2.0;
     known_.axes = Axes{"left", "anterior", "inferior"};
   }
-  void TearDown() override { fs::remove_all(folder_); }
   void WriteStack(int first, int last) const {
     for (int i = first; i <= last; ++i)
       ASSERT_TRUE(WritePng(folder_ / ("s" + std::to_string(i) + ".png"), MakePicture(i)).ok());
@@ -56,7 +52,8 @@ class SeriesFolder : public testing::Test {
     return series.ok() ? core::Error{} : series.error();
   }
 
-  fs::path folder_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.Path();
   ImageSeriesOptions known_;
 };
 

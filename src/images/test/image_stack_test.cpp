@@ -8,6 +8,7 @@
 
 #include "trocar/core/safe_file.h"
 #include "trocar/images/png_file.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::images {
 namespace {
@@ -16,8 +17,8 @@ namespace fs = std::filesystem;
 using core::ErrorCode;
 
 TEST(ReadImage, RefusesNoise) {
-  const fs::path folder = fs::path(testing::TempDir()) / "read_image";
-  fs::remove_all(folder);
+  const test::TemporaryFolder temporary;
+  const fs::path& folder = temporary.Path();
   ASSERT_TRUE(core::WriteFile(folder / "a.png", "this is no picture at all").ok());
   EXPECT_EQ(ReadImage(folder / "a.png").error().code, ErrorCode::kImageUndecodable);
   EXPECT_EQ(ReadImage(folder).error().code, ErrorCode::kImagePathUnsafe);
@@ -29,7 +30,6 @@ TEST(ReadImage, RefusesNoise) {
   const auto whole = ReadImage(folder / "b.png");
   ASSERT_TRUE(whole.ok()) << whole.error().Text();
   EXPECT_EQ(whole->samples, (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));
-  fs::remove_all(folder);
 }
 
 TEST(ReadImage, RefusesATruncatedPhotograph) {
@@ -42,7 +42,8 @@ TEST(ReadImage, RefusesATruncatedPhotograph) {
   // liver is dark red
   EXPECT_GT(image->At(440, 350)[0], image->At(440, 350)[2] + 20);
   const auto whole = core::ReadFile(photograph);
-  const fs::path cut = fs::path(testing::TempDir()) / "cut.jpeg";
+  const test::TemporaryFolder folder;
+  const fs::path cut = folder.Path() / "cut.jpeg";
   for (const double part : {0.0, 0.001, 0.01, 0.3, 0.9, 0.999}) {
     ASSERT_TRUE(core::WriteFile(cut, whole->substr(0, static_cast<std::size_t>(
                                                           part * static_cast<double>(whole->size()))))
@@ -54,7 +55,6 @@ TEST(ReadImage, RefusesATruncatedPhotograph) {
         << broken.error().Text();
     EXPECT_TRUE(part < 0.1 || broken.error().code == ErrorCode::kImageTruncated);
   }
-  fs::remove(cut);
 }
 
 }  // namespace

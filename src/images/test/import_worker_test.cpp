@@ -18,6 +18,7 @@
 
 #include "trocar/core/safe_file.h"
 #include "trocar_test/made_images.h"
+#include "trocar_test/temporary_folder.h"
 #include "volume_file.h"
 
 namespace trocar::images {
@@ -30,28 +31,21 @@ using testing::Not;
 
 class ImportWorkers : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("import_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
   void TearDown() override {
-    fs::remove_all(folder_);
     // whatever a reader did, it is gone and counted
     EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
     EXPECT_EQ(errno, ECHILD);
   }
   fs::path Write(const std::string& name, const std::string& content) const {
-    EXPECT_TRUE(core::WriteFile(folder_ / name, content).ok());
-    return folder_ / name;
+    EXPECT_TRUE(core::WriteFile(folder_.Path() / name, content).ok());
+    return folder_.Path() / name;
   }
   /// Limits with a reader that misbehaves in this way.
   ImportLimits Misbehaving(const std::string& how) const {
     std::error_code ignored;
-    fs::create_symlink(TROCAR_MISBEHAVING_READER, folder_ / how, ignored);
+    fs::create_symlink(TROCAR_MISBEHAVING_READER, folder_.Path() / how, ignored);
     ImportLimits limits;
-    limits.program = folder_ / how;
+    limits.program = folder_.Path() / how;
     limits.seconds = 0.3;
     return limits;
   }
@@ -68,7 +62,7 @@ class ImportWorkers : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(ImportWorkers, EveryEndOfAReaderIsAMessage) {
@@ -81,7 +75,7 @@ TEST_F(ImportWorkers, EveryEndOfAReaderIsAMessage) {
   EXPECT_EQ(ProbeFailure(Misbehaving("killed"), file).code, ErrorCode::kImportOutOfMemory);
   EXPECT_THAT(ProbeFailure(Misbehaving("crash"), file).message, HasSubstr("a.png"));
   ImportLimits nowhere;
-  nowhere.program = folder_ / "none";
+  nowhere.program = folder_.Path() / "none";
   EXPECT_EQ(ProbeFailure(nowhere, file).code, ErrorCode::kImportProgramMissing);
 }
 

@@ -10,6 +10,7 @@
 
 #include "trocar/core/clock.h"
 #include "trocar/device/emulator.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::presenter {
 namespace {
@@ -17,18 +18,11 @@ namespace {
 /// An emulated device beside a bench with a store of its own; waits are for events.
 class DeviceBenchTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("trocar_bench_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-    bench_ = std::make_unique<DeviceBench>(folder_ / "devices.json");
-  }
+  void SetUp() override { bench_ = std::make_unique<DeviceBench>(folder_.Path() / "devices.json"); }
   void TearDown() override {
     bench_.reset();
     is_running_ = false;
     if (thread_.joinable()) thread_.join();
-    std::filesystem::remove_all(folder_);
   }
   void Plug(std::unique_ptr<device::Emulator> emulator, const std::string& kind) {
     host_ = *device::EmulatorHost::MakeSerial(std::move(emulator));
@@ -60,7 +54,7 @@ class DeviceBenchTest : public testing::Test {
   }
 
   core::Stopwatch since_start_;
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
   device::TrackedHandsSettings hands_;
   std::unique_ptr<device::EmulatorHost> host_;
   std::string spec_;
@@ -93,7 +87,7 @@ TEST_F(DeviceBenchTest, FindsTheTipAndKeepsItWithItsResidual) {
   ASSERT_TRUE(bench_->LastResult().is_kept) << bench_->LastResult().text;
   EXPECT_LT(bench_->LastResult().residual, 0.001);
   EXPECT_NE(bench_->LastResult().text.find("residual"), std::string::npos);
-  const auto kept = device::LoadDeviceStore(folder_ / "devices.json").store.Tracker("liberty");
+  const auto kept = device::LoadDeviceStore(folder_.Path() / "devices.json").store.Tracker("liberty");
   EXPECT_LT(math::Distance(kept.hands[device::kRightHand].p_sensor_tip, hands_.calibrations[1].p_sensor_tip),
             0.001);
   EXPECT_EQ(kept.hands[device::kLeftHand], device::HandCalibration(device::DefaultTracker().hands[0]));
@@ -108,7 +102,7 @@ TEST_F(DeviceBenchTest, RefusesAPoorFitAndChangesNothing) {
   ASSERT_TRUE(WaitFor([&] { return !bench_->IsMeasuring(); }));
   EXPECT_FALSE(bench_->LastResult().is_kept);
   EXPECT_EQ(bench_->LastResult().text.substr(0, 6), "E-DEV-") << bench_->LastResult().text;
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "devices.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path() / "devices.json"));
 }
 
 TEST_F(DeviceBenchTest, FindsTheRangeOfTheJaws) {
@@ -133,7 +127,7 @@ TEST_F(DeviceBenchTest, SwapsTheSensorsOfTheHands) {
   PlugTracker(false);
   ASSERT_TRUE(bench_->Open(spec_).ok());
   ASSERT_TRUE(bench_->SwapHands().ok());
-  const auto kept = device::LoadDeviceStore(folder_ / "devices.json").store.Tracker("liberty");
+  const auto kept = device::LoadDeviceStore(folder_.Path() / "devices.json").store.Tracker("liberty");
   EXPECT_EQ(kept.stations[device::kLeftHand], 2);
   EXPECT_EQ(kept.stations[device::kRightHand], 1);
   EXPECT_TRUE(bench_->IsOpen());

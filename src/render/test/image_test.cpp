@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "trocar/core/safe_file.h"
 #include "trocar/math/random.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::render {
 namespace {
@@ -21,7 +21,8 @@ Image MakeNoise(int width, int height, std::uint64_t seed) {
 }
 
 TEST(Png, RoundTripsThroughAFile) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "trocar_png" / "noise.png";
+  const test::TemporaryFolder folder;
+  const auto path = folder.Path() / "new" / "noise.png";
   const Image image = MakeNoise(37, 21, 5);
   ASSERT_TRUE(WritePng(path, image).ok());
   const auto bytes = core::ReadFile(path);
@@ -55,9 +56,9 @@ TEST(Png, SurvivesAnyFlippedByte) {
 }
 
 TEST(Png, RefusesAPictureWithoutPixelsAndAFolderThatIsAFile) {
-  EXPECT_EQ(WritePng(std::filesystem::path(testing::TempDir()) / "none.png", {}).error().code,
-            core::ErrorCode::kFileUnwritable);
-  const auto file = std::filesystem::path(testing::TempDir()) / "trocar_plain_file";
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(WritePng(folder.Path() / "none.png", {}).error().code, core::ErrorCode::kFileUnwritable);
+  const auto file = folder.Path() / "plain";
   std::ofstream(file) << "x";
   EXPECT_EQ(WritePng(file / "a.png", MakeNoise(4, 4, 3)).error().code, core::ErrorCode::kFileUnwritable);
 }

@@ -5,7 +5,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <thread>
 
 namespace trocar::render {
@@ -48,9 +47,7 @@ class OffscreenContextDeathTest : public testing::Test {
 };
 
 TEST_F(OffscreenContextDeathTest, WithoutADriverSaysWhatToInstall) {
-  const auto empty = std::filesystem::path(testing::TempDir()) / "trocar_no_egl_vendors";
-  std::filesystem::create_directories(empty);
-  EXPECT_EXIT(FailWith("__EGL_VENDOR_LIBRARY_DIRS", empty.string()), testing::ExitedWithCode(0),
+  EXPECT_EXIT(FailWith("__EGL_VENDOR_LIBRARY_DIRS", "/nowhere"), testing::ExitedWithCode(0),
               "E-GL-001.*libegl1.*libgl1-mesa-dri");
 }
 

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <vector>
 
+#include "trocar_test/temporary_folder.h"
+
 namespace trocar::render {
 namespace {
 
@@ -21,13 +23,6 @@ Image MakePlain(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
   Image image{kWidth, kHeight, {}};
   for (int i = 0; i < kWidth * kHeight; ++i) image.pixels.insert(image.pixels.end(), {r, g, b});
   return image;
-}
-
-fs::path MakeEmptyFolder(const char* name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  return folder;
 }
 
 struct DecodedFrame {
@@ -71,8 +66,8 @@ std::vector<DecodedFrame> Decode(const fs::path& path) {
 }
 
 TEST(VideoWriter, FileHoldsEveryFrameInOrder) {
-  const fs::path folder = MakeEmptyFolder("trocar_video");
-  const fs::path path = folder / "new" / "it's a video.webm";
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.Path() / "new" / "it's a video.webm";
   auto writer = VideoWriter::Make(path, {kWidth, kHeight, 25, 2'000'000});
   ASSERT_TRUE(writer.ok()) << writer.error().Text();
   for (int i = 0; i < 12; ++i) {
@@ -93,18 +88,18 @@ TEST(VideoWriter, FileHoldsEveryFrameInOrder) {
 }
 
 TEST(VideoWriter, LeavesNothingWhenItIsNotFinished) {
-  const fs::path folder = MakeEmptyFolder("trocar_video_dropped");
+  const test::TemporaryFolder folder;
   {
-    auto writer = VideoWriter::Make(folder / "a.webm", {kWidth, kHeight, 25, 2'000'000});
+    auto writer = VideoWriter::Make(folder.Path() / "a.webm", {kWidth, kHeight, 25, 2'000'000});
     ASSERT_TRUE(writer.ok()) << writer.error().Text();
     ASSERT_TRUE(writer->AddFrame(MakePlain(9, 9, 9)).ok());
   }
-  EXPECT_TRUE(fs::is_empty(folder));
+  EXPECT_TRUE(fs::is_empty(folder.Path()));
 }
 
 TEST(VideoWriter, RefusesAWrongSizeAnEmptyVideoAndASecondEnd) {
-  const fs::path folder = MakeEmptyFolder("trocar_video_wrong");
-  auto writer = VideoWriter::Make(folder / "a.webm", {kWidth, kHeight, 25, 2'000'000});
+  const test::TemporaryFolder folder;
+  auto writer = VideoWriter::Make(folder.Path() / "a.webm", {kWidth, kHeight, 25, 2'000'000});
   ASSERT_TRUE(writer.ok()) << writer.error().Text();
   EXPECT_EQ(writer->Finish().error().code, core::ErrorCode::kVideoFailed);
   Image small = MakePlain(1, 2, 3);
@@ -117,30 +112,32 @@ TEST(VideoWriter, RefusesAWrongSizeAnEmptyVideoAndASecondEnd) {
 }
 
 TEST(VideoWriter, RefusesAFolderThatIsAFileAndSettingsOutOfRange) {
-  const fs::path folder = MakeEmptyFolder("trocar_video_refused");
-  std::ofstream(folder / "plain") << "x";
-  EXPECT_EQ(VideoWriter::Make(folder / "plain" / "a.webm", {kWidth, kHeight, 25}).error().code,
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.Path() / "plain") << "x";
+  EXPECT_EQ(VideoWriter::Make(folder.Path() / "plain" / "a.webm", {kWidth, kHeight, 25}).error().code,
             core::ErrorCode::kVideoFailed);
-  EXPECT_EQ(VideoWriter::Make(folder / "a.webm", {0, kHeight, 25}).error().code,
+  EXPECT_EQ(VideoWriter::Make(folder.Path() / "a.webm", {0, kHeight, 25}).error().code,
             core::ErrorCode::kVideoFailed);
-  EXPECT_EQ(VideoWriter::Make(folder / "a.webm", {kWidth, kHeight, 0}).error().code,
+  EXPECT_EQ(VideoWriter::Make(folder.Path() / "a.webm", {kWidth, kHeight, 0}).error().code,
             core::ErrorCode::kVideoFailed);
-  EXPECT_FALSE(fs::exists(folder / "a.webm"));
+  EXPECT_FALSE(fs::exists(folder.Path() / "a.webm"));
 }
 
-[[noreturn]] void MakeWithoutPlugins(const fs::path& folder) {
-  ::setenv("GST_PLUGIN_SYSTEM_PATH_1_0", folder.c_str(), 1);
-  ::setenv("GST_PLUGIN_PATH_1_0", folder.c_str(), 1);
-  ::setenv("GST_REGISTRY_1_0", (folder / "registry.bin").c_str(), 1);
-  const auto writer = VideoWriter::Make(folder / "a.webm", {kWidth, kHeight, 25});
+/// In a process of its own: prints the error's text.
+/// \return 0, or 1 when there was none
+int MakeWithoutPlugins() {
+  const test::TemporaryFolder folder;
+  ::setenv("GST_PLUGIN_SYSTEM_PATH_1_0", folder.Path().c_str(), 1);
+  ::setenv("GST_PLUGIN_PATH_1_0", folder.Path().c_str(), 1);
+  ::setenv("GST_REGISTRY_1_0", (folder.Path() / "registry.bin").c_str(), 1);
+  const auto writer = VideoWriter::Make(folder.Path() / "a.webm", {kWidth, kHeight, 25});
   if (!writer.ok()) std::fputs(writer.error().Text().c_str(), stderr);
-  std::exit(writer.ok() ? 1 : 0);
+  return writer.ok() ? 1 : 0;
 }
 
 TEST(VideoWriterDeathTest, MissingPluginNamesItsPackage) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const fs::path folder = MakeEmptyFolder("trocar_video_no_plugins");
-  EXPECT_EXIT(MakeWithoutPlugins(folder), testing::ExitedWithCode(0),
+  EXPECT_EXIT(std::exit(MakeWithoutPlugins()), testing::ExitedWithCode(0),
               "E-VID-001.*install gstreamer1.0-plugins");
 }
 

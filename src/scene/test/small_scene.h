@@ -12,6 +12,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/scene/scene.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::scene {
 
@@ -26,15 +27,10 @@ class SmallScene : public testing::Test {
     {"time_s": 1.2, "left": {"at": "fundus", "offset_mm": [-2, 4, 6], "jaw_deg": 45}}]})";
 
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("trocar_scene_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
     ASSERT_TRUE(anatomy::WritePatient(folder_ / "patient", MakePatient()).ok());
     Write("script.json", kScript);
     Write("scene.json", SceneText());
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   static anatomy::Patient MakePatient() {
     anatomy::Patient patient;
@@ -93,7 +89,8 @@ class SmallScene : public testing::Test {
   }
   core::Result<Scene> Read() const { return ReadScene(folder_ / "scene.json"); }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.Path();
 };
 
 }  // namespace trocar::scene

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording that jumps by centimetres between two samples, played into the built-in patient: what the tissue pushes back with.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "trocar/session/device_thread.h"
 #include "trocar/session/hand_joints.h"
 #include "trocar/simulation/simulation.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::session {
 
@@ -30,7 +30,6 @@ class PlayedJump : public testing::Test {
     ASSERT_TRUE(read.ok()) << read.error().Text();
     scene_ = std::make_shared<const Scene>(std::move(*read));
   }
-  void TearDown() override { fs::remove(path_); }
 
   /// Largest force on a tool that a recording of 100 samples a second pushes in by `way` [m] from 0.3 s on [N].
   /// \param seconds  that the push takes; 0: from one sample to the next
@@ -67,7 +66,8 @@ class PlayedJump : public testing::Test {
   }
 
   std::shared_ptr<const Scene> scene_;
-  fs::path path_ = fs::path(testing::TempDir()) / ("trocar_jump_" + std::to_string(::getpid()) + ".csv");
+  test::TemporaryFolder folder_;
+  const fs::path path_ = folder_.Path() / "hands.csv";
 };
 
 // 5 m/s and 8 m/s from one sample to the next: no spike beyond what the same place costs a hand that takes its time

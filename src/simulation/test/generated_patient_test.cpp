@@ -9,6 +9,7 @@
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/simulation.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::simulation {
 
@@ -20,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(GeneratedPatient, RunsInTheDemonstrationScene) {
-  const fs::path folder = fs::path(testing::TempDir()) / "generated_for_scene";
-  fs::remove_all(folder);
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.Path() / "patient";
   auto patient = anatomy::GeneratePatient(2);
   ASSERT_TRUE(patient.ok()) << patient.error().Text();
   ASSERT_TRUE(anatomy::WritePatient(folder, *patient).ok());
@@ -48,7 +49,6 @@ TEST(GeneratedPatient, RunsInTheDemonstrationScene) {
     EXPECT_NE(snapshot.events[i].kind, EventKind::kOrganFrozen);
   }
   EXPECT_EQ(ReadScene(scene_path, folder / "nowhere").error().code, core::ErrorCode::kFileMissing);
-  fs::remove_all(folder);
 }
 
 }  // namespace

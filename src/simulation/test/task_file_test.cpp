@@ -8,6 +8,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/simulation.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::simulation {
 
@@ -48,16 +49,9 @@ constexpr const char* kTask = R"({
 
 class TaskFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("trocar_task_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   core::Result<Scene> Read(const std::string& text, const TaskChoice& choice = {}) {
-    EXPECT_TRUE(core::WriteFile(folder_ / "task.json", text).ok());
-    return ReadTask(folder_ / "task.json", choice);
+    EXPECT_TRUE(core::WriteFile(folder_.Path() / "task.json", text).ok());
+    return ReadTask(folder_.Path() / "task.json", choice);
   }
   /// The good task with one piece of its text replaced.
   core::Result<Scene> ReadWith(const std::string& what, const std::string& by) {
@@ -66,7 +60,7 @@ class TaskFile : public testing::Test {
     EXPECT_NE(at, std::string::npos) << what;
     return Read(text.replace(at, what.size(), by));
   }
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(TaskFile, IsReadWithItsSceneAndRules) {
@@ -101,8 +95,8 @@ TEST_F(TaskFile, LevelAndSeedChooseTheParameters) {
 }
 
 TEST_F(TaskFile, IsReadAsASceneToo) {
-  ASSERT_TRUE(core::WriteFile(folder_ / "task.json", kTask).ok());
-  const auto scene = ReadScene(folder_ / "task.json");
+  ASSERT_TRUE(core::WriteFile(folder_.Path() / "task.json", kTask).ok());
+  const auto scene = ReadScene(folder_.Path() / "task.json");
   ASSERT_TRUE(scene.ok()) << scene.error().Text();
   EXPECT_TRUE(scene->task.has_value());
 }

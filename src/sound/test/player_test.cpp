@@ -10,18 +10,12 @@
 #include <thread>
 
 #include "spectrum.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::sound {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path MakeEmptyFolder(const char* name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  return folder;
-}
 
 std::vector<float> ReadSamples(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -33,7 +27,8 @@ std::vector<float> ReadSamples(const fs::path& path) {
 
 // Through the whole pipeline into a file, at the speed of a clock, as a card would take it.
 TEST(Player, FileHoldsTheToneThatWasAskedForAndThenSilence) {
-  const fs::path file = MakeEmptyFolder("trocar_player") / "samples";
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.Path() / "samples";
   {
     Player player("audio/x-raw,format=F32LE,rate=48000,channels=1 ! filesink sync=true location=" +
                   file.string());
@@ -73,7 +68,8 @@ TEST(Player, AnOutputThatFailsIsSilenceWithAWord) {
 }
 
 TEST(FindSoundOutput, SeesServersAndCardsUnderARoot) {
-  const fs::path root = MakeEmptyFolder("trocar_sound_root");
+  const test::TemporaryFolder folder;
+  const fs::path& root = folder.Path();
   ::unsetenv("PULSE_SERVER");
   ::setenv("XDG_RUNTIME_DIR", "/run/user/7", 1);
   EXPECT_EQ(FindSoundOutput(root), "");

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "spectrum.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::sound {
 namespace {
@@ -63,10 +64,8 @@ TEST(Speech, RejectsEveryTruncatedHeaderAndOtherKinds) {
   }
 }
 
-/// A program that keeps its input and its options beside itself and answers with a wave; in a folder of its own.
-fs::path MakeProgram(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
-  fs::create_directories(folder);
+/// A program that keeps its input and its options beside itself and answers with a wave.
+fs::path MakeProgram(const fs::path& folder) {
   const std::vector<unsigned char> wave = MakeWave(16000);
   std::ofstream(folder / "wave", std::ios::binary)
       .write(reinterpret_cast<const char*>(wave.data()), static_cast<std::streamsize>(wave.size()));
@@ -78,14 +77,15 @@ fs::path MakeProgram(const std::string& name) {
 }
 
 TEST(Speech, ProgramGetsTheTextAndTheLanguageAndNothingElse) {
-  const fs::path program = MakeProgram("trocar_speech"), folder = program.parent_path();
+  const test::TemporaryFolder folder;
+  const fs::path program = MakeProgram(folder.Path());
   const std::string text = "--help; $(reboot) pinza";
   const auto samples = CalcSpeech(program, text, "es");
   ASSERT_TRUE(samples);
   EXPECT_NEAR(FindPitch(*samples, 300, 900), 500, 5);
   std::string read, options;
-  std::getline(std::ifstream(folder / "text") >> std::ws, read);
-  std::getline(std::ifstream(folder / "options"), options);
+  std::getline(std::ifstream(folder.Path() / "text") >> std::ws, read);
+  std::getline(std::ifstream(folder.Path() / "options"), options);
   EXPECT_EQ(read, text);
   EXPECT_EQ(options, "--stdin --stdout -s 165 -v es");
 }
@@ -112,7 +112,8 @@ TEST(Speaker, PlaysTheNewestTextAndEndsWithOneStillWaiting) {
   std::mutex mutex;
   std::condition_variable changed;
   int played = 0;
-  const fs::path program = MakeProgram("trocar_speaker");
+  const test::TemporaryFolder folder;
+  const fs::path program = MakeProgram(folder.Path());
   {
     Speaker speaker(program, [&](const std::vector<float>& samples) {
       const std::lock_guard lock(mutex);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::study {
 namespace {
@@ -20,7 +21,8 @@ class PlanTest : public testing::Test {
     return R"({"format": "trocar-study-plan", "version": 1, "name": "n", "task": "peg_transfer", "seeds": [1, 3])" +
            more + "}";
   }
-  std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) / "study_plan_test.json";
+  test::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_.Path() / "plan.json";
 };
 
 TEST_F(PlanTest, MakesARunOfEveryCombination) {

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::study {
 namespace {
@@ -24,13 +25,11 @@ namespace fs = std::filesystem;
 class StudyTest : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
-    options_.plan_file = folder_ / "plan.json";
-    options_.folder = folder_ / "out";
+    options_.plan_file = folder_.Path() / "plan.json";
+    options_.folder = folder_.Path() / "out";
     options_.workers = 2;
     WritePlan("expert", 0.2);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void WritePlan(const std::string& surgeon, double seconds) {
     std::ostringstream text;
@@ -94,8 +93,7 @@ class StudyTest : public testing::Test {
     return texts;
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) /
-                     (std::string("study_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  test::TemporaryFolder folder_;
   StudyOptions options_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "trocar/core/safe_file.h"
 #include "trocar/render/image.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::view {
 namespace {
@@ -20,17 +21,14 @@ class DemoTest : public testing::Test {
     auto scene = scene::ReadScene(fs::path(TROCAR_SOURCE_DIR) / "scenes" / "demonstration.json");
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
     scene_ = std::make_shared<const scene::Scene>(std::move(*scene));
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("trocar_demo_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    options_.output_folder = folder_;
+    options_.output_folder = folder_.Path();
     options_.width = 320;
     options_.height = 180;
     options_.duration = 0.2;
   }
 
   std::shared_ptr<const scene::Scene> scene_;
-  fs::path folder_;
+  test::TemporaryFolder folder_;
   DemoOptions options_;
 };
 
@@ -69,7 +67,7 @@ TEST_F(DemoTest, PlaysTheSameTwice) {
   ASSERT_TRUE(second.ok()) << second.error().Text();
   EXPECT_EQ(first->state_hash, second->state_hash);
   EXPECT_EQ(*picture, *core::ReadFile(second->pictures.at(0).path));
-  EXPECT_FALSE(fs::exists(folder_ / "demo.webm"));
+  EXPECT_FALSE(fs::exists(folder_.Path() / "demo.webm"));
 }
 
 // Pictures, the command line and the window must play one and the same surgery.
@@ -118,9 +116,8 @@ TEST_F(DemoTest, WithoutScriptAndDurationSaysSo) {
 }
 
 TEST_F(DemoTest, AFolderThatIsAFileLeavesNothing) {
-  fs::create_directories(folder_);
-  std::ofstream(folder_ / "plain") << "x";
-  options_.output_folder = folder_ / "plain";
+  std::ofstream(folder_.Path() / "plain") << "x";
+  options_.output_folder = folder_.Path() / "plain";
   const auto report = PlayDemonstration(scene_, options_);
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(report.error().code, core::ErrorCode::kVideoFailed);

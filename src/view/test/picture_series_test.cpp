@@ -10,6 +10,7 @@
 
 #include "trocar/core/safe_file.h"
 #include "trocar/render/image.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::view {
 namespace {
@@ -62,27 +63,22 @@ Exposure Measure(const Image& image) {
 
 class PictureSeriesTest : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::remove_all(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   Image Make(const std::string& name, double light_power = 1, bool is_automatic = true) {
     SeriesOptions options;
-    options.output = folder_;
-    options.moments = folder_ / "moments";
+    options.output = folder_.Path();
+    options.moments = folder_.Path() / "moments";
     options.only = name;
     options.width = 320, options.height = 180;
     options.view.light_power = light_power;
     options.view.has_automatic_exposure = is_automatic;
     const auto made = MakePictureSeries(options);
     EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().Text());
-    const auto bytes = core::ReadFile(folder_ / (name + ".png"));
+    const auto bytes = core::ReadFile(folder_.Path() / (name + ".png"));
     EXPECT_TRUE(bytes.ok());
     return *render::ParsePng(*bytes, name);
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string("trocar_series_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  test::TemporaryFolder folder_;
 };
 
 TEST(PictureSeries, HasAPictureOfEachTaskWithDifferentNames) {
@@ -119,7 +115,7 @@ TEST_F(PictureSeriesTest, IsWellExposedWithoutHolesInHighlights) {
 
 TEST_F(PictureSeriesTest, DrawsKeptMomentsAgainWithoutPlaying) {
   const Image played = Make("16-peg-transfer");
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "moments/16-peg-transfer.state"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.Path() / "moments/16-peg-transfer.state"));
   EXPECT_EQ(Make("16-peg-transfer"), played);
 }
 
