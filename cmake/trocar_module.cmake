@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 
+# What is computed in every tick or frame. Where tests are built, the rest has -O1: to compile it better takes longer than it wins.
+set(TROCAR_FAST_MODULES
+  anatomy collision core geometry haptics images instrument math meshing record render rigid scene simulation surgery tissue tissue_cuda training view)
+
 # trocar_module(NAME
 #   PUBLIC_HEADERS include/trocar/NAME/a.h ...   each compiles alone (target all_verify_interface_header_sets)
 #   SOURCES src/a.cpp ...
@@ -19,6 +23,9 @@ function(trocar_module name)
     target_sources(trocar_${name} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${arg_PUBLIC_HEADERS})
     target_link_libraries(trocar_${name} PUBLIC ${arg_DEPENDS} trocar_compile_options PRIVATE ${arg_LIBRARIES})
     set_target_properties(trocar_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON VERIFY_INTERFACE_HEADER_SETS ON)
+    if(name IN_LIST TROCAR_FAST_MODULES)
+      target_compile_options(trocar_${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O2>)
+    endif()
   else()
     add_library(trocar_${name} INTERFACE)
     target_sources(trocar_${name} INTERFACE FILE_SET HEADERS BASE_DIRS include FILES ${arg_PUBLIC_HEADERS})
@@ -29,8 +36,6 @@ function(trocar_module name)
     add_executable(${name}_tests ${arg_TESTS})
     target_link_libraries(${name}_tests PRIVATE trocar_${name} ${arg_LIBRARIES} trocar_test_folders GTest::gmock GTest::gtest_main)
     target_include_directories(${name}_tests PRIVATE src)
-    # most of a test's code runs once: compiling it takes longer than it could win
-    target_compile_options(${name}_tests PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
     trocar_discover_tests(${name}_tests ${name})
   endif()
 endfunction()

@@ -180,7 +180,7 @@ TEST_F(RendererTest, PoseMovesThePictureToTheCalculatedPixel) {
     EXPECT_NEAR(blob.x, pixel.x, 0.7);
     EXPECT_NEAR(blob.y, pixel.y, 0.7);
   }
-  EXPECT_FALSE(std::isfinite(CalcPixel({}, {0, 0, 0.1}, kWidth, kHeight).x));
+  EXPECT_FALSE(std::isfinite(CalcPixel(Camera{}, {0, 0, 0.1}, kWidth, kHeight).x));
 }
 
 TEST_F(RendererTest, MaskBlacksWhatLiesOutsideTheCircle) {
