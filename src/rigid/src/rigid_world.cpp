@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bullet_units.h"
+#include "reduced_contacts.h"
 #include "rigid_shapes.h"
 #include "rigid_state.h"
 #include "trocar/core/assert.h"
@@ -112,7 +113,7 @@ struct RigidWorld::Content {
   std::unique_ptr<btSequentialImpulseConstraintSolver> solver;
   std::vector<Body> bodies;
   std::vector<Tool> tools;
-  std::unique_ptr<btDiscreteDynamicsWorld> world;
+  std::unique_ptr<ReducedContactWorld> world;
 
   ~Content() { Clear(); }
 
@@ -146,8 +147,8 @@ struct RigidWorld::Content {
     TROCAR_ASSERT(dispatcher->getNumManifolds() == 0);
     solver = std::make_unique<btSequentialImpulseConstraintSolver>();
     broadphase = std::make_unique<btDbvtBroadphase>();
-    world = std::make_unique<btDiscreteDynamicsWorld>(dispatcher.get(), broadphase.get(), solver.get(),
-                                                      configuration.get());
+    world = std::make_unique<ReducedContactWorld>(dispatcher.get(), broadphase.get(), solver.get(),
+                                                  configuration.get());
     world->setGravity(ToBullet(gravity));
     world->getSolverInfo().m_numIterations = kSolverIterations;
     world->getSolverInfo().m_leastSquaresResidualThreshold = std::pow(kConvergedSpeed * kScale, 2);
@@ -350,7 +351,7 @@ struct RigidWorld::Content {
       if (saved.held >= 0) AddHold(tool, saved.held, LoadTransform(saved.X_carrier_body));
       tool.ticks_over = saved.ticks_over;
     }
-    world->performDiscreteCollisionDetection();
+    world->FindAllContacts();
     LoadContacts(state.contacts, *dispatcher);
   }
 
