@@ -96,9 +96,10 @@ py::tuple DescribeOutcome(const Outcome& outcome) {
 std::unique_ptr<agent::Surgeon> MakeSurgeon(const Environment& environment, const std::string& name,
                                             std::uint64_t seed) {
   const scene::Scene& scene = environment.GetSimulation().GetScene();
-  return Take(environment.ActionCount() == 0
-                  ? agent::MakeSurgeon(name, std::make_shared<const scene::Scene>(scene), seed)
-                  : agent::MakeSurgeonTakingOver(name, scene, environment.LastInput(), seed));
+  return Take(
+      environment.ActionCount() == 0
+          ? agent::MakeSurgeon(name, std::make_shared<const scene::Scene>(scene), seed)
+          : agent::MakeSurgeonTakingOver(name, scene, environment.GetSimulation().GetSnapshot(), seed));
 }
 
 /// A pool with what is drawn of it.

@@ -149,7 +149,7 @@ class Environment(_Env):
         return self._observe(), reward, terminated, truncated, {"is_success": success, "features": features}
 
     def surgeon(self, name: str = "expert", seed: int = 1) -> _trocar.Surgeon:
-        """A scripted surgeon who goes on from here, for :meth:`step_by`. Where tissue is worked on, only before the first step."""
+        """A scripted surgeon who goes on from here, for :meth:`step_by`."""
         return self._open().surgeon(name, seed)
 
     def step_by(self, surgeon: _trocar.Surgeon):

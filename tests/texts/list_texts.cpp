@@ -341,6 +341,7 @@ int main(int count, char** arguments) {
                             "fundus first",
                             "close the bag",
                             "look from aside",
+                            "look past the shaft",
                             "look at the triangle",
                             "look at the bed",
                             "look at the stumps",

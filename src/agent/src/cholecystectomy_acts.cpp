@@ -177,6 +177,8 @@ void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen)
       return;
     case Kind::kLookFromSide:
       return PlanLookFromSide(act, seen);
+    case Kind::kLookPastShaft:
+      return PlanLookPastShaft(act, seen);
     case Kind::kTimeOut:
       if (!has_view_) BailOut(ExplainMissingView(seen));
       return;

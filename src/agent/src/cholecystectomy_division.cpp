@@ -84,6 +84,7 @@ void CholecystectomySurgeon::GoOnDividing(const Snapshot& seen) {
 
 void CholecystectomySurgeon::ClipAt(std::size_t which, double arc) {
   Take(ToolKind::kClipApplier);
+  LookPastShaft(which, arc);
   SurgeonAct& act = Add(SurgeonAct::Kind::kLineUpClip, "line up the clip", 5.0);
   act.tube = which;
   act.share = arc;

@@ -8,12 +8,7 @@
 
 namespace trocar::agent {
 
-using math::Pose;
-using scene::CalcLaparoscopePose;
-using scene::FindView;
-using scene::ViewRequest;
 using simulation::InstrumentSnapshot;
-using simulation::IsInView;
 namespace {
 
 using instrument::ToolKind;
@@ -23,15 +18,6 @@ constexpr int kRounds = 4, kBedRounds = 12, kRoundsOfWay = 2;
 constexpr double kPedicleWeight = 3.0;  // of fibres on the cystic duct and artery, among others
 constexpr double kBesideView = 0.05;    // of a tool, out of the way of the view [m]
 constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
-constexpr double kTurnStep = 0.2;       // of the lens about the duct, to either side in turn [rad]
-constexpr int kTurnSteps = 26;
-constexpr double kTilts[] = {0.0, 0.5, -0.5};  // of the lens along the duct [rad]
-constexpr double kAside = 0.4;                 // of a view from the front of the neck [rad]
-constexpr double kJustAside = 0.28;  // likewise where no better is found; the judge asks for 0.25 [rad]
-constexpr double kDistances[] = {0.060, 0.072, 0.050};  // of the lens from the duct [m]
-constexpr double kSkin = 0.004;      // sight ends at the skin of a duct, not at its axis [m]
-constexpr double kNeckStep = 0.008;  // of the hold about the duct, to show the other side of the neck [m]
-constexpr int kNeckTurns = 7;
 /// Of the hold about the duct, so that tools come to the other side of the triangle [m].
 constexpr double kOpenNeck = 0.014;
 constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
@@ -252,7 +238,7 @@ void CholecystectomySurgeon::PlanCriticalView(const SurgeonAct& act, const Snaps
   out_of_the_way.back = kBesideView;
   Reach(kRight, out_of_the_way);
   Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = false;
-  for (const int side : {+1, -1}) LookFromSide(side, kNeckTurns);
+  for (const int side : {+1, -1}) LookFromSide(side);
   LookAt(Place::OnTube(FindTube(TubeRole::kCysticDuct), 0.4), 0.0, 0.080);
   Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = true;
   ShowCriticalView(act.count - 1);
@@ -274,72 +260,6 @@ std::optional<std::size_t> CholecystectomySurgeon::FindExtraArtery(const Snapsho
     }
   }
   return arteries.back();
-}
-
-/// A pose of the laparoscope that shows the triangle from one side of its front, with nothing before it.
-/// \param aside  from the front of the neck at least [rad]
-std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(const Snapshot& seen, int side,
-                                                                             double aside) {
-  const std::size_t duct = FindTube(TubeRole::kCysticDuct), hepatic = FindTube(TubeRole::kCommonHepaticDuct);
-  const std::array<Vec3, 3> points = {TubePoint(seen, duct, 0.3), TubePoint(seen, duct, 0.7),
-                                      0.5 * (TubePoint(seen, duct, 0.5) + TubePoint(seen, hepatic, 0.5))};
-  const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
-  const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - middle);
-  const Vec3 along = TubeDirection(seen, duct, 0.5);
-  const Vec3 across = math::Normalized(math::Cross(along, to_eye), {1, 0, 0});
-  for (int step = 0; step < kTurnSteps; ++step) {
-    const double turn = (step % 2 == 0 ? 1 : -1) * kTurnStep * (1 + step / 2);
-    for (const double tilt : kTilts) {
-      const math::Quaternion turned = math::RotationAbout(along, turn) * math::RotationAbout(across, tilt);
-      for (const double distance : kDistances) {
-        ViewRequest request;
-        request.p_world = middle;
-        request.distance = distance;
-        request.facing = math::Rotate(turned, to_eye);
-        const auto found = FindView(scene_->laparoscope, request);
-        if (!found) continue;
-        const Pose X = CalcLaparoscopePose(scene_->laparoscope, *found);
-        if (side * CalcAzimuth(seen, X.translation) < aside) continue;
-        const bool shows_all = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-          const Vec3 end = p + kSkin * math::Normalized(X.translation - p);
-          return IsInView(X, scene_->laparoscope.field_of_view, p) &&
-                 Clearance(seen, {X.translation, end}) > 0.0002;
-        });
-        if (shows_all) return found;
-      }
-    }
-  }
-  return std::nullopt;
-}
-
-/// Looks at the triangle from one side of its front; where the picture does not get there, the left hand turns the
-/// neck towards it, farther with each try, and at last by another hold.
-/// \param is_last_hold  the left hand holds the neck itself
-void CholecystectomySurgeon::LookFromSide(int side, int tries, bool is_last_hold) {
-  SurgeonAct& act = Decide(SurgeonAct::Kind::kLookFromSide, "look from aside");
-  act.side = side;
-  act.count = tries;
-  act.is_on = is_last_hold;
-}
-
-void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snapshot& seen) {
-  const auto& score = seen.operation.critical_view;
-  if (score.IsAchieved() || score.Sum() < 6) return;
-  const bool may_turn = act.count > 0 && seen.instruments[kLeft].is_grasping;
-  auto view = FindSideView(seen, act.side, kAside);
-  if (!view && !may_turn) view = FindSideView(seen, act.side, kJustAside);
-  if (view) {
-    Add(SurgeonAct::Kind::kLookFrom, "look from aside", 8.0).camera = *view;
-    Wait(1.3);
-    return;
-  }
-  if (may_turn) {
-    TurnNeck(seen, act.side, kNeckStep);
-    LookFromSide(act.side, act.count - 1, act.is_on);
-  } else if (!act.is_on) {
-    HoldOn(Place::AtNode(known_.neck));
-    LookFromSide(act.side, kNeckTurns, true);
-  }
 }
 
 /// What comes first where the bed is opened from the infundibulum or from the fundus on [m].

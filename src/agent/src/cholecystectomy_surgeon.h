@@ -75,6 +75,7 @@ class CholecystectomySurgeon final : public Surgeon {
 
  private:
   static constexpr int kHoldTries = 3;
+  static constexpr int kNeckTurns = 7;      // of the hold, to show the neck from another side
   static constexpr int kTriangleWays = 4;   // other ways to hold the neck, where fat cannot be reached
   static constexpr double kCleared = 0.91;  // of the triangle: a little more than the view asks [-]
   static constexpr std::uint64_t kNever = ~std::uint64_t{0};
@@ -157,8 +158,11 @@ class CholecystectomySurgeon final : public Surgeon {
   void CheckPlacedClip(const SurgeonAct& act, const Snapshot& seen);
   void FreeLowerThird(int rounds);
   void ShowCriticalView(int rounds);
-  void LookFromSide(int side, int tries, bool is_last_hold = false);
+  void LookFromSide(int side, int tries = kNeckTurns, bool is_last_hold = false);
+  void LookPastShaft(std::size_t which, double arc);
+  void PlanLookPastShaft(const SurgeonAct& act, const Snapshot& seen);
   std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side, double aside);
+  bool Shows(const Snapshot& seen, const math::Pose& X_world_lens, std::span<const Vec3> points);
   std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
   void Divide(std::vector<std::size_t> tubes, int rounds = 3);
   void PlanDivision(const SurgeonAct& act, const Snapshot& seen);

@@ -107,6 +107,7 @@ struct SurgeonAct {
     kDivideExtraArtery,
     kFollowWithCamera,
     kLookFromSide,
+    kLookPastShaft,
     kTimeOut,
     kCheckStumps,
     kFreeFromBed,

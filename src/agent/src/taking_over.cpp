@@ -6,15 +6,11 @@
 namespace trocar::agent {
 
 core::Result<std::unique_ptr<Surgeon>> MakeSurgeonTakingOver(std::string_view name, const Scene& scene,
-                                                             const Input& now, std::uint64_t seed) {
-  if (!scene.patient.organs.empty() || !scene.patient.tubes.empty()) {
-    return core::Error{core::ErrorCode::kUsage,
-                       "nobody takes over where tissue is worked on; let the surgeon begin with the episode"};
-  }
+                                                             const Snapshot& seen, std::uint64_t seed) {
   auto begun = std::make_shared<Scene>(scene);
   for (std::size_t hand = 0; hand < scene::kHandCount; ++hand)
-    begun->instruments[hand].home = now.hands[hand];
-  begun->laparoscope.home = now.laparoscope;
+    begun->instruments[hand].home = seen.instruments[hand].joints;
+  begun->laparoscope.home = seen.laparoscope;
   return MakeSurgeon(name, std::move(begun), seed);
 }
 

@@ -15,9 +15,12 @@
 #include "connective_tissue.h"
 #include "operation_harness.h"
 #include "trocar/agent/surgeon.h"
+#include "trocar/agent/taking_over.h"
 #include "trocar/anatomy/generate_patient.h"
+#include "trocar/math/rotation_angle.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/training/operation_end.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::agent {
 
@@ -44,6 +47,9 @@ Simulation MakeOperation() {
   EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().Text());
   return std::move(*made);
 }
+
+/// Between the line of sight and the shaft of a tool that is looked past [rad].
+constexpr double kLeastPastShaft = 0.5;
 
 /// Runs a surgeon to the end, or for that long.
 OperationResult Play(const std::string& name, Simulation& simulation, double most_seconds = 120) {
@@ -174,9 +180,46 @@ TEST(Operation, ATickThatCutsSolvesHalfAsMuch) {
   EXPECT_EQ(most_without, most);
 }
 
+/// The neck is held: hands that went back to where an operation begins would tear it.
+TEST(Operation, WhoTakesOverBeginsWhereTheHandsAre) {
+  Simulation simulation = MakeOperation();
+  auto first = MakeSurgeon("expert", OperationScene(), 1);
+  ASSERT_TRUE(first.ok());
+  const Snapshot& seen = simulation.GetSnapshot();
+  while (!seen.instruments[kLeft].is_grasping && seen.time < 30) simulation.Step((*first)->Act(seen));
+  for (int tick = 0; tick < 120; ++tick) simulation.Step((*first)->Act(seen));
+  ASSERT_TRUE(seen.instruments[kLeft].is_grasping);
+  const auto place = [&](int hand) {
+    return seen.instruments[static_cast<std::size_t>(hand)].X_world_device.translation;
+  };
+  const Vec3 left = place(kLeft), right = place(kRight), eye = seen.X_world_laparoscope.translation;
+  auto second = MakeSurgeonTakingOver("expert", simulation.GetScene(), seen, 2);
+  ASSERT_TRUE(second.ok());
+  simulation.Step((*second)->Act(seen));
+  EXPECT_LT(math::Distance(place(kLeft), left), 5e-4);
+  EXPECT_LT(math::Distance(place(kRight), right), 5e-4);
+  EXPECT_LT(math::Distance(seen.X_world_laparoscope.translation, eye), 5e-4);
+  EXPECT_TRUE(seen.instruments[kLeft].is_grasping);
+}
+
 TEST(OperationWhole, AnExpertGoesFromTheFirstLookToTheBag) {
   Simulation simulation = MakeOperation();
-  const OperationResult result = Play("expert", simulation, 900.0);
+  auto surgeon = MakeSurgeon("expert", OperationScene(), 1);
+  ASSERT_TRUE(surgeon.ok());
+  const Snapshot& seen = simulation.GetSnapshot();
+  std::size_t clips = 0;
+  while (!(*surgeon)->HasFinished() && seen.time < 900.0) {
+    simulation.Step((*surgeon)->Act(seen));
+    if (seen.operation.clip_count == clips) continue;
+    const Vec3 clip = seen.operation.clips[clips++].X_world_clip.translation;
+    EXPECT_TRUE(
+        simulation::IsInView(seen.X_world_laparoscope, OperationScene()->laparoscope.field_of_view, clip));
+    const Vec3 shaft = OperationScene()->instruments[kRight].p_world_port - clip;
+    EXPECT_GT(math::AngleBetween(seen.X_world_laparoscope.translation - clip, shaft), kLeastPastShaft)
+        << "the applier hides clip " << clips;
+  }
+  EXPECT_GT(clips, 0u);
+  const OperationResult result = *simulation.GetOperationResult();
   EXPECT_TRUE(result.is_completed);
   EXPECT_TRUE(result.was_critical_view_achieved);
   for (const training::ErrorEntry& error : result.errors.Entries())
@@ -227,8 +270,8 @@ TEST(OperationWhole, AnExpertOperatesOnGeneratedPatients) {
   int good = 0, unfinished = 0;
   std::size_t critical = 0;
   for (int seed = 1; seed <= kPatients; ++seed) {
-    const auto folder = std::filesystem::path(testing::TempDir()) / ("operated-" + std::to_string(seed));
-    std::filesystem::remove_all(folder);
+    const test::TemporaryFolder temporary;
+    const auto folder = temporary.Path() / "patient";
     const auto patient = anatomy::GeneratePatient(static_cast<std::uint64_t>(seed));
     ASSERT_TRUE(patient.ok()) << patient.error().Text();
     ASSERT_TRUE(anatomy::WritePatient(folder, *patient).ok());
@@ -253,7 +296,6 @@ TEST(OperationWhole, AnExpertOperatesOnGeneratedPatients) {
     unfinished += end == training::OperationEnd::kUnfinished ? 1 : 0;
     good += is_good ? 1 : 0;
     critical += own;
-    std::filesystem::remove_all(folder);
   }
   EXPECT_GE(good, kWanted);
   EXPECT_EQ(critical, 0u) << "no expert commits a critical error";

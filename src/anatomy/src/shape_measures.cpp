@@ -8,6 +8,7 @@
 
 #include "patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/rotation_angle.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::anatomy {
@@ -149,7 +150,7 @@ std::optional<double> CalcEdgeAngle(const TriangleMesh& liver, const Vec3& edge)
     (normal.z > 0 ? front : back) += normal;
   }
   if (Norm(front) == 0 || Norm(back) == 0) return std::nullopt;
-  return M_PI - std::acos(std::clamp(Dot(math::Normalized(front), math::Normalized(back)), -1.0, 1.0));
+  return M_PI - math::AngleBetween(front, back);
 }
 
 }  // namespace

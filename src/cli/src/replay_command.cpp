@@ -17,7 +17,7 @@
 #include "console.h"
 #include "picture_size.h"
 #include "replay_video.h"
-#include "trocar/agent/surgeon.h"
+#include "trocar/agent/taking_over.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/translate.h"
@@ -185,9 +185,8 @@ core::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
   auto branch = replay.Branch(arguments.threads);
   if (!branch.ok()) return branch.error();
   simulation::Simulation& simulation = *branch;
-  const std::shared_ptr<const scene::Scene> scene(std::shared_ptr<const scene::Scene>(),
-                                                  &simulation.GetScene());
-  auto surgeon = agent::MakeSurgeon(arguments.surgeon, scene, seed);
+  auto surgeon = agent::MakeSurgeonTakingOver(arguments.surgeon, simulation.GetScene(),
+                                              simulation.GetSnapshot(), seed);
   if (!surgeon.ok()) return surgeon.error();
   description.player = arguments.surgeon + ", taking over from " + description.player;
   auto recording = AttemptRecording::Start(arguments.record, description, simulation);

@@ -63,5 +63,11 @@ TEST(RotationAngle, IsThatOfTheShortestWay) {
   EXPECT_EQ(SquaredNorm(Quaternion{1, -2, 3, -4}), 30.0);
 }
 
+TEST(RotationAngle, OfDirectionsDoesNotHangOnTheirLength) {
+  EXPECT_NEAR(AngleBetween(Vec3{2, 0, 0}, Vec3{0, 0, 0.001}), 0.5 * M_PI, 1e-12);
+  EXPECT_EQ(AngleBetween(Vec3{1, 1, 1}, Vec3{0.1, 0.1, 0.1}), 0.0);
+  EXPECT_NEAR(AngleBetween(Vec3{1, 2, 3}, Vec3{-2, -4, -6}), M_PI, 1e-7);
+}
+
 }  // namespace
 }  // namespace trocar::math

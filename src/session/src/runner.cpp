@@ -10,6 +10,7 @@
 
 #include "attempt_keeper.h"
 #include "trocar/agent/surgeon.h"
+#include "trocar/agent/taking_over.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/newest_slot.h"
 #include "trocar/core/real_time.h"
@@ -19,7 +20,7 @@
 namespace trocar::session {
 
 using agent::ListSurgeons;
-using agent::MakeSurgeon;
+using agent::MakeSurgeonTakingOver;
 using agent::Surgeon;
 using agent::SurgeonEntry;
 using scene::CalcScriptInput;
@@ -62,9 +63,7 @@ struct Runner::Content {
       return now;
     }
     if (expert == nullptr) {
-      // the scene lives as long as the simulation, and that as long as the expert
-      auto made = MakeSurgeon(kExpert, std::shared_ptr<const Scene>(std::shared_ptr<const Scene>(), &scene),
-                              scene.seed);
+      auto made = MakeSurgeonTakingOver(kExpert, scene, seen, scene.seed);
       if (!made.ok()) return now;
       expert = std::move(*made);
     }

@@ -7,9 +7,9 @@
 namespace trocar::agent {
 
 /// One whose hands and laparoscope begin where they are, and whose plan begins with what is seen next.
-/// \param now  what the last tick was given
-/// \return as MakeSurgeon; kUsage where tissue is worked on: its surgeons remember how it lay before
+/// \param seen  as the last tick left it
+/// \return as MakeSurgeon
 core::Result<std::unique_ptr<Surgeon>> MakeSurgeonTakingOver(std::string_view name, const Scene& scene,
-                                                             const Input& now, std::uint64_t seed);
+                                                             const Snapshot& seen, std::uint64_t seed);
 
 }  // namespace trocar::agent
