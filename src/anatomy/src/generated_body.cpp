@@ -6,6 +6,7 @@
 
 #include "trocar/geometry/distance.h"
 #include "trocar/math/random.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -13,7 +14,6 @@ namespace {
 using math::Vec3;
 
 constexpr double kGapMm = 1.3;  // between liver and gallbladder, so that their meshes do not touch
-constexpr double kRadians = M_PI / 180;
 
 /// Extents of the model below at scale 1: where the search for the scale starts.
 constexpr Vec3 kNominalMm = {222.5, 172, 118};
@@ -270,12 +270,12 @@ double GeneratedBody::MakeGallbladder(std::span<const Parameter> parameters) {
     return pouch * std::exp(-std::pow((t - kPlace) / (t < kPlace ? kToDuct : kToBody), 2));
   };
 
-  const double azimuth = number("gallbladder_azimuth") * kRadians;
+  const double azimuth = number("gallbladder_azimuth") * math::kDegree;
   const Vec3 direction = {-std::sin(azimuth), 0, std::cos(azimuth)};
   const double start = -0.5 * length;
   const auto way = FindVisceralWay(-13 * scale_.x + start * direction.x, start * direction.z, direction);
   const double tip = FindEdge(way) + number("fundus_overhang");
-  const double bend = number("gallbladder_bend") * kRadians, embedding = number("gallbladder_embedding");
+  const double bend = number("gallbladder_bend") * math::kDegree, embedding = number("gallbladder_embedding");
   const auto point_at = [&](double along) {
     std::size_t i = 0;
     while (i + 2 < way.size() && way[i + 1].second < along) ++i;
@@ -318,7 +318,7 @@ void GeneratedBody::FoldFundus(Worm& axis) const {
   const Vec3 forward = math::Normalized(axis.points[hinge] - axis.points[hinge - 1]);
   const Vec3 below = -viscera_.OutwardAt(axis.points[hinge]);
   const Vec3 down = math::Normalized(below - Dot(below, forward) * forward);
-  constexpr double kFold = 125 * kRadians;
+  constexpr double kFold = 125 * math::kDegree;
   const double step = Distance(axis.points[hinge], axis.points[hinge - 1]);
   Vec3 at = axis.points[hinge - 1];
   for (std::size_t i = hinge; i < n; ++i) {
@@ -332,7 +332,7 @@ void GeneratedBody::FoldFundus(Worm& axis) const {
 /// Pitches the visceral face until the gallbladder has its inclination, as far as the shape allows, and makes lobes
 /// and gallbladder so.
 void GeneratedBody::FindPitch(std::span<const Parameter> parameters) {
-  const double wanted = NumberOf(parameters, "gallbladder_inclination") * kRadians;
+  const double wanted = NumberOf(parameters, "gallbladder_inclination") * math::kDegree;
   double steep = -1.3, flat = 0.9;
   constexpr int kHalvings = 16;
   for (int i = 0; i < kHalvings; ++i) {

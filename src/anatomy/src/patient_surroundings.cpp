@@ -7,6 +7,7 @@
 #include "patient_frame.h"
 #include "trocar/geometry/mesh_file.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -16,10 +17,9 @@ using core::ErrorCode;
 using core::JsonView;
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr core::NumberRange kPortMm{-3000, 3000};
 constexpr core::NumberRange kTableDeg{-30, 30};
-constexpr double kMostTableTilt = 30 * kDegree;
+constexpr double kMostTableTilt = 30 * math::kDegree;
 constexpr const char* kUses[] = {"laparoscope", "left_hand", "right_hand", "assistant"};
 static_assert(std::size(kUses) == kPortUseCount);
 
@@ -75,8 +75,8 @@ void ReadSurroundings(const JsonView& root, Patient& patient) {
   if (root.Has("table")) {
     const JsonView view = root.Object("table");
     view.AllowOnly({"head_up_deg", "right_up_deg", "reason"});
-    patient.table = Table{kDegree * view.Number("head_up_deg", kTableDeg),
-                          kDegree * view.Number("right_up_deg", kTableDeg), view.Text("reason")};
+    patient.table = Table{math::kDegree * view.Number("head_up_deg", kTableDeg),
+                          math::kDegree * view.Number("right_up_deg", kTableDeg), view.Text("reason")};
   }
 }
 
@@ -102,8 +102,8 @@ std::vector<std::pair<std::string, Json>> MakeSurroundingsJson(const Patient& pa
     members.emplace_back("ports", std::move(ports));
   }
   if (patient.table) {
-    members.emplace_back("table", Json{{"head_up_deg", patient.table->head_up / kDegree},
-                                       {"right_up_deg", patient.table->right_up / kDegree},
+    members.emplace_back("table", Json{{"head_up_deg", patient.table->head_up / math::kDegree},
+                                       {"right_up_deg", patient.table->right_up / math::kDegree},
                                        {"reason", patient.table->reason}});
   }
   return members;

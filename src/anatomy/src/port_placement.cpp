@@ -10,6 +10,7 @@
 
 #include "trocar/anatomy/move_port.h"
 #include "trocar/core/assert.h"
+#include "trocar/math/rotation_angle.h"
 #include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
@@ -32,7 +33,6 @@ constexpr double kLeastReach = 0.075, kMostReach = 0.220;               // of th
 constexpr double kRibGap = 0.015, kOrganGap = 0.010, kPortGap = 0.045;  // [m]
 constexpr double kStep = 0.005;
 constexpr int kMostSteps = 20;
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kUsualHeadUp = 12, kUsualRightUp = 8;   // [deg]
 constexpr double kSteepHeadUp = 15, kSteepRightUp = 10;  // where bowel lies on the gallbladder
 constexpr double kBowelNear = 0.008;                     // [m]
@@ -271,12 +271,12 @@ Table PlaceTable(const Patient& patient) {
     }
   }
   if (nearest < kBowelNear) {
-    return {kSteepHeadUp * kDegree, kSteepRightUp * kDegree,
+    return {kSteepHeadUp * math::kDegree, kSteepRightUp * math::kDegree,
             "Head up and right side up more than usual: the " + roles::SpokenName(bowel->role) + " lies " +
                 (nearest < 0.001 ? "on" : Mm(nearest) + " from") + " the gallbladder and is to fall away."};
   }
   return {
-      kUsualHeadUp * kDegree, kUsualRightUp * kDegree,
+      kUsualHeadUp * math::kDegree, kUsualRightUp * math::kDegree,
       bowel != nullptr ? "As usual: no bowel lies on the gallbladder." : "As usual: no bowel is outlined."};
 }
 

@@ -8,12 +8,12 @@
 
 #include "trocar/anatomy/move_port.h"
 #include "trocar/core/translate.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::editor {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
-constexpr double kSameTilt = 0.01 * kDegree;
+constexpr double kSameTilt = 0.01 * math::kDegree;
 constexpr std::size_t kMostUndo = 200;
 
 PortPlan PlanOf(const anatomy::Patient& patient) {
@@ -52,7 +52,9 @@ void PortEditor::Release(const anatomy::Patient& patient) {
 }
 
 bool PortEditor::Tilt(anatomy::Patient& patient, double head_up_deg, double right_up_deg) {
-  const auto tilt = [](double degrees) { return std::clamp(degrees, -kMostTiltDeg, kMostTiltDeg) * kDegree; };
+  const auto tilt = [](double degrees) {
+    return std::clamp(degrees, -kMostTiltDeg, kMostTiltDeg) * math::kDegree;
+  };
   const anatomy::Table table = patient.table.value_or(anatomy::Table{});
   if (std::fabs(tilt(head_up_deg) - table.head_up) < kSameTilt &&
       std::fabs(tilt(right_up_deg) - table.right_up) < kSameTilt)

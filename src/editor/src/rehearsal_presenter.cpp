@@ -13,6 +13,7 @@
 #include "trocar/core/state_archive.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/translate.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::editor {
 namespace {
@@ -21,7 +22,6 @@ namespace fs = std::filesystem;
 using core::Error;
 using core::ErrorCode;
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::size_t kLeastSlices = 2;  // with contours, of each organ
 
 constexpr const char* kTitles[kRehearsalSteps] = {
@@ -656,7 +656,7 @@ void RehearsalPresenter::RefreshPorts() {
     shown.list.push_back({SpokenUse(port.use), SpokenPlace(port.position), SpokenReason(port.reason)});
   }
   const anatomy::Table table = patient.table.value_or(anatomy::Table{});
-  shown.head_up_deg = table.head_up / kDegree, shown.right_up_deg = table.right_up / kDegree;
+  shown.head_up_deg = table.head_up / math::kDegree, shown.right_up_deg = table.right_up / math::kDegree;
   shown.table_reason = SpokenReason(table.reason);
   shown.is_proposal = !ports_.FindChange(patient);
 }

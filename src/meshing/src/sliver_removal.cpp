@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <vector>
+#include "trocar/math/rotation_angle.h"
 
 #include "surface_edits.h"
 
@@ -14,11 +15,10 @@ namespace {
 using geometry::TriangleMesh;
 using math::Vec3;
 
-constexpr double kRadians = M_PI / 180.0;
 /// Angles up to this count as too small while a patch is improved: a margin above any sliver [rad].
-constexpr double kGoalAngle = 10.0 * kRadians;
+constexpr double kGoalAngle = 10.0 * math::kDegree;
 /// A patch is done when its angles are this much above a sliver's [rad].
-constexpr double kMargin = 1.0 * kRadians;
+constexpr double kMargin = 1.0 * math::kDegree;
 /// Trial steps of a vertex, in mean lengths of its edges.
 constexpr double kSteps[] = {0.05, 0.12, 0.25, 0.45};
 /// A step along the normal changes the shape: it must gain so many times as much as one along the surface.
@@ -40,7 +40,7 @@ double CalcShortfall(const std::vector<PlacedTriangle>& triangles) {
 class SliverRemover {
  public:
   SliverRemover(const TriangleMesh& mesh, const SliverSettings& settings)
-      : edits_(mesh), settings_(settings), least_angle_(settings.least_angle_deg * kRadians) {}
+      : edits_(mesh), settings_(settings), least_angle_(settings.least_angle_deg * math::kDegree) {}
 
   void Run() {
     for (int pass = 0; pass < settings_.passes; ++pass) {
@@ -171,7 +171,7 @@ std::size_t CountSlivers(const TriangleMesh& mesh, double least_angle_deg) {
   return static_cast<std::size_t>(
       std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const geometry::Triangle& t) {
         return geometry::CalcSmallestAngle(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]) <
-               least_angle_deg * kRadians;
+               least_angle_deg * math::kDegree;
       }));
 }
 

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::presenter {
 namespace {
 
 using scene::LiveSettings;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kMaxTiltDeg = 0.6 / kDegree;
+constexpr double kMaxTiltDeg = 0.6 / math::kDegree;
 
 constexpr SettingRow kRows[] = {
     {"Tissue",
@@ -48,7 +48,7 @@ constexpr SettingRow kRows[] = {
      "Reverse Trendelenburg: the head end of the table up. Surgeons take 10° to 15°.",
      {ScaleKind::kLinear, -kMaxTiltDeg, kMaxTiltDeg},
      0,
-     kDegree,
+     math::kDegree,
      [](const LiveSettings& s) { return s.head_up; },
      [](LiveSettings& s, double v) { s.head_up = v; }},
     {"Gravity and table",
@@ -57,7 +57,7 @@ constexpr SettingRow kRows[] = {
      "The patient's right side up, so that bowel falls away from the gallbladder.",
      {ScaleKind::kLinear, -kMaxTiltDeg, kMaxTiltDeg},
      0,
-     kDegree,
+     math::kDegree,
      [](const LiveSettings& s) { return s.right_up; },
      [](LiveSettings& s, double v) { s.right_up = v; }},
     {"Solver",

@@ -16,11 +16,10 @@
 #include "script.h"
 #include "tissue_model_file.h"
 #include "trocar/core/json.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::scene {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 /// A landmark with an offset, or a point: {"at": "fundus", "offset_mm": [0, 0, 10]}, {"at_mm": [0, 40, -120]}.
 Vec3 ReadTarget(const core::JsonView& view, std::string_view key, const anatomy::Patient& patient) {
@@ -68,8 +67,8 @@ void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy:
   if (!setup.tray.empty()) setup.tool = setup.tray.front();
   setup.p_world_port = ReadPort(view, patient, use);
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "tip", patient),
-                                      view.NumberOr("spin_deg", 0.0, range::kTurnDeg) * kDegree,
-                                      view.NumberOr("jaw_deg", 0.0, range::kJawDeg) * kDegree);
+                                      view.NumberOr("spin_deg", 0.0, range::kTurnDeg) * math::kDegree,
+                                      view.NumberOr("jaw_deg", 0.0, range::kJawDeg) * math::kDegree);
 }
 
 void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
@@ -138,10 +137,10 @@ void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient
   settings.holds_camera = holder == "automatic";
   setup.p_world_port = ReadPort(view, patient, anatomy::PortUse::kLaparoscope);
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "target", patient),
-                                      view.NumberOr("post_deg", 0.0, range::kTurnDeg) * kDegree, 0.0);
+                                      view.NumberOr("post_deg", 0.0, range::kTurnDeg) * math::kDegree, 0.0);
   setup.home.depth = 0.001 * view.Number("depth_mm", range::kLaparoscopeDepthMm);
-  setup.view_angle = view.NumberOr("view_angle_deg", 0.0, range::kViewAngleDeg) * kDegree;
-  setup.field_of_view = view.NumberOr("field_of_view_deg", 75.0, range::kFieldOfViewDeg) * kDegree;
+  setup.view_angle = view.NumberOr("view_angle_deg", 0.0, range::kViewAngleDeg) * math::kDegree;
+  setup.field_of_view = view.NumberOr("field_of_view_deg", 75.0, range::kFieldOfViewDeg) * math::kDegree;
   if (!view.BooleanOr("look_at_target", false)) return;
   ViewRequest request;
   request.p_world = ReadTarget(view, "target", patient);
@@ -181,8 +180,8 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
       view.NumberOr("stiffness_scale", settings.stiffness_scale, range::kStiffnessScale);
   settings.shape_scale = view.NumberOr("shape_scale", settings.shape_scale, range::kShapeScale);
   settings.gravity = view.NumberOr("gravity_m_s2", settings.gravity, range::kGravity);
-  settings.head_up = view.NumberOr("head_up_deg", 0.0, range::kTiltDeg) * kDegree;
-  settings.right_up = view.NumberOr("right_up_deg", 0.0, range::kTiltDeg) * kDegree;
+  settings.head_up = view.NumberOr("head_up_deg", 0.0, range::kTiltDeg) * math::kDegree;
+  settings.right_up = view.NumberOr("right_up_deg", 0.0, range::kTiltDeg) * math::kDegree;
   settings.solver.max_iterations =
       view.IntegerOr("max_iterations", settings.solver.max_iterations, range::kMaxIterations);
   settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, range::kTolerance);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::scene {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 using math::Vec3;
 using rigid::RigidShape;
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::size_t kMaxPathPoints = 200;
 constexpr std::string_view kColours[] = {"red", "yellow", "green", "blue", "white", "grey", "black", "steel"};
 static_assert(std::size(kColours) == static_cast<std::size_t>(ObjectColour::kCount));
@@ -28,9 +28,9 @@ math::Pose ReadPlace(const core::JsonView& view) {
   if (view.Has("at_mm")) pose.translation = ReadPointMm(view, "at_mm");
   if (view.Has("turn_deg")) {
     const auto turn = view.Numbers("turn_deg", 3, range::kTurnDeg);
-    pose.rotation = math::RotationAbout({0, 0, 1}, turn[2] * kDegree) *
-                    math::RotationAbout({0, 1, 0}, turn[1] * kDegree) *
-                    math::RotationAbout({1, 0, 0}, turn[0] * kDegree);
+    pose.rotation = math::RotationAbout({0, 0, 1}, turn[2] * math::kDegree) *
+                    math::RotationAbout({0, 1, 0}, turn[1] * math::kDegree) *
+                    math::RotationAbout({1, 0, 0}, turn[0] * math::kDegree);
   }
   return pose;
 }
@@ -121,7 +121,7 @@ SceneObject ReadObject(const core::JsonView& view) {
     ObjectGrip grip;
     grip.point = ReadPointMm(one, "at_mm");
     if (one.Has("across")) grip.across = ReadDirection(one, "across");
-    if (one.Has("open_deg")) grip.opening = one.Number("open_deg", range::kGripOpenDeg) * kDegree;
+    if (one.Has("open_deg")) grip.opening = one.Number("open_deg", range::kGripOpenDeg) * math::kDegree;
     object.grips.push_back(grip);
   }
   return object;

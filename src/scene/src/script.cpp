@@ -10,11 +10,11 @@
 #include "scene_objects.h"
 #include "trocar/core/json.h"
 #include "trocar/math/random.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::scene {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 /// Sines that make up the tremor of one axis.
 constexpr int kTremorSines = 3;
 constexpr const char* kHandNames[kHandCount] = {"left", "right"};
@@ -72,8 +72,9 @@ core::Result<Script> ReadScript(const std::filesystem::path& path, const anatomy
       }
       const Vec3 offset = pose.Has("offset_mm") ? ReadPointMm(pose, "offset_mm", range::kOffsetMm) : Vec3{};
       key.p_world_tip[hand] = landmark->position + offset;
-      key.spin[hand] = pose.NumberOr("spin_deg", key.spin[hand] / kDegree, range::kTurnDeg) * kDegree;
-      key.jaw[hand] = pose.NumberOr("jaw_deg", key.jaw[hand] / kDegree, range::kJawDeg) * kDegree;
+      key.spin[hand] =
+          pose.NumberOr("spin_deg", key.spin[hand] / math::kDegree, range::kTurnDeg) * math::kDegree;
+      key.jaw[hand] = pose.NumberOr("jaw_deg", key.jaw[hand] / math::kDegree, range::kJawDeg) * math::kDegree;
     }
     script.keys.push_back(key);
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "trocar/math/rotation_angle.h"
 
 #include "field_ranges.h"
 #include "scene_objects.h"
@@ -15,7 +16,6 @@ namespace {
 using core::ErrorCode;
 using core::JsonView;
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::size_t kMaxRegions = 256, kMaxGoals = 256, kMaxErrors = 64;
 
 class RulesReader {
@@ -63,8 +63,8 @@ class RulesReader {
   /// What the laparoscope has to see, from where.
   void ReadView(const JsonView& view, const std::string& item, Condition& c) const {
     c.regions = ReadRegions(view, item);
-    c.angle = view.NumberOr("within_deg", 5.0, range::kWithinDeg) * kDegree;
-    c.facing_angle = view.NumberOr("facing_deg", 180.0, range::kFacingDeg) * kDegree;
+    c.angle = view.NumberOr("within_deg", 5.0, range::kWithinDeg) * math::kDegree;
+    c.facing_angle = view.NumberOr("facing_deg", 180.0, range::kFacingDeg) * math::kDegree;
     c.near = 0.001 * view.NumberOr("near_mm", 0.0, range::kHeightMm);
     c.far = 0.001 * view.NumberOr("far_mm", 1000.0, range::kHeightMm);
     if (c.near >= c.far) view.Complain("near_mm must be below far_mm", ErrorCode::kSceneInvalid);
