@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bullet_units.h"
+#include "capsule_on_box.h"
 #include "reduced_contacts.h"
 #include "rigid_shapes.h"
 #include "rigid_state.h"
@@ -107,6 +108,7 @@ struct RigidWorld::Content {
   Vec3 gravity;
   double tick_seconds;
   // order matters: the world goes before what it is made of
+  CapsuleOnBox::CreateFunc capsule_on_box;
   std::unique_ptr<btDefaultCollisionConfiguration> configuration;
   std::unique_ptr<btCollisionDispatcher> dispatcher;
   std::unique_ptr<btDbvtBroadphase> broadphase;
@@ -140,9 +142,12 @@ struct RigidWorld::Content {
       btDefaultCollisionConstructionInfo sizes;
       sizes.m_defaultMaxPersistentManifoldPoolSize = kPooledManifolds;
       sizes.m_defaultMaxCollisionAlgorithmPoolSize = kPooledManifolds;
+      sizes.m_customCollisionAlgorithmMaxElementSize = sizeof(CapsuleOnBox);
       configuration = std::make_unique<btDefaultCollisionConfiguration>(sizes);
       // it fills two tables of 36 x 36; without bodies it remembers nothing, so one does for all worlds
       dispatcher = std::make_unique<btCollisionDispatcher>(configuration.get());
+      dispatcher->registerCollisionCreateFunc(CAPSULE_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, &capsule_on_box);
+      dispatcher->registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE, &capsule_on_box);
     }
     TROCAR_ASSERT(dispatcher->getNumManifolds() == 0);
     solver = std::make_unique<btSequentialImpulseConstraintSolver>();
