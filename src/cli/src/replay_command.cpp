@@ -185,8 +185,8 @@ core::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
   auto branch = replay.Branch(arguments.threads);
   if (!branch.ok()) return branch.error();
   simulation::Simulation& simulation = *branch;
-  auto surgeon = agent::MakeSurgeonTakingOver(arguments.surgeon, simulation.GetScene(),
-                                              simulation.GetSnapshot(), seed);
+  auto surgeon =
+      agent::MakeSurgeonTakingOver(arguments.surgeon, simulation.GetScene(), simulation.GetSnapshot(), seed);
   if (!surgeon.ok()) return surgeon.error();
   description.player = arguments.surgeon + ", taking over from " + description.player;
   auto recording = AttemptRecording::Start(arguments.record, description, simulation);
