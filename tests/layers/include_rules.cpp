@@ -43,6 +43,17 @@ std::string_view FindInclude(std::string_view line) {
   return end == std::string_view::npos ? std::string_view{} : line.substr(1, end - 1);
 }
 
+/// Lines of a file; none and a breach where it cannot be read.
+std::vector<std::string> ReadLines(const fs::path& file, const std::string& name,
+                                   std::vector<Breach>& breaches) {
+  std::vector<std::string> lines;
+  const core::Result<std::string> text = core::ReadFile(file);
+  if (!text) breaches.push_back({name, 0, text.error().Text()});
+  std::istringstream stream(text ? *text : std::string());
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 void CheckFile(const Layers& layers, const fs::path& source, const fs::path& path,
                std::vector<Breach>& breaches) {
   const std::string name = fs::relative(path, source).generic_string();
@@ -53,14 +64,9 @@ void CheckFile(const Layers& layers, const fs::path& source, const fs::path& pat
     return;
   }
   const bool is_public = name.find("/include/") != std::string::npos;
-  const core::Result<std::string> text = core::ReadFile(path);
-  if (!text) {
-    breaches.push_back({name, 0, text.error().Text()});
-    return;
-  }
-  std::istringstream lines(*text);
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number) {
+  int number = 0;
+  for (const std::string& line : ReadLines(path, name, breaches)) {
+    ++number;
     const std::string_view include = FindInclude(line);
     if (include.empty()) continue;
     if (include.starts_with("trocar/")) {
@@ -157,14 +163,9 @@ std::vector<Breach> FindBreaches(const Restriction& restriction, const fs::path&
   for (const fs::path& file : files) {
     const std::string name = fs::relative(file, source).generic_string();
     if (name.find("/test/") != std::string::npos) continue;
-    const core::Result<std::string> text = core::ReadFile(file);
-    if (!text) {
-      breaches.push_back({name, 0, text.error().Text()});
-      continue;
-    }
-    std::istringstream lines(*text);
-    std::string line;
-    for (int number = 1; std::getline(lines, line); ++number) {
+    int number = 0;
+    for (const std::string& line : ReadLines(file, name, breaches)) {
+      ++number;
       const std::string_view include = FindInclude(line);
       const bool is_quoted = line.find('"') != std::string::npos;
       if (include.empty() || (!include.starts_with("trocar/") && !is_quoted)) continue;
@@ -184,14 +185,9 @@ std::vector<Breach> FindCalls(const std::string& function, const fs::path& folde
   std::vector<Breach> breaches;
   for (const fs::path& file : FindSources(folder)) {
     const std::string name = fs::relative(file, folder).generic_string();
-    const core::Result<std::string> text = core::ReadFile(file);
-    if (!text) {
-      breaches.push_back({name, 0, text.error().Text()});
-      continue;
-    }
-    std::istringstream lines(*text);
-    std::string line;
-    for (int number = 1; std::getline(lines, line); ++number) {
+    int number = 0;
+    for (const std::string& line : ReadLines(file, name, breaches)) {
+      ++number;
       if (line.find(function + "()") != std::string::npos)
         breaches.push_back({name, number, "calls " + function});
     }

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 #include <vector>
-#include "trocar/math/rotation_angle.h"
 
 #include "surface_edits.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::meshing {
 namespace {

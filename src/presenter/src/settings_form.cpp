@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
-#include <numbers>
+
 #include "trocar/math/rotation_angle.h"
 
 namespace trocar::presenter {

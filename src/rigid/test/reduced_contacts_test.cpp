@@ -14,7 +14,7 @@ namespace trocar::rigid {
 namespace {
 
 /// A world of Bullet's with bodies that are not moved.
-class ContactsTest : public testing::Test {
+class ReducedContactsTest : public testing::Test {
  protected:
   void Add(const RigidBody& definition) {
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
@@ -61,7 +61,7 @@ double Least(const std::vector<btManifoldPoint>& points, const auto& measure) {
   return least;
 }
 
-TEST_F(ContactsTest, OfARingThatLiesOnABoardTheOutermostAreKept) {
+TEST_F(ReducedContactsTest, OfARingThatLiesOnABoardTheOutermostAreKept) {
   Add(MakeBox({0.1, 0.1, 0.01}, {0, 0, -0.01}));
   // a little askew: one side lies deeper
   RigidBody ring = MakeRing({0, 0, kThickness});
@@ -84,7 +84,7 @@ TEST_F(ContactsTest, OfARingThatLiesOnABoardTheOutermostAreKept) {
   }
 }
 
-TEST_F(ContactsTest, OfEachNormalSomeAreKept) {
+TEST_F(ReducedContactsTest, OfEachNormalSomeAreKept) {
   // floor and two walls are one body, as a board and its pegs are
   RigidBody corner = MakeBox({0.1, 0.1, 0.01}, {});
   for (const Vec3& wall : {Vec3{-0.0188, 0, 0.02}, Vec3{0, -0.0188, 0.02}})
@@ -101,7 +101,7 @@ TEST_F(ContactsTest, OfEachNormalSomeAreKept) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(seen[axis], 0.99) << axis;
 }
 
-TEST_F(ContactsTest, WhereBodiesTouchInAFewPointsAllAreKept) {
+TEST_F(ReducedContactsTest, WhereBodiesTouchInAFewPointsAllAreKept) {
   Add(MakeBox({0.1, 0.1, 0.01}, {0, 0, -0.01}));
   Add(MakeBox({0.006, 0.006, 0.006}, {0, 0, 0.006}, 0.003));
   Add(MakeBox({0.006, 0.006, 0.006}, {0.03, 0, 0.006}, 0.003));
@@ -113,7 +113,7 @@ TEST_F(ContactsTest, WhereBodiesTouchInAFewPointsAllAreKept) {
 }
 
 /// Where it would tip, were too few points left or the wrong ones.
-TEST(ReducedContacts, ARingStandsUntilItsMiddleIsBeyondTheEdge) {
+TEST(ReducedContactsInAWorld, ARingStandsUntilItsMiddleIsBeyondTheEdge) {
   for (const bool is_beyond : {false, true}) {
     RigidWorld world({0, 0, -9.81}, 1.0 / 120);
     ASSERT_TRUE(world.AddBody(MakeBox({0.05, 0.05, 0.01}, {-0.05, 0, -0.01})).ok());

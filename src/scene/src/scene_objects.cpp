@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+
 #include "trocar/math/rotation_angle.h"
 
 namespace trocar::scene {

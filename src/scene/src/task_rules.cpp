@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include "trocar/math/rotation_angle.h"
 
 #include "field_ranges.h"
 #include "scene_objects.h"
 #include "task_names.h"
+#include "trocar/math/rotation_angle.h"
 #include "trocar/scene/event.h"
 
 namespace trocar::scene {
