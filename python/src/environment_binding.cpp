@@ -92,14 +92,11 @@ py::tuple DescribeOutcome(const Outcome& outcome) {
                         DescribeFeatures(outcome.features));
 }
 
-/// Where an episode begins, or from what was done so far.
+/// Goes on from where hands and picture are: at first where an episode begins.
 std::unique_ptr<agent::Surgeon> MakeSurgeon(const Environment& environment, const std::string& name,
                                             std::uint64_t seed) {
-  const scene::Scene& scene = environment.GetSimulation().GetScene();
-  return Take(
-      environment.ActionCount() == 0
-          ? agent::MakeSurgeon(name, std::make_shared<const scene::Scene>(scene), seed)
-          : agent::MakeSurgeonTakingOver(name, scene, environment.GetSimulation().GetSnapshot(), seed));
+  const simulation::Simulation& simulation = environment.GetSimulation();
+  return Take(agent::MakeSurgeonTakingOver(name, simulation.GetScene(), simulation.GetSnapshot(), seed));
 }
 
 /// A pool with what is drawn of it.
