@@ -1,8 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# What is computed in every tick or frame. Where tests are built, the rest has -O1: to compile it better takes longer than it wins.
+# Where tests are built, to compile a file well takes longer than it wins, but for what is computed in every tick or frame: that has
+# -O2. What people see and click has -O0, and so have the tests of modules that are not fast; all else has -O1 by its preset.
 set(TROCAR_FAST_MODULES
   anatomy collision core geometry haptics images instrument math meshing record render rigid scene simulation surgery tissue tissue_cuda training view)
+set(TROCAR_SHOWING_MODULES app assessment centre cli doctor editor gui presenter report sound store study)
+
+# for the targets of this folder that come after it
+function(trocar_compile_quickly)
+  add_compile_options($<$<CONFIG:RelWithDebInfo>:-O0>)
+endfunction()
 
 # trocar_module(NAME
 #   PUBLIC_HEADERS include/trocar/NAME/a.h ...   each compiles alone (target all_verify_interface_header_sets)
@@ -17,6 +24,9 @@ function(trocar_module name)
   endif()
   list(TRANSFORM arg_DEPENDS PREPEND trocar_)
   cmake_language(DEFER CALL trocar_unity_builds)
+  if(name IN_LIST TROCAR_SHOWING_MODULES)
+    trocar_compile_quickly()
+  endif()
   if(arg_SOURCES)
     add_library(trocar_${name} STATIC ${arg_SOURCES})
     target_include_directories(trocar_${name} PRIVATE src)
@@ -36,6 +46,9 @@ function(trocar_module name)
     add_executable(${name}_tests ${arg_TESTS})
     target_link_libraries(${name}_tests PRIVATE trocar_${name} ${arg_LIBRARIES} trocar_test_folders GTest::gmock GTest::gtest_main)
     target_include_directories(${name}_tests PRIVATE src)
+    if(NOT name IN_LIST TROCAR_FAST_MODULES)
+      target_compile_options(${name}_tests PRIVATE $<$<CONFIG:RelWithDebInfo>:-O0>)
+    endif()
     trocar_discover_tests(${name}_tests ${name})
   endif()
 endfunction()

@@ -8,6 +8,7 @@
 
 #include "binding.h"
 #include "camera.h"
+#include "scene_source.h"
 #include "trocar/agent/taking_over.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/environment/pool.h"
@@ -51,19 +52,26 @@ environment::Features ReadWeights(const std::map<std::string, double>& named) {
   return weights;
 }
 
-std::shared_ptr<EnvironmentModel> MakeModel(const std::string& task, const std::string& level,
-                                            const std::string& patient, std::uint64_t seed, int layouts,
+std::shared_ptr<EnvironmentModel> MakeModel(const py::object& task, const std::string& level,
+                                            const py::object& patient, std::uint64_t seed, int layouts,
                                             const std::string& actions, double actions_per_second,
                                             double most_seconds, bool moves_camera,
-                                            const std::map<std::string, double>& weights) {
+                                            const std::map<std::string, double>& weights,
+                                            const std::string& folder) {
   const auto kind = environment::FindActionKind(actions);
   if (!kind) {
     throw Failure({core::ErrorCode::kUnknownName,
                    "there is no kind of actions \"" + actions + "\"; choose joints, tip or discrete"});
   }
+  const SceneSource source = ReadSceneSource(task, folder);
+  PatientSource given(patient);
   const py::gil_scoped_release release;
-  return Take(EnvironmentModel::Make({task, level, patient, seed, layouts, *kind, actions_per_second,
-                                      most_seconds, moves_camera, ReadWeights(weights)}));
+  auto model = Take(
+      EnvironmentModel::Make({source.name, level, given.Folder(), seed, layouts, *kind, actions_per_second,
+                              most_seconds, moves_camera, ReadWeights(weights), source.document}));
+  // layouts are read when they are asked for, from the patient's folder
+  EnvironmentModel* made = model.get();
+  return {made, [held = std::move(model), given = std::move(given)](EnvironmentModel*) {}};
 }
 
 py::list DescribeFields(std::span<const environment::Field> fields) {
@@ -244,7 +252,8 @@ void BindEnvironment(py::module_& module) {
       .def(py::init(&MakeModel), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
            py::arg("patient") = "", py::arg("seed") = 1, py::arg("layouts") = 1,
            py::arg("actions") = "joints", py::arg("actions_per_second") = 10.0, py::arg("most_seconds") = 0.0,
-           py::arg("moves_camera") = false, py::arg("weights") = std::map<std::string, double>())
+           py::arg("moves_camera") = false, py::arg("weights") = std::map<std::string, double>(),
+           py::arg("folder") = "")
       .def_property_readonly("action_fields",
                              [](const EnvironmentModel& m) { return DescribeFields(m.ActionFields()); })
       .def_property_readonly("state_fields",

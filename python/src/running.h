@@ -3,7 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
+#include "scene_source.h"
+#include "trocar/record/trace.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::python {
@@ -11,6 +14,18 @@ namespace trocar::python {
 struct Running {
   std::shared_ptr<const scene::Scene> scene;
   simulation::Simulation simulation;
+  PatientSource patient;
+  std::optional<record::TraceBuilder> trace;  ///< of the attempt, where its metrics are wanted
+
+  void Step(const scene::Input& input) {
+    simulation.Step(input);
+    if (trace) trace->Add(simulation.GetSnapshot(), input.controls);
+  }
+  /// What the hands do from here on is another attempt.
+  void BeginTrace() {
+    trace.emplace(simulation);
+    trace->Add(simulation.GetSnapshot());
+  }
 };
 
 }  // namespace trocar::python

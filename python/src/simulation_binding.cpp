@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "binding.h"
 #include "running.h"
 #include "trocar/agent/surgeon.h"
-#include "trocar/core/json.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/state_file.h"
+#include "trocar/training/attempt_metrics.h"
 
 namespace trocar::python {
 namespace {
@@ -28,29 +30,20 @@ constexpr double kMillilitre = 1e6;  // per m^3
 constexpr std::array<const char*, kHandCount> kHandNames = {"left", "right"};
 constexpr std::array<const char*, 4> kCommandNames = {"wait", "retract", "relax", "release"};
 
-core::Result<scene::Scene> ReadAny(const std::string& task, const std::string& level, std::uint64_t seed,
-                                   const std::filesystem::path& patient) {
-  auto operation = scene::FindOperation(task, patient, seed);
-  if (!operation) return operation.error();
-  if (*operation) return std::move(**operation);
-  const auto path = scene::FindTask(task);
-  if (!path) return path.error();
-  const auto document = core::JsonDocument::Read(*path);
-  if (!document) return document.error();
-  if (document->Root().Has("rules")) return scene::ReadTask(*path, {level, seed, patient});
-  auto scene = scene::ReadScene(*path, patient);
-  if (scene.ok()) scene->seed = seed;
-  return scene;
-}
-
-std::unique_ptr<Running> MakeRunning(const std::string& task, const std::string& level, std::uint64_t seed,
-                                     const std::string& patient, int threads) {
+std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& level, std::uint64_t seed,
+                                     const py::object& patient, int threads, bool has_metrics,
+                                     const std::string& folder) {
   if (threads < 1 || threads > 256)
     throw Failure({core::ErrorCode::kUsage, "a simulation has 1 to 256 threads"});
+  const SceneSource source = ReadSceneSource(task, folder);
+  PatientSource given(patient);
   const py::gil_scoped_release release;
-  auto scene = std::make_shared<const scene::Scene>(Take(ReadAny(task, level, seed, patient)));
+  auto scene = std::make_shared<const scene::Scene>(Take(FindScene(source, {level, seed, given.Folder()})));
   auto simulation = Take(Simulation::Make(scene, threads));
-  return std::make_unique<Running>(Running{std::move(scene), std::move(simulation)});
+  auto running = std::make_unique<Running>(
+      Running{std::move(scene), std::move(simulation), std::move(given), std::nullopt});
+  if (has_metrics) running->BeginTrace();
+  return running;
 }
 
 // --- input
@@ -318,6 +311,19 @@ py::list DescribeErrors(const Running& running) {
   return out;
 }
 
+py::object DescribeMetrics(const Running& running) {
+  if (!running.trace) {
+    throw Failure({core::ErrorCode::kEnvironmentState,
+                   "the metrics are not collected; make the simulation with metrics=True"});
+  }
+  std::string text;
+  {
+    const py::gil_scoped_release release;
+    text = training::FormatMetricsJson(Take(training::CalcAttemptMetrics(running.trace->Calc())));
+  }
+  return py::module_::import("json").attr("loads")(text);
+}
+
 py::list DescribeSurfaces(const Running& running) {
   py::list out;
   for (const scene::SurfaceInfo& surface : running.simulation.Surfaces()) {
@@ -355,7 +361,11 @@ int RunTicks(int ticks, const Step& step) {
 void BindRunning(py::module_& module) {
   py::class_<Running>(module, "Simulation", "One running surgery. Not for two threads at a time.")
       .def(py::init(&MakeRunning), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
-           py::arg("seed") = 1, py::arg("patient") = "", py::arg("threads") = 1)
+           py::arg("seed") = 1, py::arg("patient") = "", py::arg("threads") = 1, py::arg("metrics") = false,
+           py::arg("folder") = "",
+           "`task` is a task's key, \"cholecystectomy\", a file, or a dictionary as such a file holds, whose "
+           "relative paths start from `folder`; `patient` a folder, or {\"seed\": 5, \"set\": {...}}. With "
+           "`metrics` each tick is collected for metrics().")
       .def_property_readonly("name", [](const Running& r) { return r.scene->name; })
       .def_property_readonly(
           "tick_seconds", [](const Running& r) { return r.scene->tick_seconds; }, "[s]")
@@ -385,7 +395,7 @@ void BindRunning(py::module_& module) {
           [](Running& r, const Input& input, int ticks) {
             if (ticks < 0) throw Failure({core::ErrorCode::kUsage, "a number of ticks is not negative"});
             RunTicks(ticks, [&] {
-              r.simulation.Step(input);
+              r.Step(input);
               return true;
             });
           },
@@ -395,15 +405,19 @@ void BindRunning(py::module_& module) {
           "step_script",
           [](Running& r, int ticks) {
             RunTicks(ticks, [&] {
-              r.simulation.Step(scene::CalcScriptInput(*r.scene, r.simulation.GetSnapshot().time));
+              r.Step(scene::CalcScriptInput(*r.scene, r.simulation.GetSnapshot().time));
               return true;
             });
           },
           py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
           "Goes on as the scene's own script says.")
       .def(
-          "reset", [](Running& r) { r.simulation.Reset(); }, py::call_guard<py::gil_scoped_release>(),
-          "Back to the first tick.")
+          "reset",
+          [](Running& r) {
+            r.simulation.Reset();
+            if (r.trace) r.BeginTrace();
+          },
+          py::call_guard<py::gil_scoped_release>(), "Back to the first tick.")
       .def("snapshot", &DescribeSnapshot, "What the last tick published, copied: SI units, world frame.")
       .def(
           "positions",
@@ -418,6 +432,10 @@ void BindRunning(py::module_& module) {
       .def("critical_view", &DescribeCriticalView,
            "Criteria of the critical view and what is missing; None in a task.")
       .def("errors", &DescribeErrors, "Errors of an operation so far, in their order.")
+      .def("metrics", &DescribeMetrics,
+           "What the attempt came to so far, since the simulation was made, reset or restored: {\"metric\", "
+           "\"value\", \"unit\"}, of a part also \"hand\", \"phase\", \"tool\". docs/metrics.md says what "
+           "each is. Wants metrics=True.")
       .def(
           "save",
           [](const Running& r) {
@@ -431,6 +449,7 @@ void BindRunning(py::module_& module) {
           [](Running& r, const py::bytes& bytes) {
             const std::string_view view = bytes;
             Check(r.simulation.Restore(std::as_bytes(std::span(view.data(), view.size()))));
+            if (r.trace) r.BeginTrace();
           },
           py::arg("state"), "Takes up a saved state of the same model.")
       .def(
@@ -443,6 +462,7 @@ void BindRunning(py::module_& module) {
           "restore_file",
           [](Running& r, const std::string& path) {
             (void)Take(simulation::ReadStateFile(path, r.simulation));
+            if (r.trace) r.BeginTrace();
           },
           py::arg("path"), "As `trocar simulate --restore`.")
       .def(
@@ -453,7 +473,7 @@ void BindRunning(py::module_& module) {
           [](Running& r, agent::Surgeon& surgeon, int ticks) {
             return RunTicks(ticks, [&] {
               if (surgeon.HasFinished()) return false;
-              r.simulation.Step(surgeon.Act(r.simulation.GetSnapshot()));
+              r.Step(surgeon.Act(r.simulation.GetSnapshot()));
               return true;
             });
           },
@@ -494,6 +514,15 @@ void BindSimulation(py::module_& module) {
         return out;
       },
       "The delivered tasks by key.");
+  module.def(
+      "find",
+      [](const std::string& name) {
+        const auto data = Take(scene::FindDataFolder());
+        const auto path = data / "scenes" / (name + ".json");
+        std::error_code ignored;
+        return std::filesystem::is_regular_file(path, ignored) ? path : Take(scene::FindTask(name));
+      },
+      py::arg("name"), "File of a delivered task, operation or scene: a dictionary to begin with.");
   module.def(
       "surgeons",
       [](const Running& running) {

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The package's simulation: the same bits as the program's, state, read-outs, pictures, errors."""
+import gc
 import json
 import os
 import subprocess
+import tempfile
 import threading
 import unittest
 from pathlib import Path
@@ -106,6 +108,96 @@ class ReadOuts(unittest.TestCase):
         self.assertEqual(simulation.snapshot()["operation"]["phase"], "Preparation")
         self.assertEqual(simulation.errors(), [])
         self.assertIsNone(trocar.Simulation("peg_transfer").critical_view())
+
+
+class Metrics(unittest.TestCase):
+    def values(self, simulation):
+        return {(m["metric"], m.get("hand")): m["value"] for m in simulation.metrics() if "phase" not in m and "tool" not in m}
+
+    def test_a_straight_way_has_its_length_and_time(self):
+        simulation = trocar.Simulation("instrument_navigation", metrics=True)
+        begin, tip = simulation.home(), lambda: simulation.snapshot()["instruments"]["left"]["pose"][:3, 3]
+        first, hands = tip(), begin.hands
+        for tick in range(120):
+            hands[0, 3] += 0.02 / 120  # along its shaft
+            begin.hands = hands
+            simulation.step(begin)
+        values = self.values(simulation)
+        way = np.linalg.norm(tip() - first)
+        self.assertGreater(way, 0.01)
+        self.assertAlmostEqual(values["path_length", "left"], way, delta=0.03 * way)
+        self.assertLess(values.get(("path_length", "right"), 0.0), 0.001)
+        self.assertAlmostEqual(values["time", None], 1.0, delta=0.02)
+        simulation.reset()
+        self.assertLess(self.values(simulation).get(("path_length", "left"), 0.0), 1e-6)
+
+    def test_are_the_programs_own_of_the_recording(self):
+        with tempfile.TemporaryDirectory() as folder:
+            recording = str(Path(folder) / "attempt.trocar")
+            program("play", "expert", "--task", "instrument_navigation", "--seed", "2", "--record", recording)
+            written = program("metrics", recording)["metrics"]
+        simulation = trocar.Simulation("instrument_navigation", seed=2, metrics=True)
+        simulation.play(trocar.Surgeon("expert", simulation, seed=2), 120 * 600)
+        self.assertEqual(simulation.metrics(), written)
+
+    def test_are_collected_where_they_are_wanted_only(self):
+        with self.assertRaises(trocar.Error) as caught:
+            trocar.Simulation("peg_transfer").metrics()
+        self.assertEqual(caught.exception.code, "E-ENV-002")
+
+
+class Dictionaries(unittest.TestCase):
+    def test_a_task_is_what_its_file_holds(self):
+        file = trocar.find("peg_transfer")
+        task = json.loads(file.read_text())
+        given, named = trocar.Simulation(task, folder=str(file.parent), seed=3), trocar.Simulation("peg_transfer", seed=3)
+        self.assertEqual(given.hash(), named.hash())
+        task["scene"]["objects"][0]["at_mm"][0] += 3
+        self.assertNotEqual(trocar.Simulation(task, seed=3).hash(), named.hash())
+
+    def test_a_scene_with_a_patient_starts_from_its_folder(self):
+        scene = json.loads(Path(RETRACTION).read_text())
+        scene["settings"]["gravity_m_s2"] = 0
+        simulation = trocar.Simulation(scene, folder=str(ROOT / "scenes"))
+        self.assertEqual(simulation.name, scene["name"])
+        with self.assertRaises(trocar.Error):
+            trocar.Simulation(scene, folder=str(ROOT))
+
+    def test_a_patient_is_generated(self):
+        before = set(Path(tempfile.gettempdir()).glob("trocar-patient-*"))
+        usual, ill = (trocar.Simulation("cholecystectomy", patient={"seed": 5, "set": {"acute_cholecystitis": level}})
+                      for level in (0, 0.5))
+        self.assertNotEqual(usual.hash(), trocar.Simulation("cholecystectomy").hash())
+        usual.step(usual.home(), 2), ill.step(ill.home(), 2)
+        self.assertNotEqual(usual.hash(), ill.hash())
+        del usual, ill
+        gc.collect()
+        self.assertEqual(set(Path(tempfile.gettempdir()).glob("trocar-patient-*")), before)
+
+    def test_environments_take_them(self):
+        file = trocar.find("peg_transfer")
+        task = json.loads(file.read_text())
+        with trocar.make(task, folder=str(file.parent)) as given, trocar.make("peg_transfer") as named:
+            given.reset(seed=1), named.reset(seed=1)
+            self.assertEqual(given.hash(), named.hash())
+        with trocar.make("cholecystectomy", patient={"seed": 2}, layouts=2) as environment:
+            environment.reset(seed=1)
+            environment.step(np.zeros(environment.action_space.shape))
+
+    def test_what_is_wrong_is_said(self):
+        task = json.loads(trocar.find("peg_transfer").read_text())
+        task["scene"]["objects"][0]["mass_g"] = -1
+        for wrong, code, word in ((task, "E-SCN-", "mass_g"), ({1, 2}, "E-CLI-001", "dictionary"), ({"a": float("nan")}, "E-CLI-001", "JSON")):
+            with self.assertRaises(trocar.Error) as caught:
+                trocar.Simulation(wrong)
+            self.assertIn(word, str(caught.exception))
+            self.assertTrue(caught.exception.code.startswith(code) or code == "E-SCN-", caught.exception.code)
+        for wrong in (5, {"sead": 1}, {"seed": "five"}):
+            with self.assertRaises(trocar.Error) as caught:
+                trocar.Simulation("cholecystectomy", patient=wrong)
+            self.assertEqual(caught.exception.code, "E-CLI-001")
+        with self.assertRaises(trocar.Error):
+            trocar.Simulation("cholecystectomy", patient={"set": {"kidney": 1}})
 
 
 class Pictures(unittest.TestCase):

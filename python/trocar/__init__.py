@@ -8,7 +8,7 @@
 
 Lengths in metres, angles in radians, forces in newtons, the world frame x to the patient's left, y cranial, z anterior.
 """
-from ._trocar import CLASSES, FEATURES, Camera, Input, Simulation, Surgeon, __version__, default_weights, error_table, surgeons, tasks
+from ._trocar import CLASSES, FEATURES, Camera, Input, Simulation, Surgeon, __version__, default_weights, error_table, find, surgeons, tasks
 from .checker import check_env, check_vector_env
 from .environments import Environment, VectorEnvironment, environments, make, make_vec
 from .errors import Error
@@ -17,5 +17,5 @@ from .parallel import ParallelEnvironment, make_parallel
 __all__ = [
     "CLASSES", "FEATURES", "Camera", "Environment", "Error", "Input", "ParallelEnvironment", "Simulation", "Surgeon",
     "VectorEnvironment", "__version__", "check_env", "check_vector_env", "default_weights", "environments", "error_table",
-    "make", "make_parallel", "make_vec", "surgeons", "tasks",
+    "find", "make", "make_parallel", "make_vec", "surgeons", "tasks",
 ]

@@ -5,6 +5,7 @@ Gymnasium is not needed. Where it can be imported, the classes here are its ``En
 """
 from __future__ import annotations
 
+import os
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
@@ -26,6 +27,15 @@ except ImportError:
 OBSERVATIONS = ("state", "picture", "depth", "masks", "normals")
 MIXTURE = ("state", "picture")
 FARTHEST = 2.0  # m; the renderer draws nothing beyond 1 m
+
+Scene = Union[str, "os.PathLike[str]", dict]
+"""A key or a file, or a dictionary as such a file holds; relative paths of a dictionary start from ``folder``."""
+Patient = Union[str, "os.PathLike[str]", dict]
+"""A folder, or {"seed": 5, "set": {"acute_cholecystitis": 0.5}}: what ``trocar anatomy generate`` makes; "" for the scene's own."""
+
+
+def _name_of(task: Scene) -> str:
+    return str(task.get("name", "a dictionary")) if isinstance(task, dict) else str(task)
 
 
 def environments() -> list[str]:
@@ -75,18 +85,18 @@ class Environment(_Env):
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
     spec = None
 
-    def __init__(self, task: str, *, level: str = "normal", patient: str = "", seed: int = 1, layouts: int = 1,
+    def __init__(self, task: Scene, *, level: str = "normal", patient: Patient = "", seed: int = 1, layouts: int = 1,
                  actions: str = "joints", observation: Union[str, Sequence[str]] = "state", picture_size: tuple[int, int] = (84, 84),
                  actions_per_second: float = 10.0, most_seconds: float = 0.0, moves_camera: bool = False,
-                 weights: Optional[dict[str, float]] = None, render_mode: Optional[str] = None) -> None:
+                 weights: Optional[dict[str, float]] = None, render_mode: Optional[str] = None, folder: str = "") -> None:
         if render_mode not in (None, "rgb_array"):
             raise Error("E-SCN-003", f'there is no render_mode "{render_mode}"; choose rgb_array or None')
         self.model = _trocar.EnvironmentModel(
             task, level=level, patient=patient, seed=seed, layouts=layouts, actions=actions,
             actions_per_second=actions_per_second, most_seconds=most_seconds, moves_camera=moves_camera,
-            weights=weights or {})
+            weights=weights or {}, folder=folder)
         self.metadata = {**self.metadata, "render_fps": actions_per_second}
-        self.task, self.render_mode, self.observation = task, render_mode, observation
+        self.task, self.render_mode, self.observation = _name_of(task), render_mode, observation
         self.action_fields, self.state_fields = self.model.action_fields, self.model.state_fields
         self.action_space = action_space(self.action_fields)
         self._seen = _Observation(observation, self.model, picture_size)
@@ -191,22 +201,22 @@ class VectorEnvironment(_VectorEnv):
     render_mode = None
     spec = None
 
-    def __init__(self, task: str, num_envs: int, *, level: str = "normal", patient: str = "", seed: int = 1,
+    def __init__(self, task: Scene, num_envs: int, *, level: str = "normal", patient: Patient = "", seed: int = 1,
                  layouts: int = 1, actions: str = "joints", observation: Union[str, Sequence[str]] = "state",
                  picture_size: tuple[int, int] = (84, 84), actions_per_second: float = 10.0, most_seconds: float = 0.0,
                  moves_camera: bool = False, weights: Optional[dict[str, float]] = None, threads: int = 0,
-                 autoreset_mode: Any = "NextStep", copy: bool = True) -> None:
+                 autoreset_mode: Any = "NextStep", copy: bool = True, folder: str = "") -> None:
         mode = getattr(autoreset_mode, "value", autoreset_mode)
         self.model = _trocar.EnvironmentModel(
             task, level=level, patient=patient, seed=seed, layouts=layouts, actions=actions,
             actions_per_second=actions_per_second, most_seconds=most_seconds, moves_camera=moves_camera,
-            weights=weights or {})
+            weights=weights or {}, folder=folder)
         self._seen = _Observation(observation, self.model, picture_size)
         self._pool: Optional[_trocar.Pool] = _trocar.Pool(
             self.model, count=num_envs, threads=threads, autoreset=mode, seed=seed, drawn=self._seen.drawn,
             width=picture_size[0], height=picture_size[1])
         self.metadata = {**self.metadata, "autoreset_mode": _AutoresetMode(mode)}
-        self.task, self.num_envs, self.copy, self.threads = task, num_envs, copy, self._pool.threads
+        self.task, self.num_envs, self.copy, self.threads = _name_of(task), num_envs, copy, self._pool.threads
         self.closed = False
         self.action_fields, self.state_fields = self.model.action_fields, self.model.state_fields
         self.single_action_space = action_space(self.action_fields)
@@ -298,11 +308,11 @@ class VectorEnvironment(_VectorEnv):
         return f"<trocar.VectorEnvironment {self.task} x {self.num_envs}>"
 
 
-def make(task: str, **settings: Any) -> Environment:
-    """An environment of a task's key, "cholecystectomy", or a file; settings as of :class:`Environment`."""
+def make(task: Scene, **settings: Any) -> Environment:
+    """An environment of a task's key, "cholecystectomy", a file, or a dictionary; settings as of :class:`Environment`."""
     return Environment(task, **settings)
 
 
-def make_vec(task: str, num_envs: int = 1, **settings: Any) -> VectorEnvironment:
+def make_vec(task: Scene, num_envs: int = 1, **settings: Any) -> VectorEnvironment:
     """A pool of ``num_envs`` environments; settings as of :class:`VectorEnvironment`."""
     return VectorEnvironment(task, num_envs, **settings)

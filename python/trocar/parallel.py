@@ -6,7 +6,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from .environments import Environment
+from .environments import Environment, Scene
 from .errors import Error
 from .spaces import action_space
 
@@ -21,7 +21,7 @@ class ParallelEnvironment(_ParallelEnv):
 
     metadata = {"render_modes": ["rgb_array"], "name": "trocar"}
 
-    def __init__(self, task: str, **settings: Any) -> None:
+    def __init__(self, task: Scene, **settings: Any) -> None:
         self.environment = Environment(task, **settings)
         self.render_mode = self.environment.render_mode
         self._fields: dict[str, list] = {}
@@ -83,6 +83,6 @@ class ParallelEnvironment(_ParallelEnv):
         self.environment.close()
 
 
-def make_parallel(task: str, **settings: Any) -> ParallelEnvironment:
+def make_parallel(task: Scene, **settings: Any) -> ParallelEnvironment:
     """The parallel view of an environment; settings as of :class:`trocar.Environment`."""
     return ParallelEnvironment(task, **settings)

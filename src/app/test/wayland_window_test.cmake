@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # Under Wayland the compositor holds the pointer: pushed far beyond the display's edge and as far back, the hand is where it was. Where
-# it does not (the control, whose compositor grants no lock), the hand stops at the edge and ends elsewhere.
+# it does not (the control, whose compositor grants no lock), the hand stops at the edge and ends elsewhere. There a pointer that leaves the
+# window and comes in at another place moves nothing by that, and the hand goes on.
 file(REMOVE_RECURSE ${FOLDER})
 file(WRITE ${FOLDER}/run.sh [[
 set -u
-check=$1 folder=$2 sway=$3 constraint=$4
-shift 4
+check=$1 folder=$2 sway=$3 constraint=$4 use=$5 place=$6
+shift 6
 export XDG_RUNTIME_DIR=$(mktemp -d) WLR_BACKENDS=headless WLR_RENDERER=pixman WLR_LIBINPUT_NO_DEVICES=1 LIBGL_ALWAYS_SOFTWARE=1
 export SWAYSOCK=$XDG_RUNTIME_DIR/sway WAYLAND_DISPLAY=wayland-1 GDK_BACKEND=wayland
 unset DISPLAY
@@ -14,7 +15,7 @@ output HEADLESS-1 resolution 1280x800
 default_border none
 xwayland disable
 seat seat0 pointer_constraint $constraint
-for_window [app_id=".*"] fullscreen enable
+for_window [app_id=".*"] $place
 CONFIG
 # it does not run as root
 if [ "$(id -u)" = 0 ]; then
@@ -32,7 +33,7 @@ if wait_for test -S "$XDG_RUNTIME_DIR/wayland-1"; then
   window=$!
   if wait_for is_open; then
     sleep 8
-    "$check" use
+    "$check" $use
     status=$?
   fi
   # the second time it does not ask
@@ -47,12 +48,12 @@ exit $status
 ]])
 set(ENV{GTK_A11Y} none)
 
-# use_hand(CONSTRAINT OUTPUT...): what the hand did, at most and at the end [mrad]
-function(use_hand constraint most last)
+# use_hand(CONSTRAINT USE PLACE OUTPUT...): what the hand did aside, at most and at the end, and up or down at the end [mrad]
+function(use_hand constraint use place most last tilt)
   file(REMOVE_RECURSE ${FOLDER}/recordings)
   file(MAKE_DIRECTORY ${FOLDER}/recordings)
   execute_process(
-    COMMAND ${DBUS} -- sh ${FOLDER}/run.sh ${CHECK} ${FOLDER} ${SWAY} ${constraint} ${WINDOW} --task peg_transfer
+    COMMAND ${DBUS} -- sh ${FOLDER}/run.sh ${CHECK} ${FOLDER} ${SWAY} ${constraint} ${use} ${place} ${WINDOW} --task peg_transfer
       --settings ${FOLDER}/window.json --recordings ${FOLDER}/recordings --store ${FOLDER}/store.sqlite --threads 1
     RESULT_VARIABLE status ERROR_VARIABLE errors TIMEOUT 200)
   if(NOT status EQUAL 0)
@@ -65,13 +66,16 @@ function(use_hand constraint most last)
   endif()
   list(GET found 0 far)
   list(GET found 1 end)
-  message(STATUS "constraint ${constraint}: ${far} mrad at most, ${end} mrad at the end")
+  list(GET found 2 turned)
+  message(STATUS "constraint ${constraint}, ${use}: ${far} mrad aside at most, ${end} at the end, ${turned} up or down")
   set(${most} ${far} PARENT_SCOPE)
   set(${last} ${end} PARENT_SCOPE)
+  set(${tilt} ${turned} PARENT_SCOPE)
 endfunction()
 
-use_hand(enable held_most held_last)
-use_hand(disable free_most free_last)
+use_hand(enable push "fullscreen enable" held_most held_last held_tilt)
+use_hand(disable push "fullscreen enable" free_most free_last free_tilt)
+use_hand(disable leave "floating enable, resize set 800 600, move absolute position 0 0" left_most left_last left_tilt)
 # the way of a tip in the picture is no even turn of its shaft: a tenth is left
 math(EXPR held_tenths "10 * ${held_last}")
 if(held_most LESS 100 OR held_tenths GREATER held_most)
@@ -80,4 +84,11 @@ endif()
 math(EXPR free_twice "2 * ${free_last}")
 if(free_last LESS 100 OR free_twice LESS free_most)
   message(FATAL_ERROR "the control: without a lock the way back should be longer than the way there")
+endif()
+math(EXPR left_tenths "10 * (${left_most} - ${left_last})")
+if(left_most LESS 100 OR left_tenths GREATER left_most)
+  message(FATAL_ERROR "where the pointer came in again, the hand should be where it was left")
+endif()
+if(left_tilt LESS 50)
+  message(FATAL_ERROR "in the window again, the hand should go on")
 endif()

@@ -6,26 +6,12 @@
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/record/replay.h"
-#include "trocar/scene/task.h"
+#include "trocar/scene/find_scene.h"
 
 namespace trocar::dataset {
 namespace {
 
 constexpr double kWidestView = 2.4;  // rad
-
-core::Result<scene::Scene> FindScene(const Plan& plan, std::uint64_t seed,
-                                     const std::filesystem::path& patient) {
-  auto operation = scene::FindOperation(plan.task, patient, seed);
-  if (!operation) return operation.error();
-  if (*operation) return std::move(**operation);
-  const auto path = scene::FindTask(plan.task);
-  if (!path) return path.error();
-  scene::TaskChoice choice;
-  choice.level = plan.level;
-  choice.seed = seed;
-  choice.patient_folder = patient;
-  return scene::ReadTask(*path, choice);
-}
 
 scene::Input HomeOf(const scene::Scene& scene) {
   scene::Input input;
@@ -90,7 +76,7 @@ class RecordingPlayer : public Player {
 core::Result<std::unique_ptr<Player>> MakeSurgeonPlayer(const Plan& plan, std::uint64_t seed,
                                                         const std::filesystem::path& patient,
                                                         double field_of_view_scale) {
-  auto read = FindScene(plan, seed, patient);
+  auto read = scene::FindScene(plan.task, {plan.level, seed, patient});
   if (!read) return read.error();
   read->laparoscope.field_of_view =
       std::min(kWidestView, read->laparoscope.field_of_view * field_of_view_scale);

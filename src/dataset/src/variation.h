@@ -6,7 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <vector>
 
+#include "trocar/render/frame.h"
 #include "trocar/render/image.h"
 
 namespace trocar::dataset {
@@ -18,9 +20,11 @@ struct Variation {
   double smoke = 0;                      ///< haze that is always there, 0 to 1 [-]
   std::array<double, 3> gains{1, 1, 1};  ///< of red, green and blue: the camera's white balance [-]
   double gamma = 1;                      ///< of the camera [-]
+  double tool_wear = 1;                  ///< scratches of tools, in the usual ones [-]
+  std::vector<render::Blot> stains;      ///< on the lens
 };
 
-Variation DrawVariation(std::uint64_t seed) noexcept;
+Variation DrawVariation(std::uint64_t seed);
 nlohmann::ordered_json ToJson(const Variation& variation);
 
 /// What the camera makes of a picture: gains and gamma, by a table.

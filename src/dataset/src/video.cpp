@@ -40,7 +40,10 @@ class Camera {
                                             simulation.GetSnapshot(), simulation.Strands());
     if (!view) return view.error();
     // the camera finds its exposure by the frames before: they are the same whenever the video is made again
-    view->SetOptions({.has_force_arrows = false, .light_power = variation.light_power});
+    view->SetOptions({.has_force_arrows = false,
+                      .light_power = variation.light_power,
+                      .tool_wear = variation.tool_wear,
+                      .stains = variation.stains});
     return Camera(std::move(*context), std::move(*target), std::move(*view), variation,
                   plan.layout == Layout::kTrocar);
   }

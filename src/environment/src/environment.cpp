@@ -13,6 +13,7 @@
 #include "state_layout.h"
 #include "trocar/core/assert.h"
 #include "trocar/math/random.h"
+#include "trocar/scene/find_scene.h"
 
 namespace trocar::environment {
 namespace {
@@ -37,12 +38,9 @@ core::Status CheckSettings(const EnvironmentSettings& settings) {
 }
 
 core::Result<scene::Scene> ReadLayout(const EnvironmentSettings& settings, std::uint64_t seed) {
-  auto operation = scene::FindOperation(settings.task, settings.patient, seed);
-  if (!operation) return operation.error();
-  if (*operation) return std::move(**operation);
-  const auto path = scene::FindTask(settings.task);
-  if (!path) return path.error();
-  return scene::ReadTask(*path, {settings.level, seed, settings.patient});
+  const scene::TaskChoice choice{settings.level, seed, settings.patient};
+  if (settings.document.empty()) return scene::FindScene(settings.task, choice);
+  return scene::ParseScene(settings.document, settings.task, choice);
 }
 
 }  // namespace

@@ -289,7 +289,7 @@ void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, in
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   const Pose X_camera_world = math::Inverse(frame.camera.X_world_camera);
   c.SetUniforms(frame, X_camera_world, exposure, width, height);
-  c.surface_drawer.Begin(frame.quality);
+  c.surface_drawer.Begin(frame.quality, frame.tool_wear);
   c.DrawScene(frame, {X_camera_world, CalcFocalLength(frame.camera, height), 0.5 * width, 0.5 * height});
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   SurfaceDrawer::End();

@@ -10,7 +10,7 @@ namespace trocar::render {
 namespace {
 
 /// Uniforms of a material: those that all three shaders share, then the shader's own.
-void SetLook(const Program& program, const MaterialLook& look) {
+void SetLook(const Program& program, const MaterialLook& look, float tool_wear) {
   const auto inverse = [](float tile) { return tile > 0.0f ? 1.0f / tile : 0.0f; };
   program.Set("u_low", look.low);
   program.Set("u_high", look.high);
@@ -23,7 +23,7 @@ void SetLook(const Program& program, const MaterialLook& look) {
   }
   if (!look.is_tissue) {
     program.Set("u_grooves", look.grooves);
-    program.Set("u_wear", look.wear);
+    program.Set("u_wear", tool_wear * look.wear);
     return;
   }
   program.Set("u_cell", look.cell);
@@ -65,11 +65,12 @@ core::Status SurfaceDrawer::Make(const Looks& looks) {
   return {};
 }
 
-void SurfaceDrawer::Begin(Quality quality) {
+void SurfaceDrawer::Begin(Quality quality, double tool_wear) {
   glVertexAttrib4f(3, 0, 0, 0, 0);  // of surfaces without marks
   glVertexAttrib1f(5, 0);
   noise_.Bind();
   is_fine_ = quality == Quality::kHigh;
+  tool_wear_ = ToFloat(tool_wear);
   for (const Program& program : {Tissue(), tool_, clear_}) {
     glUseProgram(program.name);
     program.Set("u_pattern", 0);
@@ -87,7 +88,7 @@ void SurfaceDrawer::Draw(const Surface& surface, const math::Pose& X_camera_surf
   glUseProgram(program.name);
   program.Set("u_camera_from_surface", MakeMatrix(X_camera_surface, scale));
   program.Set("u_rotation", MakeRotation(X_camera_surface.rotation));
-  SetLook(program, look);
+  SetLook(program, look, tool_wear_);
   if (!look.is_tissue && look.opacity >= 1.0f)
     program.Set("u_axis", ToFloat(math::Rotate(X_camera_surface.rotation, {0, 0, 1})));
   glBindVertexArray(surface.array);

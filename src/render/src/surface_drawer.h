@@ -26,7 +26,8 @@ class SurfaceDrawer {
   std::array<Program, 4> GetPrograms() const { return {tool_, clear_, tissue_[0], tissue_[1]}; }
 
   /// Before the first surface of a frame, after those uniforms; and after the last.
-  void Begin(Quality quality);
+  /// \param tool_wear  of Frame
+  void Begin(Quality quality, double tool_wear);
   static void End();
 
   /// \param scale  along the surface's own axes, before its pose [-]
@@ -40,6 +41,7 @@ class SurfaceDrawer {
   std::array<Program, 2> tissue_;  // plain, fine
   Program tool_, clear_;
   bool is_fine_ = false;
+  float tool_wear_ = 1;
   NoiseTextures noise_;
 };
 

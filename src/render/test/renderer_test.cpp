@@ -341,6 +341,35 @@ TEST_F(RendererTest, SmoothingSoftensTheStairsOfAnEdgeOnly) {
   EXPECT_LT(CalcMeanDifference(hard, soft), 1.5);
 }
 
+// One that leans by a pixel in six has a step every six rows where it is not smoothed, and a blur of a pixel all round leaves half of it.
+TEST_F(RendererTest, EdgesThatAreNearlyUprightHaveNoSteps) {
+  constexpr double kLean = 1.0 / 6.0, kHalf = 0.1;
+  geometry::TriangleMesh half_plane;
+  half_plane.positions = {{-kHalf * kLean, -kHalf, 0}, {3 * kHalf, 0, 0}, {kHalf * kLean, kHalf, 0}};
+  half_plane.triangles = {{0, 1, 2}};
+  Frame frame = PlainFrame();
+  frame.surfaces = {{renderer_->AddSurface(half_plane, Material::kForce), {{}, {0, 0, -kDistance}}}};
+  // how far the edge moves most from one row to the next, as light moves that is summed over a row [pixels]
+  const auto find_step = [&] {
+    const Image image = Draw(frame);
+    double step = 0, before = 0;
+    for (int y = kHeight / 2 - 18; y < kHeight / 2 + 18; ++y) {
+      double light = 0;
+      for (int x = kWidth / 2 - 12; x < kWidth / 2 + 12; ++x) light += Brightness(image, x, y);
+      light /= Brightness(image, kWidth / 2 + 12, y);
+      if (before > 0) step = std::max(step, std::abs(light - before));
+      before = light;
+    }
+    return step;
+  };
+  EXPECT_GT(find_step(), 0.9);
+  frame.has_smooth_edges = true;
+  frame.quality = Quality::kLow;
+  EXPECT_GT(find_step(), 0.4);
+  frame.quality = Quality::kHigh;
+  EXPECT_LT(find_step(), 0.3);
+}
+
 // As under GTK: its framebuffer is not 0, it leaves scissor and blending on, and wants no depth test back.
 TEST_F(RendererTest, DrawsIntoTheBoundFramebufferWhateverStateTheToolkitLeft) {
   Frame frame;

@@ -29,18 +29,23 @@ OperationLevel ReadLevel(const core::JsonView& view) {
 
 }  // namespace
 
-core::Result<core::JsonDocument> ReadPatched(const std::filesystem::path& path, const std::string& patch) {
-  if (patch.empty()) return core::JsonDocument::Read(path);
+core::Result<core::JsonDocument> ParsePatched(const std::string& text, const std::string& source,
+                                              const std::string& patch) {
   // both have been found to be JSON before they are put together
-  const auto text = core::ReadFile(path);
-  if (!text.ok()) return text.error();
-  if (const auto good = core::JsonDocument::Parse(*text, path.string()); !good.ok()) return good.error();
-  auto json = nlohmann::json::parse(*text, nullptr, false);
+  auto written = core::JsonDocument::Parse(text, source);
+  if (!written.ok() || patch.empty()) return written;
+  auto json = nlohmann::json::parse(text, nullptr, false);
   const auto changes = nlohmann::json::parse(patch, nullptr, false);
   if (changes.is_discarded())
-    return core::Error{core::ErrorCode::kJsonSyntax, path.string() + ": what a level changes is no JSON"};
+    return core::Error{core::ErrorCode::kJsonSyntax, source + ": what a level changes is no JSON"};
   json.merge_patch(changes);
-  return core::JsonDocument::Parse(json.dump(), path.string());
+  return core::JsonDocument::Parse(json.dump(), source);
+}
+
+core::Result<core::JsonDocument> ReadPatched(const std::filesystem::path& path, const std::string& patch) {
+  const auto text = core::ReadFile(path);
+  if (!text.ok()) return text.error();
+  return ParsePatched(*text, path.string(), patch);
 }
 
 core::Result<std::vector<OperationLevel>> ReadOperationLevels(const std::filesystem::path& path) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patched_json.h  A JSON file of which some fields are replaced.
+/// \file patched_json.h  JSON of which some fields are replaced.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,12 @@
 
 namespace trocar::scene {
 
-/// \param patch  JSON merge patch (RFC 7386); empty: the file as it is
-/// \return the file's or the patch's error
+/// \param source  name used in messages
+/// \param patch   JSON merge patch (RFC 7386); empty: the text as it is
+/// \return the text's or the patch's error
+core::Result<core::JsonDocument> ParsePatched(const std::string& text, const std::string& source,
+                                              const std::string& patch);
+/// The same of a file. \return its error, too
 core::Result<core::JsonDocument> ReadPatched(const std::filesystem::path& path, const std::string& patch);
 
 }  // namespace trocar::scene

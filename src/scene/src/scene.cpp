@@ -16,6 +16,7 @@
 #include "script.h"
 #include "tissue_model_file.h"
 #include "trocar/core/json.h"
+#include "trocar/core/safe_file.h"
 #include "trocar/math/rotation_angle.h"
 
 namespace trocar::scene {
@@ -268,26 +269,25 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   return scene;
 }
 
-namespace {
-
-core::Result<Scene> ReadSceneAt(const std::filesystem::path& path,
-                                const std::filesystem::path& patient_folder, const OperationLevel& level) {
-  auto document = ReadPatched(path, level.scene_patch);
+core::Result<Scene> ParsePlainScene(const std::string& text, const std::filesystem::path& source,
+                                    const std::filesystem::path& patient_folder,
+                                    const OperationLevel& level) {
+  auto document = ParsePatched(text, source.string(), level.scene_patch);
   if (!document.ok()) return document.error();
   const core::JsonView root = document->Root();
   const std::string format = root.Text("format");
-  if (format == "trocar-task") return ReadTask(path, {.patient_folder = patient_folder});
+  if (format == "trocar-task") return ParseTask(text, source, {.patient_folder = patient_folder});
   if (format != "trocar-scene") root.Complain("format must be \"trocar-scene\" (or \"trocar-task\")");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   if (root.Text("name").empty()) root.Complain("the scene needs a name");
-  return ReadSceneFields(*document, root, path.parent_path(), patient_folder, level);
+  return ReadSceneFields(*document, root, source.parent_path(), patient_folder, level);
 }
-
-}  // namespace
 
 core::Result<Scene> ReadScene(const std::filesystem::path& path,
                               const std::filesystem::path& patient_folder) {
-  return ReadSceneAt(path, patient_folder, {});
+  const auto text = core::ReadFile(path);
+  if (!text.ok()) return text.error();
+  return ParsePlainScene(*text, path, patient_folder, {});
 }
 
 core::Result<std::optional<Scene>> FindOperation(const std::string& name,
@@ -301,12 +301,14 @@ core::Result<std::optional<Scene>> FindOperation(const std::string& name,
     path = *data / "scenes" / (name + ".json");
   }
   if (!std::filesystem::is_regular_file(path, ignored)) return std::optional<Scene>();
-  const auto document = core::JsonDocument::Read(path);
+  const auto text = core::ReadFile(path);
+  if (!text.ok()) return text.error();
+  const auto document = core::JsonDocument::Parse(*text, path.string());
   if (!document.ok()) return document.error();
   if (!document->Root().Has("operation")) return std::optional<Scene>();
   const auto chosen = FindOperationLevel(level);
   if (!chosen.ok()) return chosen.error();
-  auto scene = ReadSceneAt(path, patient_folder, *chosen);
+  auto scene = ParsePlainScene(*text, path, patient_folder, *chosen);
   if (!scene.ok()) return scene.error();
   scene->seed = seed;
   return std::optional<Scene>(std::move(*scene));

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file scene_reader.h  Reading of a scene's fields, wherever in a document they stand.
+/// \file scene_reader.h  Reading of scenes and tasks from text, and of a scene's fields, wherever in a document they stand.
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "trocar/core/json.h"
 #include "trocar/scene/scene.h"
+#include "trocar/scene/task.h"
 
 namespace trocar::scene {
 
@@ -17,5 +19,14 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
                                     const std::filesystem::path& folder,
                                     const std::filesystem::path& patient_folder,
                                     const OperationLevel& level = {});
+
+/// A document of the format "trocar-scene", or a task at its normal level.
+/// \param source  its name in messages; relative paths start from its folder
+core::Result<Scene> ParsePlainScene(const std::string& text, const std::filesystem::path& source,
+                                    const std::filesystem::path& patient_folder, const OperationLevel& level);
+
+/// \return as ReadTask
+core::Result<Scene> ParseTask(std::string text, const std::filesystem::path& source,
+                              const TaskChoice& choice);
 
 }  // namespace trocar::scene

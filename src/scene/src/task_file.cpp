@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <map>
 #include <system_error>
+#include <utility>
 
 #include "field_ranges.h"
 #include "ideal_path.h"
@@ -91,8 +92,12 @@ void Substitute(const std::map<std::string, double>& values, std::string& text) 
 core::Result<Scene> ReadTask(const fs::path& path, const TaskChoice& choice) {
   auto text = core::ReadFile(path);
   if (!text.ok()) return text.error();
+  return ParseTask(std::move(*text), path, choice);
+}
+
+core::Result<Scene> ParseTask(std::string text, const fs::path& source, const TaskChoice& choice) {
   // twice: what the parameters are, then the whole with their numbers in place
-  auto written = core::JsonDocument::Parse(*text, path.string());
+  auto written = core::JsonDocument::Parse(text, source.string());
   if (!written.ok()) return written.error();
   const JsonView form = written->Root();
   if (form.Text("format") != "trocar-task") form.Complain("format must be \"trocar-task\"");
@@ -104,16 +109,16 @@ core::Result<Scene> ReadTask(const fs::path& path, const TaskChoice& choice) {
   }
   const auto values = CalcParameters(form, levels, choice);
   if (const auto status = written->Check(); !status.ok()) return status.error();
-  Substitute(values, *text);
+  Substitute(values, text);
 
-  auto document = core::JsonDocument::Parse(*text, path.string());
+  auto document = core::JsonDocument::Parse(text, source.string());
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly({"format", "version", "name", "about", "levels", "level_scores", "parameters", "scene",
                   "regions", "rules", "ideal_path"});
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   const std::string name = root.Text("name"), about = root.Text("about");
-  auto scene = ReadSceneFields(*document, root.Object("scene"), path.parent_path(), choice.patient_folder);
+  auto scene = ReadSceneFields(*document, root.Object("scene"), source.parent_path(), choice.patient_folder);
   if (!scene.ok()) return scene.error();
   scene->name = name;
   scene->seed = choice.seed;

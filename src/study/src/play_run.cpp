@@ -6,7 +6,7 @@
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/state_hash.h"
-#include "trocar/scene/task.h"
+#include "trocar/scene/find_scene.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/study/study.h"
 
@@ -14,15 +14,6 @@ namespace trocar::study {
 namespace {
 
 constexpr double kMillilitre = 1e-6;  // m^3
-
-core::Result<scene::Scene> FindScene(const StudyPlan& plan, const Run& run) {
-  auto operation = scene::FindOperation(plan.task, run.patient, run.seed);
-  if (!operation) return operation.error();
-  if (*operation) return std::move(**operation);
-  const auto path = scene::FindTask(plan.task);
-  if (!path) return path.error();
-  return scene::ReadTask(*path, {plan.level, run.seed, run.patient});
-}
 
 /// What both tools do over a run.
 struct Sums {
@@ -82,7 +73,7 @@ std::string NameOutcome(const simulation::Snapshot& last, Until until, bool has_
 }  // namespace
 
 core::Result<RunResult> PlayRun(const StudyPlan& plan, const Run& run) {
-  auto read = FindScene(plan, run);
+  auto read = scene::FindScene(plan.task, {plan.level, run.seed, run.patient});
   if (!read) return read.error();
   for (std::size_t i = 0; i < run.values.size(); ++i) {
     for (const Parameter& parameter : Parameters())

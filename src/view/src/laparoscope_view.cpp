@@ -453,7 +453,6 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
   c.frame.puddles.clear();
   c.frame.puffs.clear();
   c.smear.Update(snapshot);
-  c.frame.blots = c.smear.Blots();
   c.tools.AddTo(c.frame, snapshot);
   c.clips.AddTo(c.renderer, c.frame, snapshot.operation);
   c.stones.AddTo(c.renderer, c.frame, snapshot.operation);
@@ -483,6 +482,9 @@ void LaparoscopeView::Draw(int width, int height) {
   c.frame.light_power = c.light_scale * std::clamp(c.options.light_power, 0.0, 4.0);
   c.frame.has_automatic_exposure = c.options.has_automatic_exposure;
   c.frame.quality = c.options.quality;
+  c.frame.tool_wear = c.options.tool_wear;
+  c.frame.blots = c.options.stains;
+  c.frame.blots.insert(c.frame.blots.end(), c.smear.Blots().begin(), c.smear.Blots().end());
   c.UpdateArrows();
   const std::size_t foreground = c.frame.surfaces.size();
   if (c.options.has_background)

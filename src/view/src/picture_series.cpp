@@ -15,7 +15,7 @@
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
-#include "trocar/scene/task.h"
+#include "trocar/scene/find_scene.h"
 #include "trocar/simulation/state_file.h"
 
 namespace trocar::view {
@@ -73,19 +73,6 @@ bool Bleeds(const Snapshot& now) {
   });
 }
 
-core::Result<std::shared_ptr<const scene::Scene>> FindSittingScene(const std::string& task) {
-  auto operation = scene::FindOperation(task, {}, kSeed);
-  if (!operation) return operation.error();
-  if (*operation) return std::make_shared<const scene::Scene>(std::move(**operation));
-  const auto path = scene::FindTask(task);
-  if (!path) return path.error();
-  scene::TaskChoice choice;
-  choice.seed = kSeed;
-  auto read = scene::ReadTask(*path, choice);
-  if (!read) return read.error();
-  return std::make_shared<const scene::Scene>(std::move(*read));
-}
-
 /// A target in a context, which pictures of all sittings share.
 struct Easel {
   render::OffscreenContext context;
@@ -96,17 +83,18 @@ struct Easel {
 class Sitting {
  public:
   static core::Result<Sitting> Make(const SeriesSitting& plan, const SeriesOptions& options) {
-    auto scene = FindSittingScene(plan.task);
-    if (!scene) return scene.error();
-    auto simulation = simulation::Simulation::Make(*scene, options.threads);
+    auto found = scene::FindScene(plan.task, {"normal", kSeed, {}});
+    if (!found) return found.error();
+    const auto scene = std::make_shared<const scene::Scene>(std::move(*found));
+    auto simulation = simulation::Simulation::Make(scene, options.threads);
     if (!simulation) return simulation.error();
-    auto surgeon = agent::MakeSurgeon(plan.surgeon, *scene, kSeed);
+    auto surgeon = agent::MakeSurgeon(plan.surgeon, scene, kSeed);
     if (!surgeon) return surgeon.error();
-    auto view = LaparoscopeView::Make(**scene, simulation->Surfaces(), simulation->GetSnapshot(),
+    auto view = LaparoscopeView::Make(*scene, simulation->Surfaces(), simulation->GetSnapshot(),
                                       simulation->Strands());
     if (!view) return view.error();
     view->SetOptions(options.view);
-    return Sitting(std::string(plan.surgeon) + ", seed " + std::to_string(kSeed), *scene,
+    return Sitting(std::string(plan.surgeon) + ", seed " + std::to_string(kSeed), scene,
                    std::move(*simulation), std::move(*surgeon), std::move(*view));
   }
 
@@ -196,7 +184,7 @@ std::vector<SeriesSitting> ListPictureSeries() {
   return {
       {"cholecystectomy",
        "expert",
-       {{"01-preparation", "the first look at gallbladder, liver and fat", IsLaterThan<2>},
+       {{"01-preparation", "the first look: the liver lies over the gallbladder", IsLaterThan<2>},
         {"02-traction", "the fundus is held up, a hand takes the infundibulum",
          IsIn<Phase::kCalotTriangleDissection>, 3},
         {"03-triangle", "the hook divides fat and strands of the hepatocystic triangle", BurnsInTriangle,

@@ -168,6 +168,58 @@ TEST_F(LaparoscopeViewTest, ForceShowsAnArrowThatCanBeSwitchedOff) {
   EXPECT_TRUE(view_->GetFrame().arrows.empty());
 }
 
+TEST_F(LaparoscopeViewTest, AStainBlursWhatLiesBehindItAndNoLabel) {
+  ViewOptions options;
+  options.has_automatic_exposure = false;
+  options.quality = render::Quality::kLow;  // without glow, which carries light farther
+  view_->SetOptions(options);
+  const Image clean = Draw();
+  render::GeometryPicture labels, stained_labels;
+  ASSERT_TRUE(view_->DrawGeometry(kWidth, kHeight, labels).ok());
+  options.stains = {{{0, 0}, 0.08, 0.5}};
+  view_->SetOptions(options);
+  const Image stained = Draw();
+  ASSERT_TRUE(view_->DrawGeometry(kWidth, kHeight, stained_labels).ok());
+  // the ball lies in the picture's middle
+  const Change change = CountChanges(clean, stained, {0, 0, -0.10}, 0.08 * 1.5 * kHeight);
+  EXPECT_GT(change.near, 50);
+  EXPECT_EQ(change.far, 0);
+  EXPECT_EQ(labels.labels, stained_labels.labels);
+  options.stains.clear();
+  view_->SetOptions(options);
+  EXPECT_EQ(Draw(), clean);
+}
+
+TEST_F(LaparoscopeViewTest, WornToolsAreScratchedAndNothingElseChanges) {
+  ViewOptions options;
+  options.has_background = false;
+  options.has_automatic_exposure = false;
+  options.quality = render::Quality::kLow;
+  options.tool_wear = 0;
+  view_->SetOptions(options);
+  const Image fresh = Draw();
+  options.tool_wear = 1.6;
+  view_->SetOptions(options);
+  const Image worn = Draw();
+  EXPECT_NE(fresh, worn);
+  render::GeometryPicture labels;
+  ASSERT_TRUE(view_->DrawGeometry(kWidth, kHeight, labels).ok());
+  const auto is_tool = [&](int x, int y) {
+    return labels.labels[static_cast<std::size_t>(y * kWidth + x)] != 0;
+  };
+  for (int y = 1; y + 1 < kHeight; ++y) {
+    for (int x = 1; x + 1 < kWidth; ++x) {
+      if (fresh.At(x, y) == worn.At(x, y)) continue;
+      // edges are smoothed with their neighbours
+      bool is_near_tool = false;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) is_near_tool |= is_tool(x + dx, y + dy);
+      }
+      ASSERT_TRUE(is_near_tool) << x << " " << y;
+    }
+  }
+}
+
 TEST_F(LaparoscopeViewTest, CameraFollowsTheLaparoscope) {
   snapshot_.X_world_laparoscope = {math::RotationAbout({0, 1, 0}, 0.2), {0.01, 0, 0}};
   view_->Update(snapshot_);

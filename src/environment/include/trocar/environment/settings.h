@@ -53,7 +53,7 @@ Features DefaultWeights() noexcept;
 
 struct EnvironmentSettings {
   std::string task = "peg_transfer";  ///< key of a delivered task, "cholecystectomy", or a file of either
-  std::string level = "normal";       ///< of a task
+  std::string level = "normal";       ///< of a task or an operation
   std::filesystem::path patient;      ///< in place of the scene's, unless it is empty
   std::uint64_t seed = 1;  ///< of the task's random layout; an episode's seed chooses among `layouts`
   /// Layouts that episodes are drawn from: those of `seed`, `seed` + 1, ... Each has a model in memory, shared by all
@@ -65,6 +65,9 @@ struct EnvironmentSettings {
   double most_seconds = 0;
   bool moves_camera = false;  ///< the laparoscope is part of the action; tasks that are about it set this
   Features weights = DefaultWeights();
+  /// JSON of a task, an operation or a scene that stands in no file; `task` is then its name in messages, and relative paths inside
+  /// start from that name's folder. Empty: `task` is looked for.
+  std::string document;
 };
 
 /// A named part of an action or of an observed state.

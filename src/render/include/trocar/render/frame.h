@@ -103,6 +103,8 @@ struct Blot {
   math::Vec2 centre;  ///< from the picture's middle, +x right, +y up, in heights of the picture
   double radius = 0;  ///< likewise
   double thick = 0;   ///< 0 nothing to 1 hardly any light passes as it came [-]
+
+  friend bool operator==(const Blot&, const Blot&) = default;
 };
 inline constexpr std::size_t kMaxBlots = 6;
 
@@ -136,6 +138,7 @@ struct Frame {
   std::vector<Puff> puffs;
   std::vector<Blot>
       blots;  ///< the first kMaxBlots count; they need the pass that smooths edges, which then is made
+  double tool_wear = 1;  ///< scratches of tools, in those of the looks [-]
   std::vector<Arrow> arrows;
   std::vector<Shade> shades;  ///< the first kMaxShades count
   double smoke = 0;           ///< haze between lens and tissue, 0 none to 1 thick [-]

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_source.h"
+
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <system_error>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "trocar/anatomy/generate_patient.h"
+#include "trocar/anatomy/patient.h"
+
+namespace trocar::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+core::Error Unusable(const std::string& what) {
+  return core::Error{core::ErrorCode::kUsage, what};
+}
+
+/// A text or what os.fspath makes one of; nothing for anything else.
+std::optional<std::string> FindPath(const py::object& given) {
+  if (!py::isinstance<py::str>(given) && !py::hasattr(given, "__fspath__")) return std::nullopt;
+  return py::str(py::module_::import("os").attr("fspath")(given));
+}
+
+/// As on a command line: numbers and truth values as JSON writes them.
+std::string FormatSetting(const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "yes" : "no";
+  return py::str(value);
+}
+
+/// \return the folder, with what removes it
+std::pair<fs::path, std::shared_ptr<const void>> MakeFolder() {
+  std::string name = (fs::temp_directory_path() / "trocar-patient-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw Failure({core::ErrorCode::kFileUnwritable, name + ": a folder for the patient cannot be made"});
+  const auto* made = new fs::path(name);
+  return {*made, std::shared_ptr<const void>(made, [](const void* held) {
+            const auto* folder = static_cast<const fs::path*>(held);
+            std::error_code ignored;
+            fs::remove_all(*folder, ignored);
+            delete folder;
+          })};
+}
+
+}  // namespace
+
+SceneSource ReadSceneSource(const py::object& scene, const std::string& folder) {
+  if (auto path = FindPath(scene)) return {std::move(*path), {}};
+  if (!py::isinstance<py::dict>(scene))
+    throw Failure(Unusable("a scene is a task's key, \"cholecystectomy\", a file, or a dictionary"));
+  try {
+    const py::object text = py::module_::import("json").attr("dumps")(scene, py::arg("allow_nan") = false);
+    return {(fs::path(folder) / "the dictionary").string(), py::str(text)};
+  } catch (const py::error_already_set& wrong) {
+    throw Failure(Unusable("the dictionary is no JSON: " + std::string(py::str(wrong.value()))));
+  }
+}
+
+core::Result<scene::Scene> FindScene(const SceneSource& source, const scene::TaskChoice& choice) {
+  return source.document.empty() ? scene::FindScene(source.name, choice)
+                                 : scene::ParseScene(source.document, source.name, choice);
+}
+
+PatientSource::PatientSource(const py::object& patient) {
+  if (const auto path = FindPath(patient)) {
+    folder_ = *path;
+    return;
+  }
+  if (!py::isinstance<py::dict>(patient))
+    throw Failure(Unusable("a patient is a folder, or a dictionary with seed and what to set"));
+  std::uint64_t seed = 1;
+  std::vector<anatomy::ParameterSetting> settings;
+  for (const auto& [key, value] : py::cast<py::dict>(patient)) {
+    const std::string name = py::str(key);
+    if (name == "seed" && py::isinstance<py::int_>(value)) {
+      seed = value.cast<std::uint64_t>();
+    } else if (name == "set" && py::isinstance<py::dict>(value)) {
+      for (const auto& [parameter, wanted] : py::cast<py::dict>(value))
+        settings.emplace_back(py::str(parameter), FormatSetting(wanted));
+    } else {
+      throw Failure(
+          Unusable("a patient's dictionary has a whole number \"seed\" and a dictionary \"set\"; \"" + name +
+                   "\" is something else"));
+    }
+  }
+  std::tie(folder_, made_) = MakeFolder();
+  const py::gil_scoped_release release;
+  Check(anatomy::WritePatient(folder_, Take(anatomy::GeneratePatient(seed, settings))));
+}
+
+}  // namespace trocar::python

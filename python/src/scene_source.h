@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file scene_source.h  What Python gives as a scene or a patient: a name, a path, or a dictionary.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "binding.h"
+#include "trocar/scene/find_scene.h"
+
+namespace trocar::python {
+
+/// A scene's text, or where it stands.
+struct SceneSource {
+  std::string
+      name;  ///< of a task or an operation, or a file; of a dictionary what messages call it, in its folder
+  std::string document;  ///< JSON of a dictionary, else empty
+};
+/// \param folder  that relative paths of a dictionary start from; the working folder where it is empty
+/// \throw Failure kUsage for something else, and for a dictionary that is no JSON
+SceneSource ReadSceneSource(const py::object& scene, const std::string& folder);
+
+core::Result<scene::Scene> FindScene(const SceneSource& source, const scene::TaskChoice& choice);
+
+/// A folder with a patient. One that was made of a dictionary is removed with the last copy of this.
+class PatientSource {
+ public:
+  /// \param patient  a folder, "" for the scene's own, or a dictionary: "seed" and what to "set" (`trocar anatomy generate`)
+  /// \throw Failure kUsage for something else; the generator's or the file's error
+  explicit PatientSource(const py::object& patient);
+
+  const std::filesystem::path& Folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::shared_ptr<const void> made_;
+};
+
+}  // namespace trocar::python

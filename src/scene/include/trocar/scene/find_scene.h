@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file find_scene.h  A scene by its name, its file or its text, whatever kind it is: an operation, a task, or a scene to look at.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "trocar/core/result.h"
+#include "trocar/scene/scene.h"
+#include "trocar/scene/task.h"
+
+namespace trocar::scene {
+
+/// \param name_or_path  of an operation, the key of a delivered task, or a file
+/// \param choice        level of a task or an operation; the seed is also that of the scene
+/// \return kUnknownName where there is no such thing or level; else as ReadScene
+core::Result<Scene> FindScene(const std::string& name_or_path, const TaskChoice& choice = {});
+
+/// The same from text that need not stand in a file.
+/// \param source  its name in messages; relative paths inside start from its folder
+core::Result<Scene> ParseScene(const std::string& text, const std::filesystem::path& source,
+                               const TaskChoice& choice = {});
+
+}  // namespace trocar::scene
