@@ -313,11 +313,17 @@ uniform sampler2D u_glow;     // light that the lens scatters about highlights
 
 // Along an edge, so that one that is nearly upright or level has no steps (T. Lottes, FXAA, NVIDIA 2009). Where the farther taps reach
 // beyond the edge, which their brightness tells, the nearer ones do.
-vec3 BlurAlong(vec2 at, vec2 edge, float low, float high) {
-  float least = min(abs(edge.x), abs(edge.y)) + max(0.0625 * (low + high), 0.0078);
+vec3 BlurAlong(vec2 at, float here) {
+  float nw = texture(u_picture, at + vec2(-1.0, 1.0) * u_texel).a;
+  float ne = texture(u_picture, at + vec2(1.0, 1.0) * u_texel).a;
+  float sw = texture(u_picture, at + vec2(-1.0, -1.0) * u_texel).a;
+  float se = texture(u_picture, at + vec2(1.0, -1.0) * u_texel).a;
+  vec2 edge = vec2(sw + se - nw - ne, ne + se - nw - sw);
+  float least = min(abs(edge.x), abs(edge.y)) + max(0.03125 * (nw + ne + sw + se), 0.0078);
   vec2 along = clamp(edge / least, -8.0, 8.0) * u_texel;
   vec4 near = 0.5 * (texture(u_picture, at - along / 6.0) + texture(u_picture, at + along / 6.0));
   vec4 far = 0.5 * near + 0.25 * (texture(u_picture, at - 0.5 * along) + texture(u_picture, at + 0.5 * along));
+  float low = min(here, min(min(nw, ne), min(sw, se))), high = max(here, max(max(nw, ne), max(sw, se)));
   return far.a < low || far.a > high ? near.rgb : far.rgb;
 }
 #endif
@@ -364,7 +370,7 @@ void main() {
   float share = clamp((high - low - 0.03) * 16.0, 0.0, 1.0);
   vec3 smoothed = 0.25 * (nw.rgb + ne.rgb + sw.rgb + se.rgb);
 #ifdef FINE
-  if (share > 0.0) smoothed = BlurAlong(at, vec2(sw.a + se.a - nw.a - ne.a, ne.a + se.a - nw.a - sw.a), low, high);
+  if (share > 0.0) smoothed = BlurAlong(at, here.a);
 #endif
   vec3 colour = mix(here.rgb, smoothed, share);
 #ifdef SMEARED

@@ -365,9 +365,9 @@ TEST_F(RendererTest, EdgesThatAreNearlyUprightHaveNoSteps) {
   EXPECT_GT(find_step(), 0.9);
   frame.has_smooth_edges = true;
   frame.quality = Quality::kLow;
-  EXPECT_GT(find_step(), 0.4);
+  EXPECT_GT(find_step(), 0.5);
   frame.quality = Quality::kHigh;
-  EXPECT_LT(find_step(), 0.3);
+  EXPECT_LT(find_step(), 0.4);
 }
 
 // As under GTK: its framebuffer is not 0, it leaves scissor and blending on, and wants no depth test back.

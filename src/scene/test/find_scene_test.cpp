@@ -32,7 +32,7 @@ TEST(FindScene, FindsOperationsTasksAndScenes) {
   EXPECT_EQ(operation->operation->level.key, "easy");
   EXPECT_EQ(operation->seed, 5u);
 
-  const auto task = FindScene("pattern_cut", {"normal", 7, {}});
+  const auto task = FindScene("peg_transfer", {"normal", 7, {}});
   ASSERT_TRUE(task.ok()) << task.error().Text();
   EXPECT_TRUE(task->task && !task->operation);
   EXPECT_EQ(task->seed, 7u);

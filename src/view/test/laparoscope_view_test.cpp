@@ -195,6 +195,7 @@ TEST_F(LaparoscopeViewTest, WornToolsAreScratchedAndNothingElseChanges) {
   options.has_background = false;
   options.has_automatic_exposure = false;
   options.quality = render::Quality::kLow;
+  PlaceTip(0, {0.01, -0.01, -0.08});  // its shaft comes through the picture's middle
   options.tool_wear = 0;
   view_->SetOptions(options);
   const Image fresh = Draw();
