@@ -15,33 +15,34 @@ namespace {
 constexpr unsigned kWidth = 1280, kHeight = 800;  // of the display
 constexpr unsigned kFromEdge = 100;               // of the pointer, when it is taken [pixels]
 constexpr int kPush = 400;                        // [pixels]
-// where the small window, 800 x 600 in the display's corner, is clicked, left for, and entered again [pixels]
-constexpr unsigned kInside = 350, kBeyond = 1000, kBeside = 200;
-constexpr int kDown = 120;  // in the window again [pixels]
+// the same where the window, at most 1300 wide in the display's corner, is left; where it is clicked and entered again [pixels]
+constexpr unsigned kWideWidth = 2000, kBeyond = 1500, kNearRight = 1050, kBeside = 300, kHigh = 350;
+constexpr int kDown = 120;        // in the window again [pixels]
+constexpr double kTurned = 0.02;  // more is no trembling [rad]
 
 void Sleep(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
-void Take(trocar::test::WaylandHand& hand, unsigned x, unsigned y) {
-  hand.MoveTo(x, y, kWidth, kHeight);
+void Take(trocar::test::WaylandHand& hand, unsigned x, unsigned y, unsigned width) {
+  hand.MoveTo(x, y, width, kHeight);
   Sleep(500);
   hand.Click();
   Sleep(1500);
 }
 
 void PushAndComeBack(trocar::test::WaylandHand& hand) {
-  Take(hand, kWidth - kFromEdge, kHeight / 2);
+  Take(hand, kWidth - kFromEdge, kHeight / 2, kWidth);
   hand.MoveBy(kPush, 0, 60);
   Sleep(1500);
   hand.MoveBy(-kPush, 0, 60);
 }
 
 void LeaveAndComeBack(trocar::test::WaylandHand& hand) {
-  Take(hand, kInside, kInside);
-  hand.MoveBy(static_cast<int>(kBeyond - kInside), 0, 60);
+  Take(hand, kNearRight, kHigh, kWideWidth);
+  hand.MoveBy(static_cast<int>(kBeyond - kNearRight), 0, 60);
   Sleep(1500);
-  hand.MoveTo(kBeside, kInside, kWidth, kHeight);
+  hand.MoveTo(kBeside, kHigh, kWideWidth, kHeight);
   Sleep(500);
   hand.MoveBy(0, kDown, 40);
 }
@@ -54,16 +55,21 @@ int Use(void (*move)(trocar::test::WaylandHand&)) {
   return 0;
 }
 
-/// Prints how far the right hand turned aside at most, and at the end, and how far up or down at the end [mrad].
+/// Prints how far the right hand turned to the side to which it went first, at most and at the end, and how far up or down at the
+/// end [mrad].
 int Judge(const char* file) {
   const auto recording = trocar::record::ReadRecording(file);
   if (!recording.ok()) return std::fprintf(stderr, "%s\n", recording.error().Text().c_str()), 1;
   if (recording->inputs.empty()) return std::fputs("nothing was recorded\n", stderr), 1;
   const auto hand = [](const auto& input) { return input.hands[trocar::scene::kRight]; };
   const auto first = hand(recording->inputs.front()), last = hand(recording->inputs.back());
-  double most = 0;
-  for (const auto& input : recording->inputs) most = std::max(most, std::abs(hand(input).pan - first.pan));
-  std::printf("%.0f;%.0f;%.0f", 1e3 * most, 1e3 * std::abs(last.pan - first.pan),
+  double most = 0, side = 0;
+  for (const auto& input : recording->inputs) {
+    const double aside = hand(input).pan - first.pan;
+    if (side == 0 && std::abs(aside) > kTurned) side = aside > 0 ? 1 : -1;
+    most = std::max(most, side * aside);
+  }
+  std::printf("%.0f;%.0f;%.0f", 1e3 * most, 1e3 * side * (last.pan - first.pan),
               1e3 * std::abs(last.tilt - first.tilt));
   return 0;
 }
