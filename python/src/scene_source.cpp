@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <optional>
 #include <system_error>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,18 +32,16 @@ std::string FormatSetting(const py::handle& value) {
   return py::str(value);
 }
 
-/// \return the folder, with what removes it
-std::pair<fs::path, std::shared_ptr<const void>> MakeFolder() {
+/// A new folder, which goes with its name.
+std::shared_ptr<const fs::path> MakeFolder() {
   std::string name = (fs::temp_directory_path() / "trocar-patient-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
     throw Failure({core::ErrorCode::kFileUnwritable, name + ": a folder for the patient cannot be made"});
-  const auto* made = new fs::path(name);
-  return {*made, std::shared_ptr<const void>(made, [](const void* held) {
-            const auto* folder = static_cast<const fs::path*>(held);
+  return {new fs::path(name), [](const fs::path* folder) {
             std::error_code ignored;
             fs::remove_all(*folder, ignored);
             delete folder;
-          })};
+          }};
 }
 
 }  // namespace
@@ -88,7 +85,8 @@ PatientSource::PatientSource(const py::object& patient) {
                    "\" is something else"));
     }
   }
-  std::tie(folder_, made_) = MakeFolder();
+  made_ = MakeFolder();
+  folder_ = *made_;
   const py::gil_scoped_release release;
   Check(anatomy::WritePatient(folder_, Take(anatomy::GeneratePatient(seed, settings))));
 }

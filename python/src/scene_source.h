@@ -34,7 +34,7 @@ class PatientSource {
 
  private:
   std::filesystem::path folder_;
-  std::shared_ptr<const void> made_;
+  std::shared_ptr<const std::filesystem::path> made_;  // removed with its last owner
 };
 
 }  // namespace trocar::python
