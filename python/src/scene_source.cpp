@@ -10,6 +10,7 @@
 
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient.h"
+#include "trocar/core/safe_file.h"
 
 namespace trocar::python {
 namespace {
@@ -26,7 +27,7 @@ std::optional<std::string> FindPath(const py::object& given) {
   return py::str(py::module_::import("os").attr("fspath")(given));
 }
 
-/// As on a command line: numbers and truth values as JSON writes them.
+/// As on a command line, where truth values are yes and no.
 std::string FormatSetting(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "yes" : "no";
   return py::str(value);
@@ -59,8 +60,11 @@ SceneSource ReadSceneSource(const py::object& scene, const std::string& folder) 
 }
 
 core::Result<scene::Scene> FindScene(const SceneSource& source, const scene::TaskChoice& choice) {
-  return source.document.empty() ? scene::FindScene(source.name, choice)
-                                 : scene::ParseScene(source.document, source.name, choice);
+  if (!source.document.empty()) return scene::ParseScene(source.document, source.name, choice);
+  std::error_code ignored;
+  if (!fs::is_regular_file(source.name, ignored)) return scene::FindScene(source.name, choice);
+  const auto text = core::ReadFile(source.name);
+  return text.ok() ? scene::ParseScene(*text, source.name, choice) : text.error();
 }
 
 PatientSource::PatientSource(const py::object& patient) {

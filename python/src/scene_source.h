@@ -21,6 +21,7 @@ struct SceneSource {
 /// \throw Failure kUsage for something else, and for a dictionary that is no JSON
 SceneSource ReadSceneSource(const py::object& scene, const std::string& folder);
 
+/// An operation, a task, or a scene to look at.
 core::Result<scene::Scene> FindScene(const SceneSource& source, const scene::TaskChoice& choice);
 
 /// A folder with a patient. One that was made of a dictionary is removed with the last copy of this.

@@ -192,6 +192,11 @@ class Dictionaries(unittest.TestCase):
                 trocar.Simulation(wrong)
             self.assertIn(word, str(caught.exception))
             self.assertTrue(caught.exception.code.startswith(code) or code == "E-SCN-", caught.exception.code)
+        # in a scene to look at an environment has nothing to do
+        scene = json.loads(Path(RETRACTION).read_text())
+        for nothing in (RETRACTION, scene):
+            with self.assertRaises(trocar.Error):
+                trocar.make(nothing, folder=str(ROOT / "scenes"))
         for wrong in (5, {"sead": 1}, {"seed": "five"}):
             with self.assertRaises(trocar.Error) as caught:
                 trocar.Simulation("cholecystectomy", patient=wrong)
@@ -235,6 +240,8 @@ class Errors(unittest.TestCase):
         inputs = simulation.home()
         self.check("E-SCN-003", lambda: trocar.Simulation("juggling"))
         self.check("E-CLI-001", lambda: trocar.Simulation("peg_transfer", threads=0))
+        self.check("E-SCN-003", lambda: trocar.Simulation("cholecystectomy", level="heroic"))
+        self.check("E-SCN-003", lambda: trocar.make("cholecystectomy", level="heroic"))
         self.check("E-SCN-003", lambda: trocar.Surgeon("nobody", simulation))
         self.check("E-CLI-001", lambda: simulation.step(inputs, -1))
         self.check("E-CLI-001", lambda: trocar.Camera(4, 4))

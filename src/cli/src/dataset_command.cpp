@@ -121,7 +121,7 @@ void AddDatasetCommand(CLI::App& app, Outcome& outcome) {
       command->add_option("--task", a->plan.task, "A training task or an operation (trocar play --list)")
           ->type_name("TASK")
           ->capture_default_str());
-  scripted.push_back(command->add_option("--level", a->plan.level, "Difficulty of a training task")
+  scripted.push_back(command->add_option("--level", a->plan.level, "Difficulty of the task or the operation")
                          ->type_name("LEVEL")
                          ->capture_default_str());
   scripted.push_back(command->add_option("--surgeon", a->plan.surgeon, "A scripted one (trocar play --list)")

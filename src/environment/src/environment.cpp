@@ -40,7 +40,13 @@ core::Status CheckSettings(const EnvironmentSettings& settings) {
 core::Result<scene::Scene> ReadLayout(const EnvironmentSettings& settings, std::uint64_t seed) {
   const scene::TaskChoice choice{settings.level, seed, settings.patient};
   if (settings.document.empty()) return scene::FindScene(settings.task, choice);
-  return scene::ParseScene(settings.document, settings.task, choice);
+  auto scene = scene::ParseScene(settings.document, settings.task, choice);
+  if (scene.ok() && !scene->task && !scene->operation) {
+    return core::Error{
+        core::ErrorCode::kSceneInvalid,
+        settings.task + ": in this scene nothing is to be done; an environment is a task or an operation"};
+  }
+  return scene;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/assessment/play_state.h"
+#include "trocar/scene/find_scene.h"
 
 namespace trocar::presenter {
 namespace {
@@ -31,12 +32,8 @@ core::Result<scene::Scene> ReadChosenScene(const Options& options) {
   auto operation = scene::FindOperation(options.task, options.operation.patient, options.seed, options.level);
   if (!operation) return operation.error();
   if (operation->has_value()) return std::move(**operation);
-  const auto task = scene::FindTask(options.task);
-  if (!task) {
-    if (task.error().code != core::ErrorCode::kUnknownName) return task.error();
-    return core::Error{task.error().code, task.error().message + "; or the operation \"cholecystectomy\""};
-  }
-  return scene::ReadTask(*task, {options.level, options.seed, {}});
+  // the chosen patient is an operation's, and no task's
+  return scene::FindScene(options.task, {options.level, options.seed, {}});
 }
 
 core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options) {

@@ -311,7 +311,7 @@ uniform vec2 u_texel;
 #ifdef FINE
 uniform sampler2D u_glow;     // light that the lens scatters about highlights
 
-// Along an edge, so that one that is nearly upright or level has no steps (T. Lottes, FXAA, NVIDIA 2009). Where the farther taps reach
+// Along an edge, so that one that is nearly upright or level has smaller steps (T. Lottes, FXAA, NVIDIA 2009). Where the farther taps reach
 // beyond the edge, which their brightness tells, the nearer ones do.
 vec3 BlurAlong(vec2 at, float here) {
   float nw = texture(u_picture, at + vec2(-1.0, 1.0) * u_texel).a;

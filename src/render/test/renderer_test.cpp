@@ -342,7 +342,7 @@ TEST_F(RendererTest, SmoothingSoftensTheStairsOfAnEdgeOnly) {
 }
 
 // One that leans by a pixel in six has a step every six rows where it is not smoothed, and a blur of a pixel all round leaves half of it.
-TEST_F(RendererTest, EdgesThatAreNearlyUprightHaveNoSteps) {
+TEST_F(RendererTest, EdgesThatAreNearlyUprightHaveSmallSteps) {
   constexpr double kLean = 1.0 / 6.0, kHalf = 0.1;
   geometry::TriangleMesh half_plane;
   half_plane.positions = {{-kHalf * kLean, -kHalf, 0}, {3 * kHalf, 0, 0}, {kHalf * kLean, kHalf, 0}};

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "scene_reader.h"
-#include "trocar/core/safe_file.h"
 
 namespace trocar::scene {
 
@@ -17,9 +16,7 @@ core::Result<Scene> FindScene(const std::string& name_or_path, const TaskChoice&
     if (path.error().code != core::ErrorCode::kUnknownName) return path.error();
     return core::Error{path.error().code, path.error().message + "; or the operation \"cholecystectomy\""};
   }
-  const auto text = core::ReadFile(*path);
-  if (!text.ok()) return text.error();
-  return ParseScene(*text, *path, choice);
+  return ReadTask(*path, choice);
 }
 
 core::Result<Scene> ParseScene(const std::string& text, const std::filesystem::path& source,

@@ -25,7 +25,7 @@ std::string ReadChanged(const std::filesystem::path& path, const std::string& fr
   return at == std::string::npos ? std::string() : text->replace(at, from.size(), to);
 }
 
-TEST(FindScene, FindsOperationsTasksAndScenes) {
+TEST(FindScene, FindsOperationsAndTasks) {
   const auto operation = FindScene("cholecystectomy", {"easy", 5, {}});
   ASSERT_TRUE(operation.ok()) << operation.error().Text();
   EXPECT_TRUE(operation->operation && !operation->task);
@@ -37,11 +37,8 @@ TEST(FindScene, FindsOperationsTasksAndScenes) {
   EXPECT_TRUE(task->task && !task->operation);
   EXPECT_EQ(task->seed, 7u);
 
-  const auto plain = FindScene(DataFile("scenes/retraction.json"), {"normal", 9, {}});
-  ASSERT_TRUE(plain.ok()) << plain.error().Text();
-  EXPECT_TRUE(!plain->task && !plain->operation);
-  EXPECT_EQ(plain->seed, 9u);
-
+  // in a scene to look at nothing is to be done
+  EXPECT_EQ(FindScene(DataFile("scenes/retraction.json")).error().code, core::ErrorCode::kJsonField);
   EXPECT_EQ(FindScene("juggling").error().code, core::ErrorCode::kUnknownName);
   EXPECT_EQ(FindScene("cholecystectomy", {"heroic", 1, {}}).error().code, core::ErrorCode::kUnknownName);
 }
@@ -63,6 +60,16 @@ TEST(FindScene, ReadsWhatStandsInNoFile) {
   EXPECT_TRUE(operation->name.starts_with("Another "));
   EXPECT_EQ(operation->operation->level.key, "hard");
   EXPECT_EQ(operation->seed, 3u);
+}
+
+TEST(FindScene, ReadsAlsoAScenesTextInWhichNothingIsToBeDone) {
+  const auto file = DataFile("scenes/retraction.json");
+  const auto plain =
+      ParseScene(ReadChanged(file, "\"tick_hz\": 120", "\"tick_hz\": 60"), file, {"normal", 9, {}});
+  ASSERT_TRUE(plain.ok()) << plain.error().Text();
+  EXPECT_TRUE(!plain->task && !plain->operation);
+  EXPECT_EQ(plain->seed, 9u);
+  EXPECT_DOUBLE_EQ(plain->tick_seconds, 1.0 / 60);
 }
 
 TEST(FindScene, RefusalsNameTheSourceAndTheField) {

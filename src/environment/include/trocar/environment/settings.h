@@ -65,7 +65,7 @@ struct EnvironmentSettings {
   double most_seconds = 0;
   bool moves_camera = false;  ///< the laparoscope is part of the action; tasks that are about it set this
   Features weights = DefaultWeights();
-  /// JSON of a task, an operation or a scene that stands in no file; `task` is then its name in messages, and relative paths inside
+  /// JSON of a task or an operation that stands in no file; `task` is then its name in messages, and relative paths inside
   /// start from that name's folder. Empty: `task` is looked for.
   std::string document;
 };

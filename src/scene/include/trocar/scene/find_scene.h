@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file find_scene.h  A scene by its name, its file or its text, whatever kind it is: an operation, a task, or a scene to look at.
+/// \file find_scene.h  An operation or a task by its name or file; any scene by its text.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,13 @@
 
 namespace trocar::scene {
 
-/// \param name_or_path  of an operation, the key of a delivered task, or a file
+/// Something to do: an operation, or a task.
+/// \param name_or_path  of an operation, the key of a delivered task, or a file of either
 /// \param choice        level of a task or an operation; the seed is also that of the scene
-/// \return kUnknownName where there is no such thing or level; else as ReadScene
+/// \return kUnknownName where there is no such thing or level; else as ReadTask
 core::Result<Scene> FindScene(const std::string& name_or_path, const TaskChoice& choice = {});
 
-/// The same from text that need not stand in a file.
+/// An operation, a task, or a scene to look at, from text that need not stand in a file.
 /// \param source  its name in messages; relative paths inside start from its folder
 core::Result<Scene> ParseScene(const std::string& text, const std::filesystem::path& source,
                                const TaskChoice& choice = {});
