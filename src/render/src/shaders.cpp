@@ -311,20 +311,22 @@ uniform vec2 u_texel;
 #ifdef FINE
 uniform sampler2D u_glow;     // light that the lens scatters about highlights
 
-// Along an edge, so that one that is nearly upright or level has smaller steps (T. Lottes, FXAA, NVIDIA 2009). Where the farther taps reach
-// beyond the edge, which their brightness tells, the nearer ones do.
-vec3 BlurAlong(vec2 at, float here) {
+// Along an edge that is nearly upright or level, so that it has smaller steps (T. Lottes, FXAA, NVIDIA 2009); where the farther taps reach
+// beyond the edge, which their brightness tells, the nearer ones count. `around` is better for what stands slanting, and for thin lines.
+vec3 BlurAlong(vec2 at, float here, vec3 around) {
   float nw = texture(u_picture, at + vec2(-1.0, 1.0) * u_texel).a;
   float ne = texture(u_picture, at + vec2(1.0, 1.0) * u_texel).a;
   float sw = texture(u_picture, at + vec2(-1.0, -1.0) * u_texel).a;
   float se = texture(u_picture, at + vec2(1.0, -1.0) * u_texel).a;
+  float low = min(here, min(min(nw, ne), min(sw, se))), high = max(here, max(max(nw, ne), max(sw, se)));
   vec2 edge = vec2(sw + se - nw - ne, ne + se - nw - sw);
-  float least = min(abs(edge.x), abs(edge.y)) + max(0.03125 * (nw + ne + sw + se), 0.0078);
-  vec2 along = clamp(edge / least, -8.0, 8.0) * u_texel;
+  float less = min(abs(edge.x), abs(edge.y)), more = max(abs(edge.x), abs(edge.y));
+  vec2 along = clamp(edge / (less + max(0.03125 * (nw + ne + sw + se), 0.0078)), -8.0, 8.0);
+  float straight = clamp(more / (2.0 * (high - low) + 0.001), 0.0, 1.0) * clamp(0.25 * max(abs(along.x), abs(along.y)) - 0.5, 0.0, 1.0);
+  along *= u_texel;
   vec4 near = 0.5 * (texture(u_picture, at - along / 6.0) + texture(u_picture, at + along / 6.0));
   vec4 far = 0.5 * near + 0.25 * (texture(u_picture, at - 0.5 * along) + texture(u_picture, at + 0.5 * along));
-  float low = min(here, min(min(nw, ne), min(sw, se))), high = max(here, max(max(nw, ne), max(sw, se)));
-  return far.a < low || far.a > high ? near.rgb : far.rgb;
+  return mix(around, far.a < low || far.a > high ? near.rgb : far.rgb, straight);
 }
 #endif
 #ifdef SMEARED
@@ -370,7 +372,7 @@ void main() {
   float share = clamp((high - low - 0.03) * 16.0, 0.0, 1.0);
   vec3 smoothed = 0.25 * (nw.rgb + ne.rgb + sw.rgb + se.rgb);
 #ifdef FINE
-  if (share > 0.0) smoothed = BlurAlong(at, here.a);
+  if (share > 0.0) smoothed = BlurAlong(at, here.a, smoothed);
 #endif
   vec3 colour = mix(here.rgb, smoothed, share);
 #ifdef SMEARED

@@ -341,14 +341,17 @@ TEST_F(RendererTest, SmoothingSoftensTheStairsOfAnEdgeOnly) {
   EXPECT_LT(CalcMeanDifference(hard, soft), 1.5);
 }
 
+/// A half of the picture, right of an edge through the middle that leans by so many pixels in one.
+geometry::TriangleMesh MakeHalfPlane(double lean) {
+  constexpr double kHalf = 0.1;  // m
+  return {{{-kHalf * lean, -kHalf, 0}, {3 * kHalf, 0, 0}, {kHalf * lean, kHalf, 0}}, {{0, 1, 2}}};
+}
+
 // One that leans by a pixel in six has a step every six rows where it is not smoothed, and a blur of a pixel all round leaves half of it.
 TEST_F(RendererTest, EdgesThatAreNearlyUprightHaveSmallSteps) {
-  constexpr double kLean = 1.0 / 6.0, kHalf = 0.1;
-  geometry::TriangleMesh half_plane;
-  half_plane.positions = {{-kHalf * kLean, -kHalf, 0}, {3 * kHalf, 0, 0}, {kHalf * kLean, kHalf, 0}};
-  half_plane.triangles = {{0, 1, 2}};
   Frame frame = PlainFrame();
-  frame.surfaces = {{renderer_->AddSurface(half_plane, Material::kForce), {{}, {0, 0, -kDistance}}}};
+  frame.surfaces = {
+      {renderer_->AddSurface(MakeHalfPlane(1.0 / 6.0), Material::kForce), {{}, {0, 0, -kDistance}}}};
   // how far the edge moves most from one row to the next, as light moves that is summed over a row [pixels]
   const auto find_step = [&] {
     const Image image = Draw(frame);
@@ -368,6 +371,30 @@ TEST_F(RendererTest, EdgesThatAreNearlyUprightHaveSmallSteps) {
   EXPECT_GT(find_step(), 0.5);
   frame.quality = Quality::kHigh;
   EXPECT_LT(find_step(), 0.4);
+}
+
+// A blur along an edge of 45 degrees mixes nothing with what lies beyond it: there the blur all round must be left.
+TEST_F(RendererTest, SlantingEdgesAreAsSmoothAtEitherQuality) {
+  Frame frame = PlainFrame();
+  frame.surfaces = {{renderer_->AddSurface(MakeHalfPlane(1.0), Material::kForce), {{}, {0, 0, -kDistance}}}};
+  // the greatest change from one pixel to the next, as a share of the whole
+  const auto find_change = [&] {
+    const Image image = Draw(frame);
+    double change = 0;
+    for (int y = kHeight / 2 - 18; y < kHeight / 2 + 18; ++y) {
+      for (int x = kWidth / 2 - 30; x < kWidth / 2 + 30; ++x)
+        change = std::max(
+            change, std::abs(static_cast<double>(Brightness(image, x + 1, y) - Brightness(image, x, y))));
+    }
+    return change / Brightness(image, kWidth / 2 + 40, kHeight / 2);
+  };
+  const double hard = find_change();
+  frame.has_smooth_edges = true;
+  frame.quality = Quality::kLow;
+  const double low = find_change();
+  frame.quality = Quality::kHigh;
+  EXPECT_LT(low, 0.8 * hard);
+  EXPECT_LT(find_change(), 1.1 * low);
 }
 
 // As under GTK: its framebuffer is not 0, it leaves scissor and blending on, and wants no depth test back.
