@@ -18,7 +18,9 @@ constexpr BenchmarkSuite kSuites[] = {
     {"haptics", "the 1 kHz loop with both hands in contact, beside a bare loop", RunHapticsBenchmark},
     {"recording", "what recording costs a tick; how quickly a replay runs, seeks and branches",
      RunRecordingBenchmark},
-    {"soak", "random actions, pedals too, in every environment: finite states, no growth (--steps, --seed)",
+    {"soak",
+     "random actions, pedals too, in every environment, each twice: finite and the same states, no growth "
+     "(--steps, --seed)",
      RunSoakBenchmark},
     {"state", "saving, restoring and comparing a whole operation; memory of one more", RunStateBenchmark},
     {"store", "history pages and group percentiles in the store of a large centre (--attempts, --url)",

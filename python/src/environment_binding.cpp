@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "attempt.h"
 #include "binding.h"
 #include "camera.h"
 #include "scene_source.h"
@@ -98,6 +99,19 @@ py::dict DescribeFeatures(const environment::Features& features) {
 py::tuple DescribeOutcome(const Outcome& outcome) {
   return py::make_tuple(outcome.reward, outcome.is_terminated, outcome.is_truncated, outcome.is_success,
                         DescribeFeatures(outcome.features));
+}
+
+/// What the hands do in the environment from now on, each episode an attempt of its own.
+std::shared_ptr<Attempt> CollectAttempt(Environment& environment) {
+  auto attempt = std::make_shared<Attempt>(environment.GetSimulation());
+  environment.SetTickObserver([attempt](const simulation::Simulation& simulation, const scene::Input* input) {
+    if (input == nullptr) {
+      attempt->Begin(simulation);
+    } else {
+      attempt->Add(simulation, *input);
+    }
+  });
+  return attempt;
 }
 
 /// Goes on from where hands and picture are: at first where an episode begins.
@@ -265,6 +279,9 @@ void BindEnvironment(py::module_& module) {
                              [](const EnvironmentModel& m) { return m.Settings().most_seconds; })
       .def_property_readonly("moves_camera",
                              [](const EnvironmentModel& m) { return m.Settings().moves_camera; });
+  py::class_<Attempt, std::shared_ptr<Attempt>>(module, "Attempt", "The episode of an environment so far.")
+      .def(py::init(&CollectAttempt), py::arg("environment"))
+      .def("metrics", &Attempt::Describe);
   py::class_<Environment>(module, "Environment", "One running environment; trocar.make wraps it.")
       .def(py::init([](std::shared_ptr<EnvironmentModel> model) {
              const py::gil_scoped_release release;

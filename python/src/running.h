@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
+#include "attempt.h"
 #include "scene_source.h"
-#include "trocar/record/trace.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::python {
@@ -15,16 +15,14 @@ struct Running {
   std::shared_ptr<const scene::Scene> scene;
   simulation::Simulation simulation;
   PatientSource patient;
-  std::optional<record::TraceBuilder> trace;  ///< of the attempt, where its metrics are wanted
+  std::optional<Attempt> attempt;  ///< where its metrics are wanted
 
   void Step(const scene::Input& input) {
     simulation.Step(input);
-    if (trace) trace->Add(simulation.GetSnapshot(), input.controls);
+    if (attempt) attempt->Add(simulation, input);
   }
-  /// What the hands do from here on is another attempt.
-  void BeginTrace() {
-    trace.emplace(simulation);
-    trace->Add(simulation.GetSnapshot());
+  void BeginAttempt() {
+    if (attempt) attempt->Begin(simulation);
   }
 };
 

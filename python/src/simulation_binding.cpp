@@ -16,7 +16,6 @@
 #include "trocar/core/state_hash.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/state_file.h"
-#include "trocar/training/attempt_metrics.h"
 
 namespace trocar::python {
 namespace {
@@ -42,7 +41,7 @@ std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& 
   auto simulation = Take(Simulation::Make(scene, threads));
   auto running = std::make_unique<Running>(
       Running{std::move(scene), std::move(simulation), std::move(given), std::nullopt});
-  if (has_metrics) running->BeginTrace();
+  if (has_metrics) running->attempt.emplace(running->simulation);
   return running;
 }
 
@@ -312,16 +311,11 @@ py::list DescribeErrors(const Running& running) {
 }
 
 py::object DescribeMetrics(const Running& running) {
-  if (!running.trace) {
+  if (!running.attempt) {
     throw Failure({core::ErrorCode::kEnvironmentState,
                    "the metrics are not collected; make the simulation with metrics=True"});
   }
-  std::string text;
-  {
-    const py::gil_scoped_release release;
-    text = training::FormatMetricsJson(Take(training::CalcAttemptMetrics(running.trace->Calc())));
-  }
-  return py::module_::import("json").attr("loads")(text);
+  return running.attempt->Describe();
 }
 
 py::list DescribeSurfaces(const Running& running) {
@@ -415,7 +409,7 @@ void BindRunning(py::module_& module) {
           "reset",
           [](Running& r) {
             r.simulation.Reset();
-            if (r.trace) r.BeginTrace();
+            r.BeginAttempt();
           },
           py::call_guard<py::gil_scoped_release>(), "Back to the first tick.")
       .def("snapshot", &DescribeSnapshot, "What the last tick published, copied: SI units, world frame.")
@@ -449,7 +443,7 @@ void BindRunning(py::module_& module) {
           [](Running& r, const py::bytes& bytes) {
             const std::string_view view = bytes;
             Check(r.simulation.Restore(std::as_bytes(std::span(view.data(), view.size()))));
-            if (r.trace) r.BeginTrace();
+            r.BeginAttempt();
           },
           py::arg("state"), "Takes up a saved state of the same model.")
       .def(
@@ -462,7 +456,7 @@ void BindRunning(py::module_& module) {
           "restore_file",
           [](Running& r, const std::string& path) {
             (void)Take(simulation::ReadStateFile(path, r.simulation));
-            if (r.trace) r.BeginTrace();
+            r.BeginAttempt();
           },
           py::arg("path"), "As `trocar simulate --restore`.")
       .def(

@@ -180,6 +180,28 @@ class Meaning(unittest.TestCase):
         self.assertEqual(code_of(lambda: apart.step({"left": parts["left"]})), "E-ENV-001")
 
 
+class Metrics(unittest.TestCase):
+    def test_are_those_of_a_simulation_with_the_same_hands(self):
+        with trocar.make("instrument_navigation", seed=2, metrics=True) as env:
+            env.reset(seed=2)
+            env.step(np.full(env.action_space.shape, 0.5, np.float32))
+            env.reset()  # what was before is no part of it
+            surgeon, is_over = env.surgeon("expert", seed=2), False
+            while not is_over:
+                *_, terminated, truncated, info = env.step_by(surgeon)
+                is_over = terminated or truncated
+            found = env.metrics()
+        self.assertTrue(info["is_success"])
+        simulation = trocar.Simulation("instrument_navigation", seed=2, metrics=True)
+        simulation.play(trocar.Surgeon("expert", simulation, seed=2), 120 * 600)
+        self.assertEqual(found, simulation.metrics())
+
+    def test_are_collected_where_they_are_wanted_only(self):
+        with trocar.make("peg_transfer") as env:
+            self.assertEqual(code_of(env.metrics), "E-ENV-002")
+        self.assertEqual(code_of(env.metrics), "E-ENV-002")
+
+
 class PlayedBySurgeons(unittest.TestCase):
     def test_an_expert_finishes_what_chance_began(self):
         with trocar.make("lift_and_grasp", seed=3, actions="tip", most_seconds=90) as env:

@@ -88,7 +88,8 @@ class Environment(_Env):
     def __init__(self, task: Scene, *, level: str = "normal", patient: Patient = "", seed: int = 1, layouts: int = 1,
                  actions: str = "joints", observation: Union[str, Sequence[str]] = "state", picture_size: tuple[int, int] = (84, 84),
                  actions_per_second: float = 10.0, most_seconds: float = 0.0, moves_camera: bool = False,
-                 weights: Optional[dict[str, float]] = None, render_mode: Optional[str] = None, folder: str = "") -> None:
+                 weights: Optional[dict[str, float]] = None, render_mode: Optional[str] = None, metrics: bool = False,
+                 folder: str = "") -> None:
         if render_mode not in (None, "rgb_array"):
             raise Error("E-SCN-003", f'there is no render_mode "{render_mode}"; choose rgb_array or None')
         self.model = _trocar.EnvironmentModel(
@@ -103,6 +104,7 @@ class Environment(_Env):
         self.observation_space = self._seen.space
         self._size, self._camera = tuple(picture_size), None
         self._environment: Optional[_trocar.Environment] = _trocar.Environment(self.model)
+        self._attempt = _trocar.Attempt(self._environment) if metrics else None
         self._np_random = None
 
     @property
@@ -171,12 +173,19 @@ class Environment(_Env):
     def render(self) -> Optional[np.ndarray]:
         return self._draw() if self.render_mode == "rgb_array" else None
 
+    def metrics(self) -> list[dict[str, Any]]:
+        """What the episode came to so far, as ``Simulation.metrics``; of an environment made with ``metrics=True``."""
+        self._open()
+        if self._attempt is None:
+            raise Error("E-ENV-002", "the metrics are not collected; make the environment with metrics=True")
+        return self._attempt.metrics()
+
     def hash(self) -> str:
         """Fingerprint of the simulation's state, as the commands print it."""
         return self._open().hash()
 
     def close(self) -> None:
-        self._environment = self._camera = None
+        self._environment = self._camera = self._attempt = None
 
     def __enter__(self):
         return self

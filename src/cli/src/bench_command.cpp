@@ -96,7 +96,7 @@ void AddBenchCommand(CLI::App& app, Outcome& outcome) {
       ->capture_default_str();
   command
       ->add_option("--steps", arguments->options.steps,
-                   "Random actions of the soak over all environments, whose states must stay finite")
+                   "Random actions of the soak over all environments, each twice; states must stay finite")
       ->check(CLI::Range(100, 100'000'000))
       ->type_name("N")
       ->capture_default_str();

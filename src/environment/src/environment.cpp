@@ -136,6 +136,13 @@ struct Environment::Content {
   RewardMeter meter;
   std::uint64_t actions = 0;
   bool is_begun = false, is_over = false;
+  TickObserver observer;
+
+  void Tick() {
+    simulation.Step(input);
+    meter.AfterTick(simulation);
+    if (observer) observer(simulation, &input);
+  }
 };
 
 Environment::Environment(std::unique_ptr<Content> content) : content_(std::move(content)) {}
@@ -175,6 +182,7 @@ core::Status Environment::Reset(std::optional<std::uint64_t> seed) {
   now.actions = 0;
   now.is_begun = true;
   now.is_over = false;
+  if (now.observer) now.observer(now.simulation, nullptr);
   return {};
 }
 
@@ -195,8 +203,7 @@ core::Result<Outcome> Environment::Step(std::span<const double> action) {
   now.meter.Begin(now.simulation);
   for (int tick = 0; tick < now.model->TicksPerAction(); ++tick) {
     layout.Move(scene, motion, scene.tick_seconds, now.input);
-    now.simulation.Step(now.input);
-    now.meter.AfterTick(now.simulation);
+    now.Tick();
     if (now.simulation.GetSnapshot().task.IsOver()) break;
   }
   return EndStep();
@@ -218,8 +225,7 @@ core::Result<Outcome> Environment::StepBy(
     now.input = command(now.simulation.GetSnapshot());
     now.input.settings = before.settings;
     if (!settings.moves_camera) now.input.laparoscope = before.laparoscope;
-    now.simulation.Step(now.input);
-    now.meter.AfterTick(now.simulation);
+    now.Tick();
     if (now.simulation.GetSnapshot().task.IsOver()) break;
   }
   const std::array<math::Vec3, kHandCount> ports = {scene.instruments[0].p_world_port,
@@ -243,6 +249,10 @@ Outcome Environment::EndStep() {
                          seen.time + 0.5 * now.simulation.GetScene().tick_seconds >= settings.most_seconds;
   now.is_over = outcome.is_terminated || outcome.is_truncated;
   return outcome;
+}
+
+void Environment::SetTickObserver(TickObserver observer) {
+  content_->observer = std::move(observer);
 }
 
 void Environment::Observe(std::span<float> state) const {

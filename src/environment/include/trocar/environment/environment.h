@@ -52,6 +52,10 @@ struct Outcome {
   Features features{};
 };
 
+/// Looks at what an environment's ticks have come to, on the thread that steps it: to collect an attempt, for example.
+/// \param input  what the tick was given; empty where an episode begins
+using TickObserver = std::function<void(const simulation::Simulation& simulation, const scene::Input* input)>;
+
 /// One running environment. Not for two threads at a time. The same model, seeds and actions give the same states and rewards.
 class Environment {
  public:
@@ -74,6 +78,8 @@ class Environment {
   /// \return kUsage for discrete actions; kEnvironmentState as Step
   core::Result<Outcome> StepBy(const std::function<scene::Input(const simulation::Snapshot&)>& command,
                                std::span<double> action);
+  /// From now on, in place of the one before; may be empty.
+  void SetTickObserver(TickObserver observer);
   /// \param[out] state  (StateSize()) as StateFields() says
   void Observe(std::span<float> state) const;
   std::size_t StateSize() const;   ///< of the model
