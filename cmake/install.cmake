@@ -58,7 +58,7 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/locale/ DESTINATION ${CMAKE_INSTALL_LOCA
 
 # Libraries: all modules but those that only our own programs use.
 set(exported ${TROCAR_MODULES})
-list(REMOVE_ITEM exported assessment store report gui centre editor presenter app bench study dataset doctor cli)
+list(REMOVE_ITEM exported assessment store report gui centre editor rehearsal presenter app bench study dataset doctor cli)
 set(exported_targets)
 foreach(module IN LISTS exported)
   if(TARGET trocar_${module})

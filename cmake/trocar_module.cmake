@@ -4,7 +4,7 @@
 # -O2. What people see and click has -O0, and so have the tests of modules that are not fast; all else has -O1 by its preset.
 set(TROCAR_FAST_MODULES
   anatomy collision core geometry haptics images instrument math meshing record render rigid scene simulation surgery tissue tissue_cuda training view)
-set(TROCAR_SHOWING_MODULES assessment centre cli doctor editor gui presenter report sound store study)
+set(TROCAR_SHOWING_MODULES assessment centre cli doctor editor gui presenter rehearsal report sound store study)
 
 # for the targets of this folder that come after it
 function(trocar_compile_quickly)

@@ -26,7 +26,7 @@ xgettext -L C++ --from-code=UTF-8 -k -kTranslate -kTranslateIn:1c,2 -kTranslateW
 xgettext -L C++ --from-code=UTF-8 -k -kAddLine:2 -o "$work/tips.pot" "${sources[@]}" 2>/dev/null
 # of all modules but the package for Python
 modules=(core math geometry collision tissue tissue_cuda instrument surgery training haptics device anatomy meshing images contours roles
-  rigid scene simulation record store assessment report session render view net sound gui app centre editor agent environment dataset
+  rigid scene simulation record store assessment report session render view net sound gui app centre editor rehearsal agent environment dataset
   doctor bench study cli)
 python3 -B tests/texts/list_console.py src/cli src/doctor src/anatomy src/contours src/images src/view src/dataset src/study bench/src >"$work/console.pot"
 msgcat --use-first "$work/tables.pot" "$work/calls.pot" "$work/tips.pot" "$work/console.pot" -o "$work/all.pot"

@@ -14,7 +14,7 @@ import sys
 from list_console import console_texts_of
 from list_messages import MAKERS, closing_places, tokens_of
 
-FOLDERS = ["src/app", "src/gui", "src/centre", "src/editor", "src/report"]
+FOLDERS = ["src/app", "src/gui", "src/centre", "src/editor", "src/rehearsal", "src/report"]
 TRANSLATES = {"Translate", "TranslateIn", "TranslateWith", "TranslateCount", "Mark", "Card", "AddLine"}
 UNSEEN = {"Log", "printf", "fprintf", "puts", "fputs", "snprintf", "sscanf", "strftime", "TROCAR_ASSERT", "static_assert", "add_css_class",
           "set_css_classes", "SetStyle", "SetClass", "getenv", "select_font_face", "set_markup", "g_setenv", "Raw", "Text", "TextOr", "Has",

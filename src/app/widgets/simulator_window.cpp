@@ -273,7 +273,7 @@ void SimulatorWindow::Show(const presenter::SimulatorPage& page) {
 void SimulatorWindow::ShowRehearsal(bool is_open) {
   if (rehearsal_ == nullptr && !is_open) return;
   if (rehearsal_ == nullptr) {
-    rehearsal_ = std::make_unique<editor::RehearsalView>(core::FindUserDataFolder() / "rehearsal",
+    rehearsal_ = std::make_unique<rehearsal::RehearsalView>(core::FindUserDataFolder() / "rehearsal",
                                                          presenter::FindPatientsFolder());
     rehearsal_->set_visible(false);
     overlay_.add_overlay(*rehearsal_);

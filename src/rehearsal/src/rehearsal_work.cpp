@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/editor/rehearsal_work.h"
+#include "trocar/rehearsal/rehearsal_work.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@
 #include "trocar/images/label_alignment.h"
 #include "trocar/roles/roles.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -314,4 +314,4 @@ render::FigureMarks MakePortMarks(const anatomy::Patient& patient, std::size_t c
   return marks;
 }
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "trocar/core/translate.h"
-#include "trocar/editor/rehearsal_presenter.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/file_dialog.h"
+#include "trocar/rehearsal/rehearsal_presenter.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 
 /// A path that is typed, or chosen in the system's dialog.
 class PathRow : public Gtk::Box {
@@ -107,4 +107,4 @@ class PortsCard : public gui::Card {
   bool is_showing_ = false;
 };
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

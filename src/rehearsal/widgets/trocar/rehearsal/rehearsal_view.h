@@ -10,12 +10,12 @@
 
 #include "trocar/editor/contour_pane.h"
 #include "trocar/editor/mesh_view.h"
-#include "trocar/editor/rehearsal_cards.h"
-#include "trocar/editor/rehearsal_presenter.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/tips.h"
+#include "trocar/rehearsal/rehearsal_cards.h"
+#include "trocar/rehearsal/rehearsal_presenter.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 
 class RehearsalView : public Gtk::Box, private RehearsalScreen {
  public:
@@ -40,7 +40,7 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
   void MakeMiddle();
   void MakeFoot();
   void MakePorts();
-  void MakePane(const ContourOptions& slices);
+  void MakePane(const editor::ContourOptions& slices);
   void ClosePane();
   bool IsDrawing() const;
   bool IsOnSlice() const;
@@ -50,7 +50,7 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
 
   // RehearsalScreen
   void Show(const RehearsalPage& page) override;
-  void ShowSlices(const std::optional<ContourOptions>& slices) override;
+  void ShowSlices(const std::optional<editor::ContourOptions>& slices) override;
   void ShowOverlay(std::optional<images::LabelVolume> labels) override;
   core::Status SaveContours() override;
   void ShowFigure(const anatomy::Patient& patient) override;
@@ -62,7 +62,7 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
   Gtk::Stack left_;
   Gtk::Box slices_{Gtk::Orientation::VERTICAL};
   Gtk::Label nothing_;
-  MeshView figure_;
+  editor::MeshView figure_;
   Gtk::ScrolledWindow scroller_;
   Gtk::Label hint_, problem_, doing_;
   Gtk::ProgressBar progress_;
@@ -71,8 +71,8 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
       build_{core::Translate("Build again")}, map_{core::Translate("Take a label map")},
       forget_{core::Translate("Start anew")};
   std::unique_ptr<gui::Tips> pane_tips_;  // of the pane that is open; they end after its widgets
-  std::unique_ptr<gui::CommandBar<ContourAction, ContourNeeds>> pane_bar_;
-  std::unique_ptr<ContourPane> pane_;
+  std::unique_ptr<gui::CommandBar<editor::ContourAction, editor::ContourNeeds>> pane_bar_;
+  std::unique_ptr<editor::ContourPane> pane_;
   bool wants_map_ = false;  // while contours are drawn, the card with maps was asked for
   RehearsalStep shown_step_ = RehearsalStep::kImages;
   bool is_dragging_ = false;
@@ -89,4 +89,4 @@ class RehearsalView : public Gtk::Box, private RehearsalScreen {
   sigc::signal<void()> signal_closed_;
 };
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

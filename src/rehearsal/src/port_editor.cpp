@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/editor/port_editor.h"
+#include "trocar/rehearsal/port_editor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "trocar/core/translate.h"
 #include "trocar/math/rotation_angle.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 namespace {
 
 constexpr double kSameTilt = 0.01 * math::kDegree;
@@ -91,4 +91,4 @@ std::optional<PortPlan> PortEditor::FindChange(const anatomy::Patient& patient) 
   return now;
 }
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

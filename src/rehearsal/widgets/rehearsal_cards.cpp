@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/editor/rehearsal_cards.h"
+#include "trocar/rehearsal/rehearsal_cards.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "trocar/gui/labels.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 namespace {
 
 constexpr int kSpacing = 6;
@@ -313,4 +313,4 @@ void PortsCard::Focus() {
   if (chosen_ < rows_.size()) rows_[chosen_].button->grab_focus();
 }
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

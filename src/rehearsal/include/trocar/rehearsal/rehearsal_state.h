@@ -12,7 +12,7 @@
 #include "trocar/core/result.h"
 #include "trocar/images/image_series.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 
 enum class RehearsalStep : std::uint8_t {
   kImages,   ///< which series
@@ -57,4 +57,4 @@ core::Result<RehearsalState> LoadRehearsal(const std::filesystem::path& file);
 /// Nobody but the account that runs the program may read the file and the folder that it lies in (modes 600 and 700).
 core::Status SaveRehearsal(const std::filesystem::path& file, const RehearsalState& state);
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/editor/rehearsal_presenter.h"
+#include "trocar/rehearsal/rehearsal_presenter.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "trocar_test/made_images.h"
 #include "trocar_test/temporary_folder.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 class FakeScreen : public RehearsalScreen {
  public:
   void Show(const RehearsalPage& shown) override { page = shown; }
-  void ShowSlices(const std::optional<ContourOptions>& slices) override {
+  void ShowSlices(const std::optional<editor::ContourOptions>& slices) override {
     asked_sizes = false;
     points.clear();
     if (!slices) return;
@@ -42,7 +42,7 @@ class FakeScreen : public RehearsalScreen {
   }
   /// The person says what pictures do not.
   void AnswerSizes(images::ImageSeriesOptions series) {
-    ContourOptions options;
+    editor::ContourOptions options;
     options.images = presenter->State().series;
     options.series = std::move(series);
     options.points = points;
@@ -454,4 +454,4 @@ TEST_F(RehearsalTest, ABrokenFileOfItsStateIsPutAside) {
 }
 
 }  // namespace
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

@@ -15,13 +15,13 @@
 
 #include "trocar/core/file_lock.h"
 #include "trocar/editor/contour_options.h"
-#include "trocar/editor/port_editor.h"
-#include "trocar/editor/rehearsal_state.h"
-#include "trocar/editor/rehearsal_work.h"
 #include "trocar/gui/background_job.h"
 #include "trocar/images/series_list.h"
+#include "trocar/rehearsal/port_editor.h"
+#include "trocar/rehearsal/rehearsal_state.h"
+#include "trocar/rehearsal/rehearsal_work.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 
 struct RehearsalStepPage {
   std::string title;
@@ -81,7 +81,7 @@ class RehearsalScreen {
   virtual ~RehearsalScreen() = default;
   virtual void Show(const RehearsalPage& page) = 0;
   /// Opens a series, with the contours that are drawn on it; RehearsalPresenter::SlicesOpened is told. Nothing: closes it.
-  virtual void ShowSlices(const std::optional<ContourOptions>& slices) = 0;
+  virtual void ShowSlices(const std::optional<editor::ContourOptions>& slices) = 0;
   /// Lays a map over the slices, or none.
   virtual void ShowOverlay(std::optional<images::LabelVolume> labels) = 0;
   /// Writes what is drawn into its file.
@@ -207,4 +207,4 @@ class RehearsalPresenter {
   gui::BackgroundJob<Then> job_;
 };
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/editor/rehearsal_presenter.h"
+#include "trocar/rehearsal/rehearsal_presenter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 #include "trocar/core/translate.h"
 #include "trocar/math/rotation_angle.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 namespace {
 
 namespace fs = std::filesystem;
@@ -309,7 +309,7 @@ void RehearsalPresenter::ChooseSeries(std::size_t index) {
 }
 
 void RehearsalPresenter::OpenSlices() {
-  ContourOptions options;
+  editor::ContourOptions options;
   options.images = state_.series;
   options.series = state_.options;
   options.points = ContoursFile();
@@ -694,4 +694,4 @@ void RehearsalPresenter::Refresh() {
   screen_.Show(page_);
 }
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

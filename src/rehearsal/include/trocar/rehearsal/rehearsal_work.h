@@ -13,11 +13,11 @@
 #include "trocar/anatomy/patient.h"
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/core/result.h"
-#include "trocar/editor/rehearsal_state.h"
 #include "trocar/images/image_stack.h"
+#include "trocar/rehearsal/rehearsal_state.h"
 #include "trocar/view/patient_figure.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 
 /// A label of a map, as a person chooses it.
 struct LabelChoice {
@@ -83,4 +83,4 @@ std::vector<render::FigureSurface> MakeRehearsalFigure(const anatomy::Patient& p
 /// Its ports in their order, each with a line to the gallbladder's neck; the chosen one is highlighted.
 render::FigureMarks MakePortMarks(const anatomy::Patient& patient, std::size_t chosen);
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

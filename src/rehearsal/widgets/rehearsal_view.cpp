@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/editor/rehearsal_view.h"
+#include "trocar/rehearsal/rehearsal_view.h"
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,7 @@
 #include "trocar/roles/roles.h"
 #include "trocar/scene/scene.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 namespace {
 
 constexpr int kPanelWidth = 380;  // [pixels]
@@ -18,14 +18,15 @@ constexpr unsigned kPulse = 150;  // between two looks at what is under way [ms]
 constexpr double kStepMm = 1, kLongStepMm = 5;
 
 /// Commands of the contour window that have a button here: files, the build and the window are the way's own.
-std::span<const ContourCommand> PaneCommands() {
-  static const std::vector<ContourCommand> commands = [] {
-    std::vector<ContourCommand> kept;
-    for (const ContourCommand& command : ContourCommands()) {
+std::span<const editor::ContourCommand> PaneCommands() {
+  static const std::vector<editor::ContourCommand> commands = [] {
+    std::vector<editor::ContourCommand> kept;
+    for (const editor::ContourCommand& command : editor::ContourCommands()) {
       const bool is_ours =
-          command.action == ContourAction::kOpen || command.action == ContourAction::kSave ||
-          command.action == ContourAction::kSaveAs || command.action == ContourAction::kBuild ||
-          command.action == ContourAction::kQuit || command.action == ContourAction::kToggleFullscreen;
+          command.action == editor::ContourAction::kOpen || command.action == editor::ContourAction::kSave ||
+          command.action == editor::ContourAction::kSaveAs ||
+          command.action == editor::ContourAction::kBuild || command.action == editor::ContourAction::kQuit ||
+          command.action == editor::ContourAction::kToggleFullscreen;
       if (!is_ours) kept.push_back(command);
     }
     return kept;
@@ -35,12 +36,12 @@ std::span<const ContourCommand> PaneCommands() {
 
 bool IsPaneCommand(guint key, Gdk::ModifierType state) {
   const auto has = [state](Gdk::ModifierType mask) { return (state & mask) != Gdk::ModifierType{}; };
-  const ContourAction action =
-      FindContourAction(key, has(Gdk::ModifierType::CONTROL_MASK), has(Gdk::ModifierType::SHIFT_MASK));
+  const editor::ContourAction action = editor::FindContourAction(key, has(Gdk::ModifierType::CONTROL_MASK),
+                                                                 has(Gdk::ModifierType::SHIFT_MASK));
   const auto commands = PaneCommands();
   return key == GDK_KEY_space ||
          std::any_of(commands.begin(), commands.end(),
-                     [action](const ContourCommand& one) { return one.action == action; });
+                     [action](const editor::ContourCommand& one) { return one.action == action; });
 }
 
 view::PatientColours ReadColours() {
@@ -173,17 +174,17 @@ void RehearsalView::MakeFoot() {
 }
 
 void RehearsalView::MakePorts() {
-  figure_.on_press = [this](const MeshPick& pick) {
+  figure_.on_press = [this](const editor::MeshPick& pick) {
     is_dragging_ = shown_step_ == RehearsalStep::kPorts && pick.point && *pick.point < ports_.size();
     if (is_dragging_) presenter_.GrabPort(*pick.point);
     return is_dragging_;
   };
-  figure_.on_drag = [this](const MeshPick& pick) {
+  figure_.on_drag = [this](const editor::MeshPick& pick) {
     const std::size_t port = presenter_.Page().ports.chosen;
     if (is_dragging_ && port < ports_.size())
       presenter_.DragPort(figure_.PointAtDepth(ports_[port], pick.x, pick.y));
   };
-  figure_.on_release = [this](const MeshPick&) {
+  figure_.on_release = [this](const editor::MeshPick&) {
     is_dragging_ = false;
     presenter_.ReleasePort();
   };
@@ -324,7 +325,7 @@ void RehearsalView::FocusStep() {
       0);
 }
 
-void RehearsalView::ShowSlices(const std::optional<ContourOptions>& slices) {
+void RehearsalView::ShowSlices(const std::optional<editor::ContourOptions>& slices) {
   ClosePane();
   if (slices) MakePane(*slices);
 }
@@ -336,15 +337,15 @@ void RehearsalView::ClosePane() {
   pane_tips_.reset();
 }
 
-void RehearsalView::MakePane(const ContourOptions& slices) {
-  ContourPaneHost host;
-  host.show = [this](const ContourPage&) {
+void RehearsalView::MakePane(const editor::ContourOptions& slices) {
+  editor::ContourPaneHost host;
+  host.show = [this](const editor::ContourPage&) {
     if (pane_bar_ != nullptr)
       pane_bar_->Show(
-          [this](const ContourCommand& command) { return pane_->Presenter().FindButton(command); });
+          [this](const editor::ContourCommand& command) { return pane_->Presenter().FindButton(command); });
     CountContours();
   };
-  host.do_in_window = [](ContourAction) {};  // the window's own keys do that
+  host.do_in_window = [](editor::ContourAction) {};  // the window's own keys do that
   host.opened = [this] {
     if (pane_ == nullptr || pane_->Presenter().Workspace() == nullptr) return;
     const contours::ContourWorkspace& workspace = *pane_->Presenter().Workspace();
@@ -352,10 +353,10 @@ void RehearsalView::MakePane(const ContourOptions& slices) {
     CountContours();
   };
   pane_tips_ = std::make_unique<gui::Tips>();
-  pane_ = std::make_unique<ContourPane>(slices, *pane_tips_, std::move(host));
-  pane_bar_ = std::make_unique<gui::CommandBar<ContourAction, ContourNeeds>>(
+  pane_ = std::make_unique<editor::ContourPane>(slices, *pane_tips_, std::move(host));
+  pane_bar_ = std::make_unique<gui::CommandBar<editor::ContourAction, editor::ContourNeeds>>(
       PaneCommands(), *pane_tips_,
-      [this](const ContourCommand& command) { pane_->Presenter().Do(command.action); });
+      [this](const editor::ContourCommand& command) { pane_->Presenter().Do(command.action); });
   pane_bar_->set_show_title_buttons(false);
   pane_->Sizes().property_visible().signal_changed().connect([this] { Show(presenter_.Page()); });
   pane_->SetReadOnly(!IsDrawing());
@@ -388,7 +389,7 @@ core::Status RehearsalView::SaveContours() {
   contours::ContourWorkspace& workspace = *pane_->Presenter().Workspace();
   if (!workspace.Document().IsDirty()) return {};
   const core::Status saved = workspace.Save(workspace.Options().points);
-  if (saved.ok()) pane_->Presenter().Do(ContourAction::kSave);  // which lets go of the side file
+  if (saved.ok()) pane_->Presenter().Do(editor::ContourAction::kSave);  // which lets go of the side file
   return saved;
 }
 
@@ -403,4 +404,4 @@ void RehearsalView::ShowPorts(const anatomy::Patient& patient, std::optional<std
   figure_.SetMarks(MakePortMarks(patient, *chosen));
 }
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

@@ -8,9 +8,9 @@
 
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/result.h"
-#include "trocar/editor/rehearsal_state.h"
+#include "trocar/rehearsal/rehearsal_state.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 
 class PortEditor {
  public:
@@ -49,4 +49,4 @@ class PortEditor {
   std::optional<PortPlan> grabbed_;  // before the drag
 };
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal

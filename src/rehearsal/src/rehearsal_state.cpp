@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/editor/rehearsal_state.h"
+#include "trocar/rehearsal/rehearsal_state.h"
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 #include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 
-namespace trocar::editor {
+namespace trocar::rehearsal {
 namespace {
 
 constexpr const char* kFormat = "trocar-rehearsal";
@@ -160,4 +160,4 @@ core::Status SaveRehearsal(const std::filesystem::path& file, const RehearsalSta
   return written;
 }
 
-}  // namespace trocar::editor
+}  // namespace trocar::rehearsal
