@@ -274,7 +274,7 @@ void SimulatorWindow::ShowRehearsal(bool is_open) {
   if (rehearsal_ == nullptr && !is_open) return;
   if (rehearsal_ == nullptr) {
     rehearsal_ = std::make_unique<rehearsal::RehearsalView>(core::FindUserDataFolder() / "rehearsal",
-                                                         presenter::FindPatientsFolder());
+                                                            presenter::FindPatientsFolder());
     rehearsal_->set_visible(false);
     overlay_.add_overlay(*rehearsal_);
     rehearsal_->SignalClosed().connect([this] { presenter_->CloseRehearsal(); });
