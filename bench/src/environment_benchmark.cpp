@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file environment_benchmark.cpp  What an environment for learning costs: time, pictures, memory, and whether it bears
 /// random actions.
+#include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,6 +47,12 @@ double ResidentBytes() {
   double all = 0, resident = 0;
   file >> all >> resident;
   return kPageBytes * resident;
+}
+
+/// Memory that has been asked for and not given back; without what the allocator keeps.
+double BytesInUse() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
 core::Result<std::shared_ptr<EnvironmentModel>> MakeModel(const std::string& task) {
@@ -305,16 +312,16 @@ core::Status TakeRandomActions(Environment& environment, const EnvironmentModel&
 
 /// The same actions twice: what the first turn needed is kept for the worst that came, so the second turn needs no more,
 /// unless something is lost; and it ends in the same state.
-/// \return  [B] by which the process grew in the second turn
+/// \return  [B] by which the memory in use grew in the second turn
 core::Result<double> Soak(const std::shared_ptr<EnvironmentModel>& model, int steps, std::uint64_t seed) {
   auto environment = Environment::Make(model);
   if (!environment) return environment.error();
   if (const auto first = TakeRandomActions(*environment, *model, steps, seed); !first) return first.error();
   const std::uint64_t hash = environment->GetSimulation().Hash();
-  const double before = ResidentBytes();
+  const double before = BytesInUse();
   if (const auto second = TakeRandomActions(*environment, *model, steps, seed); !second)
     return second.error();
-  const double growth = ResidentBytes() - before;
+  const double growth = BytesInUse() - before;
   if (environment->GetSimulation().Hash() != hash)
     return WrongAnswer(model->Settings().task, "the same actions led elsewhere the second time");
   return growth;

@@ -54,6 +54,8 @@ TEST(SoakBenchmark, TakesActionsInEveryEnvironment) {
   const BenchmarkCase& actions = *(result->cases.end() - 2);
   EXPECT_EQ(actions.name, "actions");
   EXPECT_GE(actions.value, 55);
+  EXPECT_EQ(result->cases.back().name, "most_growth");
+  EXPECT_LT(result->cases.back().value, 0.05) << "MB are lost from one turn to the next";
 }
 
 TEST(WrongAnswer, HasTheCodeOfABenchmarkThatMeansNothing) {

@@ -54,10 +54,31 @@ void Picture::on_realize() {
   }
   make_current();
   const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  is_drawn_by_processor_ = renderer != nullptr && gui::IsSoftwareRenderer(renderer);
+  detail_ = presenter::PictureDetail(renderer != nullptr && gui::IsSoftwareRenderer(renderer));
+  MeasurePainting();
+}
+
+/// All that a window paints in one go, with the toolkit's own part.
+void Picture::MeasurePainting() {
+  clock_ = get_frame_clock();
+  const auto begin = +[](GdkFrameClock*, gpointer self) {
+    auto& picture = *static_cast<Picture*>(self);
+    picture.painting_ = core::Stopwatch();
+    picture.is_scene_in_painting_ = false;
+  };
+  const auto end = +[](GdkFrameClock*, gpointer self) {
+    auto& picture = *static_cast<Picture*>(self);
+    if (picture.is_scene_in_painting_) picture.detail_.AddPicture(picture.painting_.Seconds());
+  };
+  painting_handlers_ = {g_signal_connect(clock_->gobj(), "before-paint", G_CALLBACK(begin), this),
+                        g_signal_connect(clock_->gobj(), "after-paint", G_CALLBACK(end), this)};
 }
 
 void Picture::on_unrealize() {
+  if (clock_) {
+    for (const gulong handler : painting_handlers_) g_signal_handler_disconnect(clock_->gobj(), handler);
+    clock_.reset();
+  }
   if (view_) {
     make_current();
     view_.reset();
@@ -77,11 +98,13 @@ bool Picture::on_render(const Glib::RefPtr<Gdk::GLContext>&) {
     view_.emplace(std::move(made).value());
   }
   view::ViewOptions options = options_;
-  if (is_drawn_by_processor_) options.quality = render::Quality::kLow;
+  options.quality = detail_.Now().quality;
+  options.resolution = detail_.Now().resolution;
   if (view_->GetOptions() != options) view_->SetOptions(options);
   view_->SetOverlay(overlay_);
   view_->Update(*snapshot_);
   view_->Draw(get_width() * get_scale_factor(), get_height() * get_scale_factor());
+  is_scene_in_painting_ = true;
   signal_drawn_.emit();
   return true;
 }

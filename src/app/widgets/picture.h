@@ -4,11 +4,14 @@
 
 #include <gtkmm.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "trocar/core/clock.h"
 #include "trocar/core/result.h"
+#include "trocar/presenter/picture_detail.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/laparoscope_view.h"
 
@@ -45,6 +48,7 @@ class Picture : public Gtk::GLArea {
 
  private:
   void Fail(const core::Error& error);
+  void MeasurePainting();
 
   const scene::Scene* scene_ = nullptr;
   std::span<const scene::SurfaceInfo> surfaces_;
@@ -52,7 +56,11 @@ class Picture : public Gtk::GLArea {
   const simulation::Snapshot* snapshot_ = nullptr;
   std::optional<view::LaparoscopeView> view_;
   view::ViewOptions options_;
-  bool is_drawn_by_processor_ = false;
+  presenter::PictureDetail detail_;
+  core::Stopwatch painting_;  // of the window, until its picture is on the screen
+  bool is_scene_in_painting_ = false;
+  Glib::RefPtr<Gdk::FrameClock> clock_;        // of the window, while the picture is realised
+  std::array<gulong, 2> painting_handlers_{};  // of that
   view::Overlay overlay_;
   bool has_failed_ = false;
   sigc::signal<void()> signal_drawn_;

@@ -273,11 +273,17 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
   } while (c.meter.IsToBeDrawnAgain());
 }
 
-void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, int width, int height) {
+void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, int target_width,
+                        int target_height) {
   Content& c = *content_;
-  const bool is_smoothed =
-      (frame.has_smooth_edges || !frame.blots.empty()) && !frame.is_wireframe && c.round.Bind(width, height);
+  const double resolution = std::clamp(frame.resolution, kLeastResolution, 1.0);
+  const int inner_width = std::max(1, static_cast<int>(std::lround(resolution * target_width)));
+  const int inner_height = std::max(1, static_cast<int>(std::lround(resolution * target_height)));
+  const bool is_smoothed = (frame.has_smooth_edges || !frame.blots.empty()) && !frame.is_wireframe &&
+                           c.round.Bind(inner_width, inner_height);
   if (!is_smoothed) glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+  const int width = is_smoothed ? inner_width : target_width;
+  const int height = is_smoothed ? inner_height : target_height;
   ClearPicture(frame, width, height);
   // first, at the near plane: what lies outside the circle is then never shaded
   glDisable(GL_CULL_FACE);
@@ -295,7 +301,8 @@ void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, in
   SurfaceDrawer::End();
   if (is_smoothed) {
     glBindFramebuffer(GL_FRAMEBUFFER, target);
-    c.round.DrawSmoothed({frame.has_mask, frame.quality == Quality::kHigh, frame.blots}, width, height);
+    c.round.DrawSmoothed({frame.has_mask, frame.quality == Quality::kHigh, frame.blots}, target_width,
+                         target_height);
   }
   glBindVertexArray(0);
   glUseProgram(0);

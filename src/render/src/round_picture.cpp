@@ -37,7 +37,7 @@ void SetBlots(const Program& program, std::span<const Blot> blots) {
 }  // namespace
 
 RoundPicture::~RoundPicture() {
-  for (const Program& program : {mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, glow_})
+  for (const Program& program : {mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, enlarged_, glow_})
     glDeleteProgram(program.name);
   glDeleteFramebuffers(2, glow_framebuffers_.data());
   glDeleteTextures(2, glow_pictures_.data());
@@ -53,8 +53,9 @@ core::Status RoundPicture::Make() {
   if (!mask) return mask.error();
   mask_ = *mask;
   for (const auto& [program, fine, smeared] :
-       {std::tuple{&smooth_, "", ""}, std::tuple{&smooth_fine_, kFine, ""},
-        std::tuple{&smeared_, "", kSmeared}, std::tuple{&smeared_fine_, kFine, kSmeared}}) {
+       {std::tuple{&smooth_, "", ""}, std::tuple{&enlarged_, kEnlarged, ""},
+        std::tuple{&smooth_fine_, kFine, ""}, std::tuple{&smeared_, "", kSmeared},
+        std::tuple{&smeared_fine_, kFine, kSmeared}}) {
     const auto made = MakeProgram({kScreenVertexShader}, {kVersion, fine, smeared, kSmoothFragmentShader});
     if (!made) return made.error();
     *program = *made;
@@ -167,15 +168,17 @@ void RoundPicture::DrawSmoothed(const Smoothing& smoothing, int width, int heigh
   if (has_glow) {
     GLint target = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-    MakeGlow(width, height);
+    MakeGlow(width_, height_);
     glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
-    glViewport(0, 0, width, height);
   }
+  glViewport(0, 0, width, height);
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  const Program& smooth = is_smeared ? (has_glow ? smeared_fine_ : smeared_)
-                          : has_glow ? smooth_fine_
-                                     : smooth_;
+  const bool is_enlarged = height > height_ && !has_glow && !is_smeared;
+  const Program& smooth = is_smeared    ? (has_glow ? smeared_fine_ : smeared_)
+                          : has_glow    ? smooth_fine_
+                          : is_enlarged ? enlarged_
+                                        : smooth_;
   glUseProgram(smooth.name);
   if (is_smeared) SetBlots(smooth, smoothing.blots);
   if (has_glow) {
@@ -186,7 +189,8 @@ void RoundPicture::DrawSmoothed(const Smoothing& smoothing, int width, int heigh
   }
   glBindTexture(GL_TEXTURE_2D, picture_);
   smooth.Set("u_picture", 0);
-  smooth.Set("u_texel", std::array<float, 2>{ToFloat(1.0 / width), ToFloat(1.0 / height)});
+  smooth.Set("u_size", std::array<float, 2>{ToFloat(width), ToFloat(height)});
+  smooth.Set("u_texel", std::array<float, 2>{ToFloat(1.0 / width_), ToFloat(1.0 / height_)});
   // without a mask a circle round the whole picture
   const double wide = 1.5 * std::hypot(width, height);
   smooth.Set("u_inner", smoothing.has_mask

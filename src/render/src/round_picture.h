@@ -31,7 +31,7 @@ class RoundPicture {
   /// \return false where the driver refuses it
   bool Bind(int width, int height);
 
-  /// Copies the own picture into the bound framebuffer with soft edges; outside the circle it is black.
+  /// Copies the own picture into the bound framebuffer, which may be larger, with soft edges; outside the circle it is black.
   struct Smoothing {
     bool has_mask = true;
     bool has_glow = true;  ///< light that the lens scatters about highlights, too
@@ -43,7 +43,7 @@ class RoundPicture {
   void MakeRing();
   void MakeGlow(int width, int height);
 
-  Program mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, glow_;
+  Program mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, enlarged_, glow_;
   std::array<GLuint, 2> glow_framebuffers_{}, glow_pictures_{};
   int glow_width_ = 0, glow_height_ = 0;
   GLuint ring_ = 0, ring_vertices_ = 0;

@@ -397,6 +397,46 @@ TEST_F(RendererTest, SlantingEdgesAreAsSmoothAtEitherQuality) {
   EXPECT_LT(find_change(), 1.1 * low);
 }
 
+// With half the pixels along each side everything lies where it lay, and edges are as soft as that makes them.
+TEST_F(RendererTest, FewerPixelsAreEnlargedToTheSamePicture) {
+  Frame frame = PlainFrame();
+  frame.surfaces = {{renderer_->AddSurface(MakeHalfPlane(0.05), Material::kForce), {{}, {0, 0, -kDistance}}}};
+  frame.has_smooth_edges = true;
+  frame.has_mask = true;
+  const auto compare = [&](double resolution) {
+    frame.resolution = 1;
+    const Image fine = Draw(frame);
+    frame.resolution = resolution;
+    const Image coarse = Draw(frame);
+    double all = 0;
+    int sharper = 0;
+    for (int y = 1; y < kHeight; ++y) {
+      for (int x = 1; x < kWidth; ++x) {
+        const double now = Brightness(coarse, x, y), before = Brightness(fine, x, y);
+        all += std::abs(now - before);
+        const bool is_middle = std::abs(x - kWidth / 2) < 30 && std::abs(y - kHeight / 2) < 18;
+        sharper += is_middle && std::abs(now - Brightness(coarse, x - 1, y)) >
+                                    0.75 * Brightness(fine, kWidth / 2 + 40, kHeight / 2);
+      }
+    }
+    return std::pair{all / (kWidth * kHeight), sharper};
+  };
+  frame.quality = Quality::kLow;
+  EXPECT_EQ(compare(1.0).first, 0);
+  for (const bool is_smeared : {false, true}) {
+    if (is_smeared) frame.blots = {{{0.1, 0.1}, 0.2, 0.8}};
+    for (const Quality quality : {Quality::kLow, Quality::kHigh}) {
+      frame.quality = quality;
+      const auto [difference, sharper] = compare(0.5);
+      EXPECT_GT(difference, 0.05) << "it was not drawn with fewer pixels";
+      EXPECT_LT(difference, 4) << "of 765";
+      EXPECT_EQ(sharper, 0);
+    }
+  }
+  frame.resolution = 0;  // no fewer than the least
+  EXPECT_GT(Brightness(Draw(frame), kWidth / 2 + 40, kHeight / 2), 50);
+}
+
 // As under GTK: its framebuffer is not 0, it leaves scissor and blending on, and wants no depth test back.
 TEST_F(RendererTest, DrawsIntoTheBoundFramebufferWhateverStateTheToolkitLeft) {
   Frame frame;

@@ -482,6 +482,7 @@ void LaparoscopeView::Draw(int width, int height) {
   c.frame.light_power = c.light_scale * std::clamp(c.options.light_power, 0.0, 4.0);
   c.frame.has_automatic_exposure = c.options.has_automatic_exposure;
   c.frame.quality = c.options.quality;
+  c.frame.resolution = c.options.resolution;
   c.frame.tool_wear = c.options.tool_wear;
   c.frame.blots = c.options.stains;
   c.frame.blots.insert(c.frame.blots.end(), c.smear.Blots().begin(), c.smear.Blots().end());

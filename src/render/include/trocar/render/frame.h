@@ -72,6 +72,8 @@ enum class Quality {
   kHigh
 };
 
+inline constexpr double kLeastResolution = 0.25;
+
 /// A fine thread between two places, for example of connective tissue: it faces the lens, is a little wavy, and keeps
 /// some width however far it is.
 struct Fibre {
@@ -127,6 +129,9 @@ struct Frame {
   /// The camera finds its exposure by its last pictures and the frames' times.
   bool has_automatic_exposure = false;
   Quality quality = Quality::kHigh;
+  /// Pixels that are drawn to those of the picture, along each side, kLeastResolution to 1: with fewer it is drawn faster and
+  /// enlarged. Needs the pass that smooths edges.
+  double resolution = 1;
   OverheadLight overhead;
   double ring_section = 0.002;         ///< radius of the rings' section [m]
   std::vector<RingShade> ring_shades;  ///< the first kMaxRingShades count

@@ -25,6 +25,7 @@ struct ViewOptions {
   double light_power = 1;  ///< [-], 0 to 4
   bool has_automatic_exposure = true;
   render::Quality quality = render::Quality::kHigh;
+  double resolution = 1;             ///< as render::Frame's
   double arrow_scale = 0.008;        ///< length of a force arrow [m/N]
   double tool_wear = 1;              ///< scratches of tools, in those of the looks, 0 to 1.6 [-]
   std::vector<render::Blot> stains;  ///< on the lens, which nobody wipes

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/presenter/picture_detail.h"
+
+#include <algorithm>
+#include <array>
+
+namespace trocar::presenter {
+namespace {
+
+using render::Quality;
+
+constexpr std::array<PictureDetail::Step, 6> kSteps = {{{Quality::kHigh, 1},
+                                                        {Quality::kLow, 1},
+                                                        {Quality::kLow, 0.8},
+                                                        {Quality::kLow, 0.65},
+                                                        {Quality::kLow, 0.5},
+                                                        {Quality::kLow, 0.4}}};
+constexpr double kMost = 1.0 / 30;       // [s] that a picture may take
+constexpr std::size_t kJudged = 5;       // pictures whose median counts
+constexpr std::size_t kCalm = 150;       // pictures before a finer step is tried for the first time
+constexpr std::size_t kMostCalm = 9000;  // and at most
+constexpr double kHighCosts = 2;         // times of the lowest quality, by measuring with llvmpipe
+
+/// By how much longer a picture takes there, if its pixels alone take time.
+double CalcGrowth(const PictureDetail::Step& from, const PictureDetail::Step& to) {
+  const double sides = to.resolution / from.resolution;
+  return sides * sides *
+         (from.quality == to.quality     ? 1
+          : to.quality == Quality::kHigh ? kHighCosts
+                                         : 1 / kHighCosts);
+}
+
+}  // namespace
+
+PictureDetail::PictureDetail(bool is_drawn_by_processor)
+    : finest_(is_drawn_by_processor ? 1 : 0), step_(finest_), calm_wanted_(kCalm) {}
+
+const PictureDetail::Step& PictureDetail::Now() const {
+  return kSteps[step_];
+}
+
+void PictureDetail::Go(std::size_t step) {
+  step_ = step;
+  recent_.clear();
+  calm_ = 0;
+}
+
+void PictureDetail::AddPicture(double seconds) {
+  ++calm_;
+  if (recent_.size() == kJudged) recent_.erase(recent_.begin());
+  recent_.push_back(seconds);
+  if (recent_.size() < kJudged) return;
+  std::array<double, kJudged> sorted{};
+  std::copy(recent_.begin(), recent_.end(), sorted.begin());
+  std::sort(sorted.begin(), sorted.end());
+  const double median = sorted[kJudged / 2];
+  if (median > kMost && step_ + 1 < kSteps.size()) {
+    calm_wanted_ = is_tried_ ? std::min(2 * calm_wanted_, kMostCalm) : calm_wanted_;
+    is_tried_ = false;
+    // no finer than would do if only pixels took time
+    std::size_t next = step_ + 1;
+    while (next + 1 < kSteps.size() && median * CalcGrowth(kSteps[step_], kSteps[next]) > kMost) ++next;
+    Go(next);
+    return;
+  }
+  if (calm_ < calm_wanted_) return;
+  is_tried_ = false;  // it has stood as long as it was waited for
+  if (step_ > finest_ && median * CalcGrowth(kSteps[step_], kSteps[step_ - 1]) < kMost) {
+    Go(step_ - 1);
+    is_tried_ = true;
+  }
+}
+
+}  // namespace trocar::presenter

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/presenter/picture_detail.h"
+
+#include <gtest/gtest.h>
+
+#include "trocar/math/random.h"
+
+namespace trocar::presenter {
+namespace {
+
+using render::Quality;
+
+/// A computer: what a picture takes whatever its size, and what its pixels take at the lowest quality [s].
+struct Computer {
+  double fixed = 0.005, pixels = 0.030, high = 2;
+  double Take(const PictureDetail::Step& step) const {
+    return fixed + pixels * step.resolution * step.resolution * (step.quality == Quality::kHigh ? high : 1);
+  }
+};
+
+/// Draws so many pictures; times tremble by a tenth. \return how often the step changed
+int Draw(PictureDetail& detail, const Computer& computer, int pictures) {
+  math::Random random(5);
+  int changes = 0;
+  for (int i = 0; i < pictures; ++i) {
+    const PictureDetail::Step before = detail.Now();
+    detail.AddPicture(computer.Take(before) * random.Uniform(0.9, 1.1));
+    changes += detail.Now() == before ? 0 : 1;
+  }
+  return changes;
+}
+
+TEST(PictureDetail, BeginsFinelyAndStaysThereWhereThereIsTime) {
+  PictureDetail detail;
+  EXPECT_EQ(Draw(detail, {.fixed = 0.001, .pixels = 0.002}, 2000), 0);
+  EXPECT_EQ(detail.Now(), (PictureDetail::Step{Quality::kHigh, 1}));
+}
+
+TEST(PictureDetail, FindsWithinSomePicturesWhatFits) {
+  PictureDetail detail(true);
+  EXPECT_EQ(detail.Now(), (PictureDetail::Step{Quality::kLow, 1}));
+  const Computer slow{.fixed = 0.010, .pixels = 0.080};
+  Draw(detail, slow, 40);
+  EXPECT_LE(slow.Take(detail.Now()), 1.0 / 30);
+  EXPECT_GE(detail.Now().resolution, 0.5) << "and no coarser than that";
+}
+
+TEST(PictureDetail, TriesLessAndLessOftenWhatDidNotFit) {
+  PictureDetail detail(true);
+  // the finer step fits by its pixels alone, and not with what a picture takes besides that grows with them
+  const Computer treacherous{.fixed = 0, .pixels = 0.0335};
+  Draw(detail, treacherous, 200);
+  EXPECT_LE(Draw(detail, treacherous, 9000), 12);
+}
+
+TEST(PictureDetail, ComesBackWhenTheComputerIsFree) {
+  PictureDetail detail(true);
+  Draw(detail, {.fixed = 0.010, .pixels = 0.150}, 200);
+  EXPECT_EQ(detail.Now().resolution, 0.4) << "the coarsest";
+  Draw(detail, {.fixed = 0.002, .pixels = 0.010}, 2000);
+  EXPECT_EQ(detail.Now(), (PictureDetail::Step{Quality::kLow, 1})) << "the finest where the processor draws";
+}
+
+TEST(PictureDetail, OneSlowPictureIsNoReason) {
+  PictureDetail detail;
+  for (int i = 0; i < 100; ++i) detail.AddPicture(i % 9 == 0 ? 0.5 : 0.004);
+  EXPECT_EQ(detail.Now().quality, Quality::kHigh);
+}
+
+}  // namespace
+}  // namespace trocar::presenter
