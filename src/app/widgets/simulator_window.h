@@ -26,11 +26,11 @@
 #include "sound_card.h"
 #include "task_chooser.h"
 #include "trocar/core/translate.h"
-#include "trocar/rehearsal/rehearsal_view.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
 #include "trocar/presenter/simulator_presenter.h"
+#include "trocar/rehearsal/rehearsal_view.h"
 
 namespace trocar::app {
 
@@ -127,8 +127,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   gui::FileDialog file_dialog_;
   std::unique_ptr<presenter::SimulatorPresenter> presenter_;
   FilmBar film_bar_{[this](const std::string& text, bool is_warning) { presenter_->Tell(text, is_warning); }};
-  std::unique_ptr<presenter::WindowSound> sound_;     // null where nobody is there to hear
-  std::unique_ptr<DevicePage> device_page_;           // of the presenter's control
+  std::unique_ptr<presenter::WindowSound> sound_;        // null where nobody is there to hear
+  std::unique_ptr<DevicePage> device_page_;              // of the presenter's control
   std::unique_ptr<rehearsal::RehearsalView> rehearsal_;  // once it has been opened
   std::unique_ptr<ReplayWindow> replay_;
 };
