@@ -19,7 +19,7 @@ constexpr double kMost = 1.0 / 30;       // [s] that a picture may take
 constexpr std::size_t kJudged = 5;       // pictures whose median counts
 constexpr std::size_t kCalm = 150;       // pictures before a finer step is tried for the first time
 constexpr std::size_t kMostCalm = 9000;  // and at most
-constexpr double kHighCosts = 2;         // times of the lowest quality, by measuring with llvmpipe
+constexpr double kHighCosts = 2;         // times of the lowest quality, at most: llvmpipe takes 1.1 to 1.3
 
 /// By how much longer a picture takes there, if its pixels alone take time.
 double CalcGrowth(const PictureDetail::Step& from, const PictureDetail::Step& to) {

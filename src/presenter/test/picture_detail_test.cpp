@@ -13,8 +13,10 @@ using render::Quality;
 /// A computer: what a picture takes whatever its size, and what its pixels take at the lowest quality [s].
 struct Computer {
   double fixed = 0.005, pixels = 0.030, high = 2;
+  double whole = 0;  // besides, where every pixel is drawn
   double Take(const PictureDetail::Step& step) const {
-    return fixed + pixels * step.resolution * step.resolution * (step.quality == Quality::kHigh ? high : 1);
+    return fixed + pixels * step.resolution * step.resolution * (step.quality == Quality::kHigh ? high : 1) +
+           (step.resolution == 1 ? whole : 0);
   }
 };
 
@@ -47,10 +49,13 @@ TEST(PictureDetail, FindsWithinSomePicturesWhatFits) {
 
 TEST(PictureDetail, TriesLessAndLessOftenWhatDidNotFit) {
   PictureDetail detail(true);
-  // the finer step fits by its pixels alone, and not with what a picture takes besides that grows with them
-  const Computer treacherous{.fixed = 0, .pixels = 0.0335};
-  Draw(detail, treacherous, 200);
-  EXPECT_LE(Draw(detail, treacherous, 9000), 12);
+  // by its pixels the finest step would fit
+  const Computer treacherous{.fixed = 0, .pixels = 0.030, .whole = 0.010};
+  Draw(detail, treacherous, 100);
+  ASSERT_EQ(detail.Now().resolution, 0.8);
+  const int changes = Draw(detail, treacherous, 9000);
+  EXPECT_GE(changes, 4) << "it is tried";
+  EXPECT_LE(changes, 12);
 }
 
 TEST(PictureDetail, ComesBackWhenTheComputerIsFree) {
