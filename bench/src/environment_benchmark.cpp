@@ -123,8 +123,11 @@ core::Result<Work> TimeActions(const std::shared_ptr<EnvironmentModel>& model, s
   return Work{stopwatch.Seconds(), {HashState(state)}};
 }
 
+/// How a pool is used: all environments wait for the slowest before each action, or each gets its next as soon as it is done.
+enum class PoolUse { kTogether, kEachAtOnce };
+
 /// All threads of a pool together. Environment i does what process i does.
-core::Result<Work> MeasurePool(const std::shared_ptr<EnvironmentModel>& model, int count) {
+core::Result<Work> MeasurePool(const std::shared_ptr<EnvironmentModel>& model, int count, PoolUse use) {
   auto made = Pool::Make(model, {.count = count, .threads = count});
   if (!made) return made.error();
   Pool& pool = **made;
@@ -133,15 +136,24 @@ core::Result<Work> MeasurePool(const std::shared_ptr<EnvironmentModel>& model, i
   if (const auto begun = pool.Receive(static_cast<std::size_t>(count), ids); !begun) return begun.error();
   std::vector<math::Random> hands;
   for (int i = 0; i < count; ++i) hands.emplace_back(1 + static_cast<std::uint64_t>(i));
+  std::vector<int> left(hands.size(), kPoolActions);
   const WorkStopwatch stopwatch(1);
-  for (int step = 0; step < kPoolActions; ++step) {
+  while (true) {
+    std::vector<std::int32_t> ready;
     std::vector<double> actions;
-    for (math::Random& random : hands) {
-      const std::vector<double> drawn = DrawActions(*model, 1, random);
+    for (const std::int32_t id : ids) {
+      const auto i = static_cast<std::size_t>(id);
+      if (left[i]-- <= 0) continue;
+      ready.push_back(id);
+      const std::vector<double> drawn = DrawActions(*model, 1, hands[i]);
       actions.insert(actions.end(), drawn.begin(), drawn.end());
     }
-    if (const auto sent = pool.Send(actions, {}); !sent) return sent.error();
-    if (const auto got = pool.Receive(static_cast<std::size_t>(count), ids); !got) return got.error();
+    if (!ready.empty()) {
+      if (const auto sent = pool.Send(actions, ready); !sent) return sent.error();
+    }
+    if (pool.AtWork() == 0) break;
+    const std::size_t wanted = use == PoolUse::kTogether ? pool.AtWork() : 1;
+    if (const auto got = pool.Receive(wanted, ids); !got) return got.error();
   }
   Work work{stopwatch.Seconds(), {}};
   const std::size_t size = model->StateSize();
@@ -190,28 +202,35 @@ core::Result<Work> MeasureProcesses(const std::string& task, int count) {
   return work;
 }
 
-/// A pool beside as many processes, by turns: the quickest of each counts. Both must come to the same states.
+/// A pool, used in both ways, beside as many processes, by turns: the quickest of each counts. All must come to the same states.
 core::Status ComparePool(int count, int repeats, BenchmarkResult& result) {
-  std::array<double, 2> shortest;
-  shortest.fill(std::numeric_limits<double>::infinity());
+  constexpr std::array kUses = {PoolUse::kTogether, PoolUse::kEachAtOnce};
+  std::array<double, kUses.size()> pools;
+  pools.fill(std::numeric_limits<double>::infinity());
+  double alone = std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < std::max(1, repeats); ++turn) {
     // before this process has a model and threads of its own
     const auto processes = MeasureProcesses(kPoolTask, count);
     if (!processes) return processes.error();
+    alone = std::min(alone, processes->seconds);
     const auto model = MakeModel(kPoolTask);
     if (!model) return model.error();
-    const auto pool = MeasurePool(*model, count);
-    if (!pool) return pool.error();
-    if (pool->states != processes->states)
-      return WrongAnswer("pool", "it comes to other states than as many processes");
-    shortest = {std::min(shortest[0], pool->seconds), std::min(shortest[1], processes->seconds)};
+    for (std::size_t i = 0; i < kUses.size(); ++i) {
+      const auto pool = MeasurePool(*model, count, kUses[i]);
+      if (!pool) return pool.error();
+      if (pool->states != processes->states)
+        return WrongAnswer("pool", "it comes to other states than as many processes");
+      pools[i] = std::min(pools[i], pool->seconds);
+    }
   }
   const auto model = MakeModel(kPoolTask);
   if (!model) return model.error();
   const double ticks = static_cast<double>(count) * kPoolActions * (*model)->TicksPerAction();
-  result.cases.push_back({"pool/rate", ticks / shortest[0], "ticks/s"});
-  result.cases.push_back({"processes/rate", ticks / shortest[1], "ticks/s"});
-  result.ratios.push_back({"pool/processes", shortest[1] / shortest[0]});
+  result.cases.push_back({"pool/rate", ticks / pools[0], "ticks/s"});
+  result.cases.push_back({"pool_at_once/rate", ticks / pools[1], "ticks/s"});
+  result.cases.push_back({"processes/rate", ticks / alone, "ticks/s"});
+  result.ratios.push_back({"pool/processes", alone / pools[0]});
+  result.ratios.push_back({"pool_at_once/processes", alone / pools[1]});
   return {};
 }
 
@@ -343,8 +362,8 @@ core::Result<BenchmarkResult> RunEnvironmentBenchmark(const BenchmarkOptions& op
   const int count = std::max(1, options.threads);
   BenchmarkResult result;
   result.notes.push_back(
-      "seconds are of processor time; random motions of both tips, 10 actions a second; the pool and the "
-      "processes with " +
+      "seconds are of processor time; random motions of both tips, 10 actions a second; the pool (all "
+      "together, and each at once) and the processes with " +
       std::to_string(count) + " (--threads), the quickest of " +
       std::to_string(std::max(1, options.repeats)) + " turns (--repeats)");
   if (const auto compared = ComparePool(count, options.repeats, result); !compared) return compared.error();

@@ -42,7 +42,7 @@ TEST(EnvironmentBenchmarkSlow, MeasuresEveryEnvironmentAndItsPictures) {
   };
   for (const char* name :
        {"peg_transfer/rate", "cholecystectomy/rate", "cholecystectomy/memory_each", "peg_transfer/pictures",
-        "cholecystectomy/pictures", "pool/rate", "processes/rate"})
+        "cholecystectomy/pictures", "pool/rate", "pool_at_once/rate", "processes/rate"})
     EXPECT_GT(value_of(name), 0) << name;
   EXPECT_EQ(result->ratios.front().name, "pool/processes");
 }

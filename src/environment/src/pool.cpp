@@ -40,9 +40,11 @@ struct Pool::Content {
   ::pid_t process = ::getpid();
 
   std::mutex mutex;
-  std::condition_variable has_job, has_result;
-  std::deque<std::int32_t> jobs, done;
+  std::condition_variable has_job, has_results;
+  std::vector<std::deque<std::int32_t>> jobs;  ///< of each thread, which others take where it is busy
+  std::deque<std::int32_t> done;
   std::size_t at_work = 0;
+  std::size_t wanted = 0;  ///< results that Receive waits for
   bool is_ending = false;
   std::vector<std::thread> threads;
 
@@ -53,7 +55,8 @@ struct Pool::Content {
   core::Status Observe(std::int32_t id, std::vector<float>& rows_of_states, bool is_final);
   core::Status DoReset(std::int32_t id, std::optional<std::uint64_t> seed);
   core::Status DoStep(std::int32_t id);
-  void Serve();
+  std::optional<std::int32_t> TakeJob(std::size_t thread);
+  void Serve(std::size_t thread);
   core::Result<std::vector<std::int32_t>> Choose(std::span<const std::int32_t> ids) const;
   void HandOver(std::span<const std::int32_t> ids);
 };
@@ -99,13 +102,29 @@ core::Status Pool::Content::DoStep(std::int32_t id) {
   return Observe(id, rows.state, false);
 }
 
-void Pool::Content::Serve() {
+/// The thread's own oldest job, or the newest of whoever has most left. With `mutex` held.
+std::optional<std::int32_t> Pool::Content::TakeJob(std::size_t thread) {
+  auto from = jobs.begin() + static_cast<std::ptrdiff_t>(thread);
+  const bool is_own = !from->empty();
+  if (!is_own)
+    from = std::max_element(jobs.begin(), jobs.end(),
+                            [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (from->empty()) return {};
+  const std::int32_t id = is_own ? from->front() : from->back();
+  is_own ? from->pop_front() : from->pop_back();
+  return id;
+}
+
+void Pool::Content::Serve(std::size_t thread) {
   std::unique_lock lock(mutex);
   while (true) {
-    has_job.wait(lock, [&] { return is_ending || !jobs.empty(); });
-    if (jobs.empty()) return;
-    const std::int32_t id = jobs.front();
-    jobs.pop_front();
+    std::optional<std::int32_t> job;
+    has_job.wait(lock, [&] {
+      job = TakeJob(thread);
+      return is_ending || job;
+    });
+    if (!job) return;
+    const std::int32_t id = *job;
     lock.unlock();
     Slot& slot = slots[static_cast<std::size_t>(id)];
     if (slot.work == Work::kReset) {
@@ -121,7 +140,7 @@ void Pool::Content::Serve() {
     }
     lock.lock();
     done.push_back(id);
-    has_result.notify_one();
+    if (done.size() >= wanted) has_results.notify_one();
   }
 }
 
@@ -153,11 +172,12 @@ core::Result<std::vector<std::int32_t>> Pool::Content::Choose(std::span<const st
   return chosen;
 }
 
-/// With `mutex` held.
+/// An environment goes to the same thread each time, whose cache still holds it. With `mutex` held.
 void Pool::Content::HandOver(std::span<const std::int32_t> ids) {
   for (const std::int32_t id : ids) {
-    slots[static_cast<std::size_t>(id)].is_at_work = true;
-    jobs.push_back(id);
+    const auto row = static_cast<std::size_t>(id);
+    slots[row].is_at_work = true;
+    jobs[row % jobs.size()].push_back(id);
   }
   at_work += ids.size();
   has_job.notify_all();
@@ -206,7 +226,8 @@ core::Result<std::unique_ptr<Pool>> Pool::Make(std::shared_ptr<EnvironmentModel>
     flags->resize(count);
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int threads = settings.threads > 0 ? settings.threads : std::min(settings.count, cores);
-  for (int i = 0; i < threads; ++i) made.threads.emplace_back([&made] { made.Serve(); });
+  made.jobs.resize(static_cast<std::size_t>(threads));
+  for (std::size_t i = 0; i < made.jobs.size(); ++i) made.threads.emplace_back([&made, i] { made.Serve(i); });
   return std::unique_ptr<Pool>(new Pool(std::move(content)));
 }
 
@@ -282,7 +303,8 @@ core::Status Pool::Receive(std::size_t count, std::vector<std::int32_t>& ids) {
     return WrongState(std::to_string(now.at_work) + " environments are at work, and results of " +
                       std::to_string(count) + " were asked for; send actions first");
   }
-  now.has_result.wait(lock, [&] { return now.done.size() >= count; });
+  now.wanted = count;
+  now.has_results.wait(lock, [&] { return now.done.size() >= count; });
   ids.assign(now.done.begin(), now.done.begin() + static_cast<std::ptrdiff_t>(count));
   now.done.erase(now.done.begin(), now.done.begin() + static_cast<std::ptrdiff_t>(count));
   std::sort(ids.begin(), ids.end());
