@@ -206,8 +206,10 @@ std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) 
     case scene::EventKind::kOrganFrozen:
       return core::TranslateWith("{1}: held still, press R to reset (E-SIM-002)", {Capitalised(organ)});
     case scene::EventKind::kTear:
-      return event.organ < 0 ? core::Translate("A duct or vessel was torn off")
-                             : core::TranslateWith("{1}: an attachment tore", {Capitalised(organ)});
+      if (event.organ < 0) return core::Translate("Fibres of connective tissue tore");
+      return static_cast<std::size_t>(event.organ) < scene.patient.organs.size()
+                 ? core::TranslateWith("{1}: an attachment tore", {Capitalised(organ)})
+                 : core::Translate("A duct or vessel was torn off");
     case scene::EventKind::kPinchDamage:
       return core::TranslateWith("{1}: pinched the {2} too hard", {hand, organ}) + force;
     case scene::EventKind::kToolsTouch:
@@ -236,11 +238,14 @@ std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) 
   return "";
 }
 
-bool IsWarning(scene::EventKind kind) noexcept {
+bool IsWarning(const scene::Event& event) noexcept {
+  const scene::EventKind kind = event.kind;
+  // blunt dissection tears fibres: that is no fault
+  if (kind == scene::EventKind::kTear) return event.organ >= 0;
   return kind == scene::EventKind::kSlip || kind == scene::EventKind::kStateRestored ||
-         kind == scene::EventKind::kOrganFrozen || kind == scene::EventKind::kTear ||
-         kind == scene::EventKind::kPinchDamage || kind == scene::EventKind::kClipSlipped ||
-         kind == scene::EventKind::kStoneSpilled || kind == scene::EventKind::kOperationError;
+         kind == scene::EventKind::kOrganFrozen || kind == scene::EventKind::kPinchDamage ||
+         kind == scene::EventKind::kClipSlipped || kind == scene::EventKind::kStoneSpilled ||
+         kind == scene::EventKind::kOperationError;
 }
 
 std::string StageLabel(simulation::Stage stage) {

@@ -478,7 +478,7 @@ void SimulatorPresenter::ShowEvents(const simulation::Snapshot& snapshot) {
   if (snapshot.event_count == seen_events_) return;
   seen_events_ = snapshot.event_count;
   const scene::Event& newest = snapshot.events[(snapshot.event_count - 1) % snapshot.events.size()];
-  Announce(DescribeEvent(newest, control_->GetScene()), IsWarning(newest.kind));
+  Announce(DescribeEvent(newest, control_->GetScene()), IsWarning(newest));
 }
 
 void SimulatorPresenter::ShowHaptics() {

@@ -81,8 +81,23 @@ TEST(ReadOuts, EventsAreSaidInWords) {
             "Left grasper: grasped ring 2, 1.2 N");
   EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, scene::kRight, -1, 0, 1}, rings),
             "Right grasper: let ring 2 go");
-  EXPECT_TRUE(IsWarning(EventKind::kSlip));
-  EXPECT_FALSE(IsWarning(EventKind::kGrasp));
+  EXPECT_TRUE(IsWarning({EventKind::kSlip, 10, scene::kRight, 0, 4.0}));
+  EXPECT_FALSE(IsWarning({EventKind::kGrasp, 10, scene::kRight, 0, 4.0}));
+}
+
+// What tears in blunt dissection is no duct, and no fault.
+TEST(ReadOuts, TornFibresAndTornDuctsAreToldApart) {
+  scene::Scene scene = TwoOrgans();
+  scene.patient.tubes.resize(1);
+  const auto tear = [](std::int32_t organ) {
+    return scene::Event{scene::EventKind::kTear, 10, -1, organ, 0};
+  };
+  EXPECT_EQ(DescribeEvent(tear(-1), scene), "Fibres of connective tissue tore");
+  EXPECT_FALSE(IsWarning(tear(-1)));
+  EXPECT_EQ(DescribeEvent(tear(1), scene), "Gallbladder: an attachment tore");
+  EXPECT_TRUE(IsWarning(tear(1)));
+  EXPECT_EQ(DescribeEvent(tear(2), scene), "A duct or vessel was torn off");
+  EXPECT_TRUE(IsWarning(tear(2)));
 }
 
 TEST(ReadOuts, StagesHaveNamesForPeople) {
@@ -141,13 +156,13 @@ TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
   EXPECT_EQ(text(scene::EventKind::kStoneTaken), "Right hand: took a stone");
   EXPECT_EQ(text(scene::EventKind::kStoneRetrieved), "Right hand: retrieved a stone");
   EXPECT_EQ(text(scene::EventKind::kStoneSpilled), "A stone spilled out of the gallbladder");
-  EXPECT_TRUE(IsWarning(scene::EventKind::kStoneSpilled));
+  EXPECT_TRUE(IsWarning({scene::EventKind::kStoneSpilled, 1, scene::kRight, -1, 0.0}));
   EXPECT_EQ(text(scene::EventKind::kClipSlipped), "A clip slipped off the tissue");
   EXPECT_NE(text(scene::EventKind::kUsedOutside).find("push it in"), std::string::npos);
   const auto error = training::OperationError::kClipCrossed;
   EXPECT_EQ(text(scene::EventKind::kOperationError, static_cast<int>(error)), training::ExplanationOf(error));
-  EXPECT_TRUE(IsWarning(scene::EventKind::kOperationError));
-  EXPECT_FALSE(IsWarning(scene::EventKind::kClipClosed));
+  EXPECT_TRUE(IsWarning({scene::EventKind::kOperationError, 1, scene::kRight, -1, 0.0}));
+  EXPECT_FALSE(IsWarning({scene::EventKind::kClipClosed, 1, scene::kRight, -1, 0.0}));
 }
 
 TEST(ToolLabel, NamesTheToolInUseAndItsClips) {

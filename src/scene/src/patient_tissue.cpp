@@ -206,8 +206,7 @@ void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness, dou
     definition.strands.push_back({end, near[i].second, stiffness / static_cast<double>(count)});
     made.conservation.strand_binds.push_back(0);
     made.max_elongation.push_back(failure_force / stiffness);
-    made.strand_organs.push_back(
-        surface.radii.empty() ? static_cast<std::int32_t>(&surface - made.surfaces.data()) : -1);
+    made.strand_organs.push_back(static_cast<std::int32_t>(&surface - made.surfaces.data()));
     NameStrand(StrandInfo::Kind::kEnd, made);
   }
 }

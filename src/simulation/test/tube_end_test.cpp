@@ -51,6 +51,35 @@ TEST_F(TubeEnd, AnArteryThatComesOffIsOpenAndCountsAsCut) {
   EXPECT_GT(BloodLost(), 0.1e-6) << "two seconds of an open artery";
 }
 
+// What a torn strand is said to be: fibres of no organ, ducts and vessels by their own number.
+TEST_F(TubeEnd, StrandsNameWhatTheyHold) {
+  const auto& tissue = Tissue();
+  ASSERT_EQ(tissue.strand_organs.size(), tissue.strands.size());
+  int ends = 0, fibres = 0;
+  for (std::size_t i = 0; i < tissue.strands.size(); ++i) {
+    const std::int32_t organ = tissue.strand_organs[i];
+    switch (tissue.strands[i].kind) {
+      case StrandInfo::Kind::kEnd: {
+        ASSERT_GE(organ, 0);
+        const SurfaceInfo& held = tissue.surfaces[static_cast<std::size_t>(organ)];
+        EXPECT_GE(tissue.strands[i].b, held.first_node);
+        EXPECT_LT(tissue.strands[i].b, held.first_node + held.node_count);
+        ++ends;
+        break;
+      }
+      case StrandInfo::Kind::kTriangle:
+      case StrandInfo::Kind::kPeritoneum:
+        EXPECT_EQ(organ, -1);
+        ++fibres;
+        break;
+      default:
+        EXPECT_GE(organ, 0);
+    }
+  }
+  EXPECT_GT(ends, 0);
+  EXPECT_GT(fibres, 0);
+}
+
 TEST_F(TubeEnd, WhatLeavesInTheBagCountsAsNothing) {
   TakeGallbladderOut();
   for (int tick = 0; tick < 60; ++tick) Tick();

@@ -68,7 +68,7 @@ std::string DescribeContact(const simulation::InstrumentSnapshot& instrument,
 /// "Left grasper: grasped the gallbladder, 2.1 N", "Tissue: last good state restored".
 std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene);
 /// True for what should be seen at once: slips, missed grasps, restored states.
-bool IsWarning(scene::EventKind kind) noexcept;
+bool IsWarning(const scene::Event& event) noexcept;
 
 /// How a task goes, for a person.
 struct TaskReadOut {

@@ -17,7 +17,8 @@ struct PatientTissue {
   tissue::ConservationSettings
       conservation;                    ///< every organ keeps its volume; bed strands bind, tube ends turn
   std::vector<double> max_elongation;  ///< (strands) at which each tears [m]
-  std::vector<std::int32_t> strand_organs;  ///< (strands) index into Patient::organs that it holds, or -1
+  std::vector<std::int32_t>
+      strand_organs;  ///< (strands) index into `surfaces` of what it holds; -1: connective tissue
   std::vector<std::int32_t> spring_organs;  ///< (walls' springs, which come first) index into Patient::organs
   std::vector<double> internal_pressure;    ///< (organs) under which each is filled at the start [Pa]
   std::vector<SurfaceInfo> surfaces;        ///< organs, then tubes
