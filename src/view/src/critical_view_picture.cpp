@@ -172,8 +172,7 @@ core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
   const auto draw = [&](const simulation::Simulation& simulation, int side) {
     const auto ducts = FindDucts(simulation);
     const Occluders organs(simulation);
-    Snapshot shown = simulation.GetSnapshot();
-    shown.operation.smoke = 0;
+    Snapshot shown = ClearField(simulation.GetSnapshot());
     const auto result = simulation.GetOperationResult();
     const double azimuth =
         result && std::isfinite(result->facts.view_azimuth) ? result->facts.view_azimuth : 0.0;
@@ -193,6 +192,13 @@ core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
   doublet.front = draw(front, -1);
   doublet.back = draw(back, +1);
   return doublet;
+}
+
+simulation::Snapshot ClearField(simulation::Snapshot snapshot) {
+  snapshot.operation.smoke = 0;
+  surgery::FluidLedger& fluids = snapshot.operation.flow.ledger;
+  fluids.Aspirate(fluids.Pooled());
+  return snapshot;
 }
 
 void CriticalViewMoments::AfterStep(const training::CriticalViewScore& score, double time,

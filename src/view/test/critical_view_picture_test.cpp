@@ -36,6 +36,19 @@ TEST(CriticalViewDoublet, ShowsTwoSidesAndLeavesTheStateAlone) {
   EXPECT_EQ(again->front.image, doublet->front.image);
 }
 
+TEST(CriticalViewDoublet, ShowsNeitherSmokeNorPools) {
+  simulation::Snapshot seen;
+  seen.operation.smoke = 0.4;
+  surgery::FluidLedger& fluids = seen.operation.flow.ledger;
+  fluids.Leak(surgery::Fluid::kBlood, 9e-6);
+  fluids.Leak(surgery::Fluid::kBile, 2e-6);
+  fluids.Rinse(50e-6);
+  const simulation::Snapshot shown = ClearField(seen);
+  EXPECT_EQ(shown.operation.smoke, 0);
+  EXPECT_NEAR(shown.operation.flow.ledger.Pooled(), 0, 1e-12);
+  EXPECT_NEAR(seen.operation.flow.ledger.Pooled(), 61e-6, 1e-12) << "the operation itself is left alone";
+}
+
 // The views are seen one after the other: each picture is of its own moment.
 TEST(CriticalViewDoublet, DrawsEachSideAtItsOwnMoment) {
   auto first = MakeOperation(), second = MakeOperation();

@@ -46,6 +46,10 @@ core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
                                                             const simulation::Simulation& back, int width,
                                                             int height);
 
+/// A moment as it is drawn: without smoke, and without what is pooled, as after suction. It would hide the triangle, and the
+/// ground that it lies on is not drawn.
+simulation::Snapshot ClearField(simulation::Snapshot snapshot);
+
 /// Keeps the states in which the two views of an achieved critical view came to count. A view counts for the verdict once it was
 /// seen long enough, and is forgotten where a criterion is no longer whole.
 class CriticalViewMoments {
