@@ -3,6 +3,9 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "trocar/gui/software_renderer.h"
 
 namespace trocar::app {
@@ -54,7 +57,8 @@ void Picture::on_realize() {
   }
   make_current();
   const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  detail_ = presenter::PictureDetail(renderer != nullptr && gui::IsSoftwareRenderer(renderer));
+  is_drawn_by_processor_ = renderer != nullptr && gui::IsSoftwareRenderer(renderer);
+  detail_ = presenter::PictureDetail(is_drawn_by_processor_);
   MeasurePainting();
 }
 
@@ -79,34 +83,72 @@ void Picture::on_unrealize() {
     for (const gulong handler : painting_handlers_) g_signal_handler_disconnect(clock_->gobj(), handler);
     clock_.reset();
   }
-  if (view_) {
+  if (view_ || target_) {
     make_current();
     view_.reset();
+    target_.reset();
   }
   Gtk::GLArea::on_unrealize();
 }
 
-bool Picture::on_render(const Glib::RefPtr<Gdk::GLContext>&) {
+/// \return whether there is something to draw
+bool Picture::MakeView() {
   if (has_failed_ || scene_ == nullptr || snapshot_ == nullptr) return false;
-  if (!view_) {
-    core::Result<view::LaparoscopeView> made =
-        view::LaparoscopeView::Make(*scene_, surfaces_, *snapshot_, strands_);
-    if (!made) {
-      Fail(made.error());
-      return false;
-    }
-    view_.emplace(std::move(made).value());
+  if (view_) return true;
+  core::Result<view::LaparoscopeView> made =
+      view::LaparoscopeView::Make(*scene_, surfaces_, *snapshot_, strands_);
+  if (!made) {
+    Fail(made.error());
+    return false;
   }
+  view_.emplace(std::move(made).value());
+  return true;
+}
+
+void Picture::DrawView(int width, int height, double resolution) {
   view::ViewOptions options = options_;
   options.quality = detail_.Now().quality;
-  options.resolution = detail_.Now().resolution;
+  options.resolution = resolution;
   if (view_->GetOptions() != options) view_->SetOptions(options);
   view_->SetOverlay(overlay_);
   view_->Update(*snapshot_);
-  view_->Draw(get_width() * get_scale_factor(), get_height() * get_scale_factor());
+  view_->Draw(width, height);
   is_scene_in_painting_ = true;
+}
+
+bool Picture::on_render(const Glib::RefPtr<Gdk::GLContext>&) {
+  if (!MakeView()) return false;
+  DrawView(get_width() * get_scale_factor(), get_height() * get_scale_factor(), detail_.Now().resolution);
   signal_drawn_.emit();
   return true;
+}
+
+void Picture::snapshot_vfunc(const Glib::RefPtr<Gtk::Snapshot>& snapshot) {
+  if (!is_drawn_by_processor_) return Gtk::GLArea::snapshot_vfunc(snapshot);
+  make_current();
+  if (!MakeView()) return;
+  if (const auto drawn = DrawOffscreen(*snapshot.get()); !drawn) return Fail(drawn.error());
+  signal_drawn_.emit();
+}
+
+core::Status Picture::DrawOffscreen(Gtk::Snapshot& snapshot) {
+  const double pixels = detail_.Now().resolution * get_scale_factor();
+  const int width = std::max(1, static_cast<int>(std::lround(pixels * get_width())));
+  const int height = std::max(1, static_cast<int>(std::lround(pixels * get_height())));
+  if (!target_ || target_->Width() != width || target_->Height() != height) {
+    target_.reset();
+    auto made = render::OffscreenTarget::Make(width, height);
+    if (!made) return made.error();
+    target_.emplace(std::move(*made));
+  }
+  target_->Bind();
+  DrawView(width, height, 1);
+  target_->Read(image_);
+  const auto texture = Gdk::MemoryTexture::create(
+      width, height, Gdk::MemoryTexture::Format::R8G8B8,
+      Glib::Bytes::create(image_.pixels.data(), image_.pixels.size()), 3 * static_cast<gsize>(width));
+  snapshot.append_texture(texture, Gdk::Rectangle(0, 0, get_width(), get_height()));
+  return {};
 }
 
 }  // namespace trocar::app

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file picture.h  The laparoscope's picture in a GLArea.
+///
+/// Where the processor draws, the area's own picture of full size would cost more than what it shows: to be filled, fetched and
+/// converted. There the scene is drawn off-screen with as many pixels as there is time for, and the toolkit enlarges them.
 #pragma once
 
 #include <gtkmm.h>
@@ -12,6 +15,7 @@
 #include "trocar/core/clock.h"
 #include "trocar/core/result.h"
 #include "trocar/presenter/picture_detail.h"
+#include "trocar/render/offscreen_target.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/laparoscope_view.h"
 
@@ -45,9 +49,13 @@ class Picture : public Gtk::GLArea {
   void on_realize() override;
   void on_unrealize() override;
   bool on_render(const Glib::RefPtr<Gdk::GLContext>& context) override;
+  void snapshot_vfunc(const Glib::RefPtr<Gtk::Snapshot>& snapshot) override;
 
  private:
   void Fail(const core::Error& error);
+  bool MakeView();
+  void DrawView(int width, int height, double resolution);
+  core::Status DrawOffscreen(Gtk::Snapshot& snapshot);
   void MeasurePainting();
 
   const scene::Scene* scene_ = nullptr;
@@ -55,6 +63,9 @@ class Picture : public Gtk::GLArea {
   std::span<const scene::StrandInfo> strands_;
   const simulation::Snapshot* snapshot_ = nullptr;
   std::optional<view::LaparoscopeView> view_;
+  bool is_drawn_by_processor_ = false;
+  std::optional<render::OffscreenTarget> target_;  // where the processor draws
+  render::Image image_;                            // read from it
   view::ViewOptions options_;
   presenter::PictureDetail detail_;
   core::Stopwatch painting_;  // of the window, until its picture is on the screen

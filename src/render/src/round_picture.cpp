@@ -37,7 +37,7 @@ void SetBlots(const Program& program, std::span<const Blot> blots) {
 }  // namespace
 
 RoundPicture::~RoundPicture() {
-  for (const Program& program : {mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, enlarged_, glow_})
+  for (const Program& program : {mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, glow_})
     glDeleteProgram(program.name);
   glDeleteFramebuffers(2, glow_framebuffers_.data());
   glDeleteTextures(2, glow_pictures_.data());
@@ -53,9 +53,8 @@ core::Status RoundPicture::Make() {
   if (!mask) return mask.error();
   mask_ = *mask;
   for (const auto& [program, fine, smeared] :
-       {std::tuple{&smooth_, "", ""}, std::tuple{&enlarged_, kEnlarged, ""},
-        std::tuple{&smooth_fine_, kFine, ""}, std::tuple{&smeared_, "", kSmeared},
-        std::tuple{&smeared_fine_, kFine, kSmeared}}) {
+       {std::tuple{&smooth_, "", ""}, std::tuple{&smooth_fine_, kFine, ""},
+        std::tuple{&smeared_, "", kSmeared}, std::tuple{&smeared_fine_, kFine, kSmeared}}) {
     const auto made = MakeProgram({kScreenVertexShader}, {kVersion, fine, smeared, kSmoothFragmentShader});
     if (!made) return made.error();
     *program = *made;
@@ -174,11 +173,9 @@ void RoundPicture::DrawSmoothed(const Smoothing& smoothing, int width, int heigh
   glViewport(0, 0, width, height);
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  const bool is_enlarged = height > height_ && !has_glow && !is_smeared;
-  const Program& smooth = is_smeared    ? (has_glow ? smeared_fine_ : smeared_)
-                          : has_glow    ? smooth_fine_
-                          : is_enlarged ? enlarged_
-                                        : smooth_;
+  const Program& smooth = is_smeared ? (has_glow ? smeared_fine_ : smeared_)
+                          : has_glow ? smooth_fine_
+                                     : smooth_;
   glUseProgram(smooth.name);
   if (is_smeared) SetBlots(smooth, smoothing.blots);
   if (has_glow) {

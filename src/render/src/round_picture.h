@@ -43,7 +43,7 @@ class RoundPicture {
   void MakeRing();
   void MakeGlow(int width, int height);
 
-  Program mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, enlarged_, glow_;
+  Program mask_, smooth_, smooth_fine_, smeared_, smeared_fine_, glow_;
   std::array<GLuint, 2> glow_framebuffers_{}, glow_pictures_{};
   int glow_width_ = 0, glow_height_ = 0;
   GLuint ring_ = 0, ring_vertices_ = 0;

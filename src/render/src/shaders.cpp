@@ -13,7 +13,6 @@ namespace trocar::render {
 const char* const kVersion = "#version 330 core\n";
 const char* const kFine = "#define FINE\n";
 const char* const kSmeared = "#define SMEARED\n";
-const char* const kEnlarged = "#define ENLARGED\n";
 
 const char* const kSurfaceVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 a_position;
@@ -364,10 +363,6 @@ vec3 SeeThroughSmear(vec2 at, vec2 shape, float thick) {
 void main() {
   vec2 at = gl_FragCoord.xy / u_size;
   vec4 here = texture(u_picture, at);
-#ifdef ENLARGED
-  // what lies between its pixels smooths edges enough; four taps more cost a tenth of the pictures
-  vec3 colour = here.rgb;
-#else
   // each tap lies between four pixels, so that together they blur a pixel a little
   vec4 nw = texture(u_picture, at + vec2(-0.5, 0.5) * u_texel);
   vec4 ne = texture(u_picture, at + vec2(0.5, 0.5) * u_texel);
@@ -381,7 +376,6 @@ void main() {
   if (share > 0.0) smoothed = BlurAlong(at, here.a, smoothed);
 #endif
   vec3 colour = mix(here.rgb, smoothed, share);
-#endif
 #ifdef SMEARED
   vec2 shape = vec2(u_texel.y / u_texel.x, 1.0);
   float thick = CalcSmear((at - 0.5) * shape);

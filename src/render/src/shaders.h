@@ -17,7 +17,6 @@ extern const char* const kScreenVertexShader;    ///< the picture's circle or re
 extern const char* const kVersion;               ///< first line of a source that the line kFine may follow
 extern const char* const kFine;                  ///< defines FINE: with what Quality::kHigh adds
 extern const char* const kSmeared;               ///< defines SMEARED: with what sticks to the lens
-extern const char* const kEnlarged;              ///< defines ENLARGED: of a smaller picture, without FINE
 extern const char* const kSmoothFragmentShader;  ///< softens stairs where brightness jumps, adds the glow
 extern const char* const kFullVertexShader;      ///< the whole target
 extern const char* const kGlowFragmentShader;    ///< what is bright, then blurred along one axis
