@@ -8,6 +8,8 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "camera_matrices.h"
@@ -63,6 +65,7 @@ struct Renderer::Content {
     std::vector<SurfaceDraw> surfaces;
   } earlier;
   SurfaceId rod, cone;
+  std::vector<std::pair<double, const SurfaceDraw*>> by_distance;  // kept, so that a frame does not allocate
 
   core::Status Make() {
     if (const auto status = surface_drawer.Make(looks); !status) return status;
@@ -77,6 +80,24 @@ struct Renderer::Content {
   }
 
   bool IsClear(const Surface& surface) const { return looks[surface.material].opacity < 1.0f; }
+
+  /// The opaque surfaces by distance, so that what near ones hide is not shaded. What the lens is inside of comes last.
+  std::span<const std::pair<double, const SurfaceDraw*>> OrderOpaque(const Frame& frame) {
+    by_distance.clear();
+    for (const SurfaceDraw& draw : frame.surfaces) {
+      const Surface* surface = surfaces.Find(draw.surface);
+      if (surface == nullptr || IsClear(*surface)) continue;
+      const geometry::Box& box = surface->box;
+      const Vec3 lens = math::Inverse(draw.X_world_surface) * frame.camera.X_world_camera.translation;
+      const bool is_inside = lens.x > box.min.x && lens.x < box.max.x && lens.y > box.min.y &&
+                             lens.y < box.max.y && lens.z > box.min.z && lens.z < box.max.z;
+      by_distance.emplace_back(is_inside ? std::numeric_limits<double>::infinity()
+                                         : math::Distance(lens, 0.5 * (box.min + box.max)),
+                               &draw);
+    }
+    std::sort(by_distance.begin(), by_distance.end());
+    return by_distance;
+  }
 
   void DrawSurface(const Surface& surface, const Pose& X_camera_surface, const Vec3& scale = {1, 1, 1}) {
     surface_drawer.Draw(surface, X_camera_surface, scale, looks[surface.material]);
@@ -93,11 +114,8 @@ struct Renderer::Content {
     glDepthRange(0.001, kOverlayDepth);
     for (const Arrow& arrow : frame.arrows) DrawArrow(arrow, viewport.X_camera_world);
     glDepthRange(kOverlayDepth, 1.0);
-    for (const SurfaceDraw& draw : frame.surfaces) {
-      const Surface* surface = surfaces.Find(draw.surface);
-      if (surface != nullptr && !IsClear(*surface))
-        DrawSurface(*surface, viewport.X_camera_world * draw.X_world_surface);
-    }
+    for (const auto& [distance, draw] : OrderOpaque(frame))
+      DrawSurface(*surfaces.Find(draw->surface), viewport.X_camera_world * draw->X_world_surface);
     glDisable(GL_CULL_FACE);  // blobs face the eye
     fine.DrawBlobs(looks, frame.blobs, viewport);
     glEnable(GL_CULL_FACE);

@@ -88,6 +88,7 @@ Surface* SurfaceStore::Find(SurfaceId id) {
 void SurfaceStore::UploadMoving(Surface& surface, std::span<const Vec3> positions,
                                 std::span<const Vec3> normals) {
   surface.has_moved = true;
+  surface.box = geometry::CalcBox(positions);
   staging_.resize(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i)
     staging_[i] = {ToFloat(positions[i]), ToFloat(normals[i])};

@@ -25,6 +25,7 @@ struct Surface {
   bool has_moved = false;  ///< since then
   GLsizei index_count = 0;
   std::size_t vertex_count = 0;
+  geometry::Box box;  ///< around its vertices, in its own frame [m]
 };
 
 /// Attributes of a vertex: 0 position, 1 normal, 2 rest position and ambient_occlusion, 3 marks,

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -311,7 +310,6 @@ struct LaparoscopeView::Content {
     strands->FindRaw(snapshot, raw_rows);
     film.SetRaw(raw_rows);
     WetGround(film);
-    // small surfaces first: they mostly lie in front, and what is hidden costs nothing
     for (std::size_t i = 0; i < tubes.size(); ++i) {
       TubeShape& tube = tubes[i];
       tube.Update(snapshot, film);
@@ -320,12 +318,7 @@ struct LaparoscopeView::Content {
       frame.surfaces.push_back({tube.Surface(), {}, tube_labels[i]});
       if (options.quality == render::Quality::kHigh) tube.AddRemnants(frame);
     }
-    std::vector<std::size_t> order(organs.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return organs[a].Positions().size() < organs[b].Positions().size();
-    });
-    for (const std::size_t i : order) {
+    for (std::size_t i = 0; i < organs.size(); ++i) {
       organs[i].Update(snapshot, film);
       organs[i].Upload(renderer, memory);
       frame.surfaces.push_back({organs[i].Surface(), {}, organ_labels[i]});
