@@ -104,14 +104,16 @@ core::Status Pool::Content::DoStep(std::int32_t id) {
 
 /// The thread's own oldest job, or the newest of whoever has most left. With `mutex` held.
 std::optional<std::int32_t> Pool::Content::TakeJob(std::size_t thread) {
-  auto from = jobs.begin() + static_cast<std::ptrdiff_t>(thread);
-  const bool is_own = !from->empty();
-  if (!is_own)
-    from = std::max_element(jobs.begin(), jobs.end(),
-                            [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  if (from->empty()) return {};
-  const std::int32_t id = is_own ? from->front() : from->back();
-  is_own ? from->pop_front() : from->pop_back();
+  if (std::deque<std::int32_t>& own = jobs[thread]; !own.empty()) {
+    const std::int32_t id = own.front();
+    own.pop_front();
+    return id;
+  }
+  std::deque<std::int32_t>& most = *std::max_element(
+      jobs.begin(), jobs.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (most.empty()) return {};
+  const std::int32_t id = most.back();
+  most.pop_back();
   return id;
 }
 

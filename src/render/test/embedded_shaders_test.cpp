@@ -140,7 +140,7 @@ TEST_F(EmbeddedShaders, EachProgramIsGlslEs30) {
   ASSERT_TRUE(renderer_->DrawGeometry(frame, {}, kWidth, kHeight, picture).ok());
 
   const std::vector<Sources> programs = ReadPrograms();
-  // tissue twice, tools, what is clear, the fine, mask, five ways to smooth, glow, geometry, two of figures
+  // tissue twice, tools, what is clear, the fine, mask, four ways to smooth, glow, geometry, two of figures
   EXPECT_EQ(programs.size(), 14u);
   const EmbeddedContext embedded;
   ASSERT_TRUE(embedded.IsCurrent());
