@@ -25,6 +25,7 @@ constexpr double kFacing = 0.006;                        // worth of wall that f
 constexpr double kShaftClear = 0.006, kShaftWay = 0.10;  // of the shaft, and the length that is looked at [m]
 constexpr double kSameHold = 0.004;                      // [m]
 constexpr double kInfundibulum = 0.012;                  // of the gallbladder, from the neck on [m]
+constexpr double kOffBed = 0.1;  // of the bed's fibres: with fewer the gallbladder hangs free [-]
 constexpr double kLeastFlap = 0.012,
                  kMostFlap = 0.035;  // of a hold from where it peels off, along what is free [m]
 
@@ -139,6 +140,10 @@ std::vector<std::uint32_t> CholecystectomySurgeon::BedStrands(double share) cons
     if (is_bed && along(i) <= first + share * (last - first)) found.push_back(i);
   }
   return found;
+}
+
+bool CholecystectomySurgeon::HangsFree(const Snapshot& seen) const {
+  return ShareLeft(seen, BedStrands(1.0)) < kOffBed;
 }
 
 double CholecystectomySurgeon::ShareLeft(const Snapshot& seen,

@@ -2,6 +2,7 @@
 // The operation, part by part; each part looks at what has come of it and goes on until it is enough.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "cholecystectomy_surgeon.h"
@@ -20,7 +21,8 @@ constexpr double kBesideView = 0.05;    // of a tool, out of the way of the view
 constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
 /// Of the hold about the duct, so that tools come to the other side of the triangle [m].
 constexpr double kOpenNeck = 0.014;
-constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
+constexpr double kOutOfWay = 0.050;  // of a gallbladder that hangs free, off the hook's way [m]
+constexpr double kPeelShare = 0.2;   // of the bed's fibres that are left: where the gallbladder peels off [-]
 /// How far the flap is folded back at first [m], and how steeply [-].
 constexpr double kFold = 0.030, kFoldUp = 0.6;
 constexpr double kOutOfTheWay = 0.080;  // of a tool that waits while the bag leaves [m]
@@ -132,10 +134,25 @@ void CholecystectomySurgeon::CheckTriangle(const SurgeonAct& act, const Snapshot
     // the front first
     for (const std::uint32_t i : left)
       order.push_back(-0.25 * (known_.rest[known_.strands[i].a] + known_.rest[known_.strands[i].b]).z);
+    DissectionGoal goal{"the hepatocystic triangle", left, order, 1.0, DissectionGoal::Until::kTriangleClear};
+    if (HangsFree(seen)) SwingOutOfWay(seen, goal);
     Take(ToolKind::kHook);
-    Dissect({"the hepatocystic triangle", left, order, 1.0, DissectionGoal::Until::kTriangleClear});
+    Dissect(std::move(goal));
   }
   ClearTriangle(act.count - 1, act.is_on);
+}
+
+/// A gallbladder that is off its bed stands before the triangle: the assistant lets go of it, and the left hand swings it by
+/// the fundus off the hook's way.
+void CholecystectomySurgeon::SwingOutOfWay(const Snapshot& seen, DissectionGoal& goal) {
+  Add(SurgeonAct::Kind::kAssist, "assistant: release", 4.0).command = AssistantCommand::kRelease;
+  goal.may = {HoldFilter::Kind::kFundus, std::numeric_limits<double>::infinity()};
+  HoldOn(Place::Of(Place::Kind::kGallbladder), kHoldTries, goal.may);
+  const Vec3 duct = TubePoint(seen, FindTube(TubeRole::kCysticDuct), 0.0);
+  const Vec3 in = math::Normalized(duct - hands_[kRight].Port());
+  const Vec3 off = seen.positions[known_.fundus] - duct;
+  goal.traction = kOutOfWay;
+  goal.way = math::Normalized(off - math::Dot(off, in) * in, known_.bed_normal);
 }
 
 /// Fat that neither tool comes to lies behind the duct or under the neck: the left hand turns the neck to one side, then to

@@ -144,8 +144,10 @@ class CholecystectomySurgeon final : public Surgeon {
   void ClearTriangle(int rounds, bool is_second_look = false);
   void PlanTriangle(const SurgeonAct& act, const Snapshot& seen);
   void CheckTriangle(const SurgeonAct& act, const Snapshot& seen);
+  void SwingOutOfWay(const Snapshot& seen, DissectionGoal& goal);
   void OpenTriangle(const SurgeonAct& act, const Snapshot& seen);
   void TurnNeck(const Snapshot& seen, int side, double by);
+  void SwingAround(const Snapshot& seen, int turn);
   void FreeFromFundus(int rounds);
   void PlanFundusFirst(const SurgeonAct& act, const Snapshot& seen);
   void BailOut(std::string reason);
@@ -195,6 +197,7 @@ class CholecystectomySurgeon final : public Surgeon {
                                          bool is_from_fundus = false) const;
   std::vector<double> BedOrder(const std::vector<std::uint32_t>& bed, bool is_from_fundus = false) const;
   Place MiddleOf(std::vector<std::uint32_t> strands) const;
+  bool HangsFree(const Snapshot& seen) const;
   double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
   TubeLine LineOf(const Snapshot& seen, std::size_t tube) const;
   std::vector<TubeLine> LinesOf(const Snapshot& seen) const;

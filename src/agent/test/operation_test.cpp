@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -200,6 +201,52 @@ TEST(Operation, WhoTakesOverBeginsWhereTheHandsAre) {
   EXPECT_LT(math::Distance(place(kRight), right), 5e-4);
   EXPECT_LT(math::Distance(seen.X_world_laparoscope.translation, eye), 5e-4);
   EXPECT_TRUE(seen.instruments[kLeft].is_grasping);
+}
+
+/// What the surgeon does about fat of the triangle that nothing parts, while the left hand seems to hold.
+struct AboutTheTriangle {
+  scene::AssistantCommand assistant = scene::AssistantCommand::kWait;
+  double left_moved = 0;  ///< farthest, while the hook works there at one time [m]
+};
+
+AboutTheTriangle PlayOnStillTriangle(bool is_bed_free) {
+  Simulation simulation = MakeOperation();
+  auto surgeon = MakeSurgeon("expert", OperationScene(), 1);
+  EXPECT_TRUE(surgeon.ok());
+  simulation.Step((*surgeon)->Act(simulation.GetSnapshot()));
+  Snapshot seen = simulation.GetSnapshot();
+  const auto strands = simulation.Strands();
+  for (std::size_t i = 0; is_bed_free && i < strands.size(); ++i) {
+    if (strands[i].kind == scene::StrandInfo::Kind::kBed) seen.operation.strand_is_intact[i] = 0;
+  }
+  seen.instruments[kLeft].is_grasping = true;
+  seen.instruments[kLeft].organ = scene::FindSurface(simulation.Surfaces(), roles::OrganRole::kGallbladder);
+  AboutTheTriangle found;
+  std::optional<Vec3> held;
+  for (int rest = 60 * 120; rest > 0 && !(*surgeon)->HasFinished(); ++seen.tick) {
+    const Input input = (*surgeon)->Act(seen);
+    seen.operation.assistant.is_holding = input.assistant == scene::AssistantCommand::kRetract;
+    if ((*surgeon)->Doing() != "dissect the hepatocystic triangle") {
+      held.reset();
+      continue;
+    }
+    const Vec3 left =
+        instrument::CalcToolPose(OperationScene()->instruments[kLeft].p_world_port, input.hands[kLeft])
+            .translation;
+    if (!held) held = left;
+    found.left_moved = std::max(found.left_moved, math::Distance(left, *held));
+    found.assistant = input.assistant;
+    --rest;
+  }
+  return found;
+}
+
+TEST(Operation, AFreeGallbladderIsSwungOutOfTheHooksWay) {
+  const AboutTheTriangle free = PlayOnStillTriangle(true), tied = PlayOnStillTriangle(false);
+  EXPECT_EQ(free.assistant, scene::AssistantCommand::kRelease);
+  EXPECT_GT(free.left_moved, 0.010);
+  EXPECT_EQ(tied.assistant, scene::AssistantCommand::kRetract);
+  EXPECT_LT(tied.left_moved, 0.001);
 }
 
 TEST(OperationWhole, AnExpertGoesFromTheFirstLookToTheBag) {

@@ -28,12 +28,14 @@ double CalcWantedExposure(std::span<const std::uint8_t> pixels, double exposure)
   int all = 0;
   double logs = 0;
   for (std::size_t i = 0; i + 3 < pixels.size(); i += 4) {
+    // nothing is drawn there: what is lit is as bright for that
+    if (pixels[i] == 0 && pixels[i + 1] == 0 && pixels[i + 2] == 0) continue;
     const double shown = (0.299 * pixels[i] + 0.587 * pixels[i + 1] + 0.114 * pixels[i + 2]) / 255.0;
     ++counts[static_cast<std::size_t>(std::clamp(255.0 * shown + 0.5, 0.0, 255.0))];
     logs += std::log(std::max(kDarkest, CalcLightShown(std::min(shown, 0.995))));
     ++all;
   }
-  if (all == 0 || counts[0] == all) return exposure;
+  if (all == 0) return exposure;
   const double middle = std::exp(logs / all) / exposure;
   int below = 0, bright = 0;
   while (bright < 255 && below + counts[static_cast<std::size_t>(bright)] < kBrightShare * all)

@@ -47,6 +47,10 @@ TEST(ExposureMeter, AsksForMoreInTheDarkAndLessInTheLight) {
   EXPECT_EQ(CalcWantedExposure(grey(1e4), 1.0), kLeastExposure);
   EXPECT_EQ(CalcWantedExposure(grey(0.002), 1.0), kMostExposure);
   EXPECT_EQ(CalcWantedExposure(grey(0), 1.3), 1.3) << "black tells nothing";
+  auto half = grey(0.17);
+  const auto black = grey(0);
+  half.insert(half.end(), black.begin(), black.end());
+  EXPECT_EQ(CalcWantedExposure(half, 1.0), middle) << "nor does what is drawn nowhere darken the rest";
   // a few burnt-out pixels hold it back
   std::vector<std::uint8_t> spotted = grey(0.17);
   std::fill_n(spotted.begin(), 4 * 10, std::uint8_t{250});

@@ -190,17 +190,14 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
     largest = Larger(tension, largest);
     stored = MulAdd(tension, stretch, stored);
     if constexpr (kHasStiffness) {
-      const Doubles bend = b * inverse * inverse;  // times the extent twice: b u u^T
-      const Doubles x = bend * along.x, y = bend * along.y, z = bend * along.z;
-      const DoubleSymmetric square = {x * along.x, x * along.y, x * along.z,
-                                      y * along.y, y * along.z, z * along.z};
-      StoreSymmetric(
-          pass.off_diagonal + std::size_t{step} * 6 * kSliceNodes + lane,
-          {across + square.xx, square.xy, square.xz, across + square.yy, square.yz, across + square.zz});
-      StoreFloats(pass.shift + entry, Larger(-across, none));
+      const Doubles root = Sqrt(b) * inverse;  // times the extent: b u u^T = v v^T
+      const DoubleVector v = {root * along.x, root * along.y, root * along.z};
+      float* const link = pass.links + std::size_t{step} * kSpringLinkFloats * kSliceNodes + lane;
+      StoreFloats(link, across), StoreFloats(link + kSliceNodes, v.x);
+      StoreFloats(link + 2 * kSliceNodes, v.y), StoreFloats(link + 3 * kSliceNodes, v.z);
       const Doubles firm = Larger(across, none);
-      block.xx += firm + square.xx, block.xy += square.xy, block.xz += square.xz;
-      block.yy += firm + square.yy, block.yz += square.yz, block.zz += firm + square.zz;
+      block.xx += firm + v.x * v.x, block.xy += v.x * v.y, block.xz += v.x * v.z;
+      block.yy += firm + v.y * v.y, block.yz += v.y * v.z, block.zz += firm + v.z * v.z;
     }
   }
   energy = MulAdd(AllDoubles(0.25), stored, energy);
@@ -263,7 +260,7 @@ void InvertBlocks(const LinkMatrix& m, float* inverse, std::uint32_t first_slice
       DoubleSymmetric block = LoadSymmetric(m.diagonal_excess + at);
       for (std::uint32_t step = m.table.starts[slice]; step < m.table.starts[slice + 1]; ++step) {
         const DoubleSymmetric link =
-            LoadSymmetric(m.off_diagonal + std::size_t{step} * 6 * kSliceNodes + lane);
+            LoadSymmetric(m.links + std::size_t{step} * kBlockFloats * kSliceNodes + lane);
         block.xx += link.xx, block.xy += link.xy, block.xz += link.xz;
         block.yy += link.yy, block.yz += link.yz, block.zz += link.zz;
       }

@@ -14,7 +14,15 @@ inline Vector AddTurn(const float* t, const Vector& d, const Vector& to) {
           MulAdd(d.x, y, MulAdd(-d.y, x, to.z))};
 }
 
-template <LinkPass kPass, bool kHasTurns = false>
+/// to + S d
+template <std::size_t kLinkFloats>
+inline Vector AddLink(const float* link, const Vector& d, const Vector& to) {
+  if constexpr (kLinkFloats == kBlockFloats) return MulAddSymmetric(link, d, to);
+  const Vector v = {Load(link + kSliceNodes), Load(link + 2 * kSliceNodes), Load(link + 3 * kSliceNodes)};
+  return MulAdd(MulAdd(v.z, d.z, MulAdd(v.y, d.y, v.x * d.x)), v, MulAdd(Load(link), d, to));
+}
+
+template <std::size_t kLinkFloats, LinkPass kPass, bool kHasTurns = false>
 void Multiply(const LinkMatrix& m, const Float4* x, const Float4* b, float factor, Float4* out,
               std::uint32_t first_slice, std::uint32_t last_slice) {
   for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
@@ -33,7 +41,8 @@ void Multiply(const LinkMatrix& m, const Float4* x, const Float4* b, float facto
       for (std::uint32_t step = m.table.starts[slice]; step < m.table.starts[slice + 1]; ++step) {
         const Vector along = GatherNodes(x, m.table.others + std::size_t{step} * kSliceNodes + lane) - here;
         if constexpr (kPass != LinkPass::kFollower)
-          force = MulAddSymmetric(m.off_diagonal + std::size_t{step} * 6 * kSliceNodes + lane, along, force);
+          force = AddLink<kLinkFloats>(m.links + std::size_t{step} * kLinkFloats * kSliceNodes + lane, along,
+                                       force);
         if constexpr (kHasTurns)
           force = AddTurn(m.follower + std::size_t{step} * 3 * kSliceNodes + lane, along, force);
       }
@@ -50,22 +59,30 @@ void Multiply(const LinkMatrix& m, const Float4* x, const Float4* b, float facto
   }
 }
 
-void MultiplyLinks(const LinkMatrix& matrix, LinkPass pass, const Float4* x, const Float4* b, float factor,
-                   Float4* out, std::uint32_t first_slice, std::uint32_t last_slice) {
+template <std::size_t kLinkFloats>
+void Multiply(const LinkMatrix& matrix, LinkPass pass, const Float4* x, const Float4* b, float factor,
+              Float4* out, std::uint32_t first, std::uint32_t last) {
   switch (pass) {
     case LinkPass::kStart:
-      return Multiply<LinkPass::kStart>(matrix, x, b, factor, out, first_slice, last_slice);
+      return Multiply<kLinkFloats, LinkPass::kStart>(matrix, x, b, factor, out, first, last);
     case LinkPass::kProduct:
       return matrix.follower == nullptr
-                 ? Multiply<LinkPass::kProduct>(matrix, x, b, factor, out, first_slice, last_slice)
-                 : Multiply<LinkPass::kProduct, true>(matrix, x, b, factor, out, first_slice, last_slice);
+                 ? Multiply<kLinkFloats, LinkPass::kProduct>(matrix, x, b, factor, out, first, last)
+                 : Multiply<kLinkFloats, LinkPass::kProduct, true>(matrix, x, b, factor, out, first, last);
     case LinkPass::kFollower:
-      return Multiply<LinkPass::kFollower, true>(matrix, x, b, factor, out, first_slice, last_slice);
+      return Multiply<kLinkFloats, LinkPass::kFollower, true>(matrix, x, b, factor, out, first, last);
     case LinkPass::kResidual:
-      return Multiply<LinkPass::kResidual>(matrix, x, b, factor, out, first_slice, last_slice);
+      return Multiply<kLinkFloats, LinkPass::kResidual>(matrix, x, b, factor, out, first, last);
     case LinkPass::kSmooth:
-      return Multiply<LinkPass::kSmooth>(matrix, x, b, factor, out, first_slice, last_slice);
+      return Multiply<kLinkFloats, LinkPass::kSmooth>(matrix, x, b, factor, out, first, last);
   }
+}
+
+void MultiplyLinks(const LinkMatrix& matrix, LinkPass pass, const Float4* x, const Float4* b, float factor,
+                   Float4* out, std::uint32_t first_slice, std::uint32_t last_slice) {
+  const auto multiply =
+      matrix.link_floats == kSpringLinkFloats ? Multiply<kSpringLinkFloats> : Multiply<kBlockFloats>;
+  multiply(matrix, pass, x, b, factor, out, first_slice, last_slice);
 }
 
 inline Vector LoadRow(const float* from, std::size_t stride) {

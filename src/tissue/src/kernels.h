@@ -33,12 +33,17 @@ struct SliceTable {
   const std::uint32_t* others;  // (steps * kSliceNodes)
 };
 
+/// Floats of a link's stiffness S: a symmetric block as xx, xy, xz, yy, yz, zz; or of one spring, whose block is
+/// a I + v v^T, as a, v_x, v_y, v_z. Passes wait for memory: the fewer, the faster.
+inline constexpr std::size_t kBlockFloats = 6, kSpringLinkFloats = 4;
+
 /// The stiffness K of a system of springs, in symmetric blocks of 3 x 3. Its off-diagonal blocks are K_ij = -S_ij, its
 /// diagonal blocks K_ii = G_i + sum_j S_ij, so that (K x)_i = G_i x_i + sum_j S_ij (x_i - x_j). Closed surfaces under
 /// pressure add their follower stiffness, sum_j t_ij x (x_j - x_i).
 struct LinkMatrix {
   SliceTable table;
-  const float* off_diagonal;     // (steps, 6, kSliceNodes): S as xx, xy, xz, yy, yz, zz
+  const float* links;            // (steps, link_floats, kSliceNodes): S
+  std::size_t link_floats;       // kBlockFloats or kSpringLinkFloats
   const float* diagonal_excess;  // (slices, 6, kSliceNodes): G, what the diagonal block has beyond sum S
   const float* inverse;   // (slices, 6, kSliceNodes): inverse of the node's own block; zero where it is held
   const float* is_free;   // (slices * kSliceNodes): 1, or 0 where the node is held
@@ -79,8 +84,7 @@ struct BalancePass {
   const Double4* position;       // (padded nodes) [m]
   Float4* residual;              // (padded nodes) out: force on the node [N], 0 where it is held
   bool has_stiffness;            // whether what follows is written
-  float* off_diagonal;           // (steps, 6, kSliceNodes) out: as in LinkMatrix
-  float* shift;                  // (entries) out: stabilising shift, see Linearisation, >= 0 [N/m]
+  float* links;                  // (steps, kSpringLinkFloats, kSliceNodes) out: as in LinkMatrix
   const float* diagonal_excess;  // (slices, 6, kSliceNodes)
   float* inverse;  // (slices, 6, kSliceNodes) out: of the node's own block, compression left out
 };
@@ -191,7 +195,8 @@ struct Kernels {
   void (*calc_follower_stiffness)(const FollowerPass& pass, std::uint32_t first_slice,
                                   std::uint32_t last_slice);
   BalanceSums (*balance)(const BalancePass& pass, std::uint32_t first_slice, std::uint32_t last_slice);
-  /// Inverses of the nodes' own blocks, diagonal excess + sum of off-diagonal blocks; 0 where a node is held or nothing holds it.
+  /// Inverses of the nodes' own blocks, diagonal excess + sum of links; 0 where a node is held or nothing holds it.
+  /// \pre matrix.link_floats == kBlockFloats
   void (*invert_blocks)(const LinkMatrix& matrix, float* inverse, std::uint32_t first_slice,
                         std::uint32_t last_slice);
   VectorKernels vectors;

@@ -25,9 +25,6 @@ constexpr double kLeastPivot = 1e-7;
 std::size_t DiagonalAt(std::uint32_t i) {
   return std::size_t{i / kSliceNodes} * 6 * kSliceNodes + i % kSliceNodes;
 }
-std::size_t OffDiagonalAt(std::size_t entry) {
-  return entry / kSliceNodes * 6 * kSliceNodes + entry % kSliceNodes;
-}
 /// Place of (row, column) among xx, xy, xz, yy, yz, zz.
 constexpr std::size_t kAt[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 
@@ -122,7 +119,7 @@ void LineSmoother::Reserve(double share) {
 }
 
 /// False where the matrix is not positive definite.
-bool LineSmoother::FactoriseOnce(const LinkLevel& level, std::span<const float> shift) noexcept {
+bool LineSmoother::FactoriseOnce(const LinkLevel& level, bool is_firm) noexcept {
   std::fill(factor_.begin(), factor_.end(), 0.0);
   for (std::size_t row = 0; row < nodes_.size(); ++row) {
     const std::uint32_t i = nodes_[row];
@@ -133,10 +130,8 @@ bool LineSmoother::FactoriseOnce(const LinkLevel& level, std::span<const float> 
       for (std::uint32_t step = 0; step < level.layout->RowSteps(i); ++step) {
         const std::size_t entry = level.layout->Entry(i, step);
         if (level.layout->others[entry] == i) break;
-        for (std::size_t v = 0; v < 6; ++v)
-          block[v] += static_cast<double>(level.off_diagonal[OffDiagonalAt(entry) + v * kSliceNodes]);
-        for (const std::size_t v : {0u, 3u, 5u})
-          block[v] += shift.empty() ? 0.0 : static_cast<double>(shift[entry]);
+        const std::array<float, 6> link = level.Link(entry, is_firm);
+        for (std::size_t v = 0; v < 6; ++v) block[v] += static_cast<double>(link[v]);
       }
     }
     for (std::size_t a = 0; a < 3; ++a) {
@@ -145,13 +140,10 @@ bool LineSmoother::FactoriseOnce(const LinkLevel& level, std::span<const float> 
   }
   for (const Link& link : links_) {
     if (level.is_free[nodes_[link.row]] == 0.0f || level.is_free[nodes_[link.column]] == 0.0f) continue;
-    const double added = shift.empty() ? 0.0 : static_cast<double>(shift[link.entry]);
+    const std::array<float, 6> block = level.Link(link.entry, is_firm);
     for (std::size_t a = 0; a < 3; ++a) {
-      for (std::size_t b = 0; b < 3; ++b) {
-        At(3 * link.row + a, 3 * link.column + b) -=
-            static_cast<double>(level.off_diagonal[OffDiagonalAt(link.entry) + kAt[a][b] * kSliceNodes]) +
-            (a == b ? added : 0.0);
-      }
+      for (std::size_t b = 0; b < 3; ++b)
+        At(3 * link.row + a, 3 * link.column + b) -= static_cast<double>(block[kAt[a][b]]);
     }
   }
   for (std::size_t row = 0; row < first_.size(); ++row) whole_[row] = factor_[row_starts_[row + 1] - 1];
@@ -174,8 +166,8 @@ bool LineSmoother::FactoriseOnce(const LinkLevel& level, std::span<const float> 
   return true;
 }
 
-void LineSmoother::Factorise(const LinkLevel& level, std::span<const float> shift) noexcept {
-  is_factorised_ = FactoriseOnce(level, {}) || FactoriseOnce(level, shift);
+void LineSmoother::Factorise(const LinkLevel& level) noexcept {
+  is_factorised_ = FactoriseOnce(level, false) || FactoriseOnce(level, true);
   if (!is_factorised_) return;
   for (std::size_t row = 0; row < first_.size(); ++row) {
     const std::size_t diagonal = row_starts_[row + 1] - 1;
@@ -192,20 +184,19 @@ void LineSmoother::Solve(const LinkLevel& level, const Float4* from, const Float
     const std::uint32_t i = nodes_[row];
     std::array<float, 3> r = {b[i].x, b[i].y, b[i].z};
     if (from != nullptr) {
-      const auto subtract = [&](const float* m, float dx, float dy, float dz) {
-        r[0] -= m[0] * dx + m[kSliceNodes] * dy + m[2 * kSliceNodes] * dz;
-        r[1] -= m[kSliceNodes] * dx + m[3 * kSliceNodes] * dy + m[4 * kSliceNodes] * dz;
-        r[2] -= m[2 * kSliceNodes] * dx + m[4 * kSliceNodes] * dy + m[5 * kSliceNodes] * dz;
+      const auto subtract = [&](const float* m, std::size_t stride, float dx, float dy, float dz) {
+        r[0] -= m[0] * dx + m[stride] * dy + m[2 * stride] * dz;
+        r[1] -= m[stride] * dx + m[3 * stride] * dy + m[4 * stride] * dz;
+        r[2] -= m[2 * stride] * dx + m[4 * stride] * dy + m[5 * stride] * dz;
       };
       const Float4& here = from[i];
-      subtract(level.diagonal_excess.data() + DiagonalAt(i), here.x, here.y, here.z);
+      subtract(level.diagonal_excess.data() + DiagonalAt(i), kSliceNodes, here.x, here.y, here.z);
       for (std::uint32_t step = 0; step < level.layout->RowSteps(i); ++step) {
         const std::size_t entry = level.layout->Entry(i, step);
         const std::uint32_t other = level.layout->others[entry];
         if (other == i) break;
         const Float4& there = from[other];
-        subtract(level.off_diagonal.data() + OffDiagonalAt(entry), here.x - there.x, here.y - there.y,
-                 here.z - there.z);
+        subtract(level.Link(entry).data(), 1, here.x - there.x, here.y - there.y, here.z - there.z);
       }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) values_[3 * row + axis] = level.is_free[i] * r[axis];

@@ -32,11 +32,9 @@ class LineSmoother {
 
   std::span<const std::uint32_t> Nodes() const { return nodes_; }
 
-  /// Factorises the chains' own part of the matrix.
-  ///
-  /// \param shift  (entries) added to each link where the matrix is not positive definite without it [N/m]
+  /// Factorises the chains' own part of the matrix; with firm links (LinkLevel::Link) where it is not positive definite.
   /// \note Real-time safe.
-  void Factorise(const LinkLevel& level, std::span<const float> shift) noexcept;
+  void Factorise(const LinkLevel& level) noexcept;
 
   /// K_chains^-1 (b - K from) on the chains' nodes, for Add(): beside a pass over all nodes that leaves `from` alone.
   ///
@@ -53,7 +51,7 @@ class LineSmoother {
     std::uint32_t entry;
   };
   void OrderChain(const NodeGraph& graph, std::uint32_t root, std::uint32_t round);
-  bool FactoriseOnce(const LinkLevel& level, std::span<const float> shift) noexcept;
+  bool FactoriseOnce(const LinkLevel& level, bool is_firm) noexcept;
   double& At(std::size_t row, std::size_t column) { return factor_[row_starts_[row] + column - first_[row]]; }
 
   std::vector<std::uint32_t> nodes_;  // in the order of elimination

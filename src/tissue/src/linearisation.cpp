@@ -6,6 +6,7 @@
 
 #include "node_force.h"
 #include "node_vectors.h"
+#include "trocar/core/assert.h"
 #include "trocar/core/spare_capacity.h"
 
 namespace trocar::tissue {
@@ -164,7 +165,6 @@ void AddContactLinks(const OrderedLoad& load, const Balance& balance, const Floa
 void Linearisation::SetModel(const OrderedModel& model) {
   model_ = &model;
   nodes_.assign(model.layout.PaddedNodes() * kBalanceValues, 0.0);
-  shift_.assign(model.layout.Steps() * kSliceNodes, 0.0f);
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     for (int axis = 0; axis < 3; ++axis)
       At(i, static_cast<BalanceValue>(kRestX + axis)) = model.rest[i][axis];
@@ -175,9 +175,8 @@ void Linearisation::SetModel(const OrderedModel& model) {
   }
 }
 
-void Linearisation::Reserve(std::size_t nodes, std::size_t entries, std::size_t strand_ends) {
+void Linearisation::Reserve(std::size_t nodes, std::size_t strand_ends) {
   nodes_.reserve(nodes * kBalanceValues);
-  shift_.reserve(entries);
   strand_nodes_.reserve(std::min(nodes, strand_ends));
 }
 
@@ -323,22 +322,22 @@ void Linearisation::CalcBalance(const Kernels& kernels, Workers& workers, std::s
 
 void Linearisation::Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                               LinkLevel& level, Balance& balance) noexcept {
+  TROCAR_ASSERT(level.link_floats == kSpringLinkFloats);
   const double energy = AddStrandsAndContacts(position, balance);
   AddContactDiagonal(level, balance);
   Run(kernels, workers,
       {.position = position.data(),
        .has_stiffness = true,
-       .off_diagonal = level.off_diagonal.data(),
-       .shift = shift_.data(),
+       .links = level.links.data(),
        .diagonal_excess = level.diagonal_excess.data(),
        .inverse = level.inverse.data()},
       energy, balance);
   for (const auto& strand : model_->strands) {
     const double k = strand_is_intact_[strand.strand] ? load_->stiffness_scale * strand.stiffness : 0.0;
-    float* const block =
-        level.off_diagonal.data() + strand.entry / kSliceNodes * 6 * kSliceNodes + strand.entry % kSliceNodes;
-    for (std::size_t v = 0; v < 6; ++v)
-      block[v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? static_cast<float>(k) : 0.0f;
+    float* const link = level.links.data() + strand.entry / kSliceNodes * kSpringLinkFloats * kSliceNodes +
+                        strand.entry % kSliceNodes;
+    for (std::size_t v = 0; v < kSpringLinkFloats; ++v)
+      link[v * kSliceNodes] = v == 0 ? static_cast<float>(k) : 0.0f;
   }
 }
 

@@ -96,8 +96,8 @@ class Linearisation {
   /// \param springs  of the model; must outlive this
   explicit Linearisation(const OrderedSprings& springs) : springs_(&springs) {}
 
-  /// Capacity for a model of so many nodes, entries and ends of strands.
-  void Reserve(std::size_t nodes, std::size_t entries, std::size_t strand_ends);
+  /// Capacity for a model of so many nodes and ends of strands.
+  void Reserve(std::size_t nodes, std::size_t strand_ends);
   /// Takes a model, or a change of it.
   /// \param model  must outlive this
   /// \note Allocates nothing where Reserve() was enough.
@@ -117,14 +117,11 @@ class Linearisation {
   /// \note Real-time safe.
   void CalcBalance(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                    Balance& balance) noexcept;
-  /// The same, and the stiffness: off_diagonal, diagonal_excess and inverse of `level`. Of the contacts' stiffness only what
+  /// The same, and the stiffness: links, diagonal_excess and inverse of `level`. Of the contacts' stiffness only what
   /// each does to its corners alone is in the diagonal excess.
   /// \note Real-time safe.
   void Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                  LinkLevel& level, Balance& balance) noexcept;
-  /// The stabilising shift of each link, (entries), of the last Linearise(): a compressed spring softens its ends across, and
-  /// the matrix with this added in every direction is positive definite [N/m].
-  std::span<const float> StabilisingShift() const { return shift_; }
 
  private:
   double& At(std::uint32_t node, BalanceValue value) {
@@ -142,7 +139,6 @@ class Linearisation {
   const OrderedLoad* load_ = nullptr;
   std::span<const std::uint8_t> strand_is_intact_;
   AlignedVector<double> nodes_;              // (slices, kBalanceValues, kSliceNodes)
-  AlignedVector<float> shift_;               // (entries) [N/m]
   std::vector<std::uint32_t> strand_nodes_;  // those with strands, each once
 };
 

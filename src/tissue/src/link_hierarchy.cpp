@@ -40,26 +40,17 @@ std::size_t OffDiagonalAt(std::size_t entry) {
   return entry / kSliceNodes * 6 * kSliceNodes + entry % kSliceNodes;
 }
 
-Symmetric3 ReadSymmetric(const AlignedVector<float>& values, std::size_t at) {
+Symmetric3 ReadSymmetric(const float* values, std::size_t stride) {
   Symmetric3 m;
-  for (std::size_t i = 0; i < 6; ++i) m[i] = static_cast<double>(values[at + i * kSliceNodes]);
+  for (std::size_t i = 0; i < 6; ++i) m[i] = static_cast<double>(values[i * stride]);
   return m;
 }
 
-/// to += scale (link + shift), six values kStride apart.
-///
-/// \param links, shift  of the level; shift null where there is none
+/// to += scale link, six values kStride apart.
 template <std::size_t kStride>
-inline void AddLink(const float* links, const float* shift, std::size_t entry, float scale,
-                    float* to) noexcept {
-  const float* const from = links + OffDiagonalAt(entry);
-  const float added = shift == nullptr ? 0.0f : shift[entry];
-  to[0] += scale * (from[0] + added);
-  to[kStride] += scale * from[kSliceNodes];
-  to[2 * kStride] += scale * from[2 * kSliceNodes];
-  to[3 * kStride] += scale * (from[3 * kSliceNodes] + added);
-  to[4 * kStride] += scale * from[4 * kSliceNodes];
-  to[5 * kStride] += scale * (from[5 * kSliceNodes] + added);
+inline void AddLink(const LinkLevel& level, std::size_t entry, float scale, float* to) noexcept {
+  const std::array<float, 6> link = level.Link(entry, true);
+  for (std::size_t v = 0; v < 6; ++v) to[v * kStride] += scale * link[v];
 }
 
 /// Which nodes are held or have a held neighbour: few are.
@@ -80,7 +71,7 @@ void MirrorLinks(const LevelTopology& topology, LinkLevel& level, std::uint32_t 
   const SliceLayout& layout = topology.layout;
   const std::size_t last = std::size_t{layout.starts[last_slice]} * kSliceNodes;
   const std::uint32_t* const mirror = topology.mirror_entry.data();
-  float* const links = level.off_diagonal.data();
+  float* const links = level.links.data();
   for (std::size_t entry = std::size_t{layout.starts[first_slice]} * kSliceNodes; entry < last; ++entry) {
     if (mirror[entry] == LevelTopology::kNoEntry) continue;
     const float* const from = links + OffDiagonalAt(mirror[entry]);
@@ -93,7 +84,7 @@ void MirrorLinks(const LevelTopology& topology, LinkLevel& level, std::uint32_t 
 void LinkLevel::SetLayout(const SliceLayout& of) {
   layout = &of;
   const std::size_t padded = of.PaddedNodes(), entries = of.Steps() * kSliceNodes;
-  off_diagonal.assign(6 * entries, 0.0f);
+  links.assign(link_floats * entries, 0.0f);
   diagonal_excess.assign(6 * padded, 0.0f), inverse.assign(6 * padded, 0.0f), is_free.assign(padded, 0.0f);
   x.assign(padded, {}), b.assign(padded, {}), r.assign(padded, {});
   near_held.assign(of.node_count, 0);
@@ -102,15 +93,15 @@ void LinkLevel::SetLayout(const SliceLayout& of) {
 void LinkLevel::Reserve(const LevelCapacity& capacity) {
   const auto [nodes, steps] = capacity;
   near_held.reserve(nodes);
-  off_diagonal.reserve(6 * steps * kSliceNodes);
+  links.reserve(link_floats * steps * kSliceNodes);
   for (auto* blocks : {&diagonal_excess, &inverse}) blocks->reserve(6 * nodes);
   is_free.reserve(nodes);
   for (auto* vector : {&x, &b, &r}) vector->reserve(nodes);
 }
 
 LinkMatrix LinkLevel::Matrix() const {
-  return {layout->Table(), off_diagonal.data(), diagonal_excess.data(),
-          inverse.data(),  is_free.data(),      nullptr};
+  return {layout->Table(), links.data(),   link_floats, diagonal_excess.data(),
+          inverse.data(),  is_free.data(), nullptr};
 }
 
 void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, LinkPass pass, const Float4* x,
@@ -126,6 +117,7 @@ LinkHierarchy::LinkHierarchy(const HierarchyTopology& topology, const NodeGraph&
   const std::vector<LevelCapacity> capacities = CalcLevelCapacities(topology, spare_share);
   levels_.reserve(kMaxLevels);
   levels_.resize(capacities.size());
+  levels_.front().link_floats = kSpringLinkFloats;
   for (std::size_t at = 0; at < capacities.size(); ++at) levels_[at].Reserve(capacities[at]);
   constexpr std::size_t kMostUnknowns = 3 * kDirectNodes;
   for (auto* matrix : {&factor_, &rows_}) matrix->reserve(kMostUnknowns * kMostUnknowns);
@@ -148,7 +140,7 @@ void LinkHierarchy::SetTopology(const HierarchyTopology& topology, const NodeGra
 
 /// Each chunk of aggregates gathers from its members, one after the other: no two threads write the same number, and
 /// sums do not depend on who forms them. A link is gathered by the lower of its two aggregates, and copied to the other.
-void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const float> shift) noexcept {
+void LinkHierarchy::Coarsen(Workers& workers, std::size_t at) noexcept {
   const LevelTopology& transfer = topology_->levels[at];
   LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
@@ -157,16 +149,13 @@ void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const fl
   workers.Run((slices + size - 1) / size, [&](std::uint32_t chunk) {
     const std::uint32_t first = chunk * size, last = std::min(slices, first + size);
     constexpr std::size_t kBlock = 6 * kSliceNodes;
-    std::fill(next.off_diagonal.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout->starts[first]),
-              next.off_diagonal.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout->starts[last]),
-              0.0f);
+    std::fill(next.links.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout->starts[first]),
+              next.links.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout->starts[last]), 0.0f);
     const std::uint32_t end = std::min(next.Size(), last * kSliceNodes);
-    for (std::uint32_t a = first * kSliceNodes; a < end; ++a) GatherDiagonal(at, a, shift);
+    for (std::uint32_t a = first * kSliceNodes; a < end; ++a) GatherDiagonal(at, a);
     const float* const is_free = level.is_free.data();
     const std::uint8_t* const near_held = level.near_held.data();
-    const float* const links = level.off_diagonal.data();
-    const float* const shift_of = shift.empty() ? nullptr : shift.data();
-    float* const coarse_links = next.off_diagonal.data();
+    float* const coarse_links = next.links.data();
     const std::uint32_t* const others = level.layout->others.data();
     for (const CoarsenedLink& link :
          std::span(transfer.coarsened)
@@ -174,7 +163,7 @@ void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const fl
                       transfer.coarsened_starts[chunk + 1] - transfer.coarsened_starts[chunk])) {
       if (near_held[link.node] != 0 && (is_free[link.node] == 0.0f || is_free[others[link.entry]] == 0.0f))
         continue;
-      AddLink<kSliceNodes>(links, shift_of, link.entry, static_cast<float>(kCoarseLinkScale),
+      AddLink<kSliceNodes>(level, link.entry, static_cast<float>(kCoarseLinkScale),
                            coarse_links + OffDiagonalAt(link.coarse_entry));
     }
   });
@@ -184,8 +173,7 @@ void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const fl
 }
 
 /// The diagonal excess of an aggregate: that of its members, and their links to held nodes.
-void LinkHierarchy::GatherDiagonal(std::size_t at, std::uint32_t aggregate,
-                                   std::span<const float> shift) noexcept {
+void LinkHierarchy::GatherDiagonal(std::size_t at, std::uint32_t aggregate) noexcept {
   const LevelTopology& transfer = topology_->levels[at];
   const LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
@@ -199,8 +187,7 @@ void LinkHierarchy::GatherDiagonal(std::size_t at, std::uint32_t aggregate,
     for (std::uint32_t h = 0; h < level.layout->RowSteps(i); ++h) {
       const std::size_t entry = level.layout->Entry(i, h);
       if (level.layout->others[entry] == i) break;
-      if (level.is_free[level.layout->others[entry]] == 0.0f)
-        AddLink<1>(level.off_diagonal.data(), shift.empty() ? nullptr : shift.data(), entry, 1.0f, excess);
+      if (level.is_free[level.layout->others[entry]] == 0.0f) AddLink<1>(level, entry, 1.0f, excess);
     }
   }
   next.is_free[aggregate] = is_free;
@@ -208,10 +195,9 @@ void LinkHierarchy::GatherDiagonal(std::size_t at, std::uint32_t aggregate,
     next.diagonal_excess[DiagonalAt(aggregate) + v * kSliceNodes] = excess[v];
 }
 
-void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers,
-                                 std::span<const float> shift) noexcept {
+void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers) noexcept {
   for (std::size_t at = 0; at + 1 < topology_->level_count; ++at) {
-    Coarsen(workers, at, at == 0 ? shift : std::span<const float>());
+    Coarsen(workers, at);
     LinkLevel& next = levels_[at + 1];
     const LinkMatrix matrix = next.Matrix();
     ForEachSliceChunk(workers, next.layout->Slices(), [&](std::uint32_t first, std::uint32_t last) {
@@ -237,12 +223,12 @@ void LinkHierarchy::InvertCoarsest() noexcept {
       add(i, i, {1, 0, 0, 1, 0, 1}, 1.0);
       continue;
     }
-    add(i, i, ReadSymmetric(level.diagonal_excess, DiagonalAt(i)), 1.0);
+    add(i, i, ReadSymmetric(level.diagonal_excess.data() + DiagonalAt(i), kSliceNodes), 1.0);
     for (std::uint32_t step = 0; step < level.layout->RowSteps(i); ++step) {
       const std::size_t entry = level.layout->Entry(i, step);
       const std::uint32_t other = level.layout->others[entry];
       if (other == i) continue;
-      const Symmetric3 link = ReadSymmetric(level.off_diagonal, OffDiagonalAt(entry));
+      const Symmetric3 link = ReadSymmetric(level.Link(entry).data(), 1);
       add(i, i, link, 1.0);
       if (level.is_free[other] != 0.0f) add(i, other, link, -1.0);
     }

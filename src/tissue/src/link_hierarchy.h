@@ -10,6 +10,8 @@
 /// 1995 (scaling).
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,12 +31,23 @@ using math::Symmetric3;
 /// One level's matrix and the vectors of a cycle.
 struct LinkLevel {
   const SliceLayout* layout = nullptr;
-  AlignedVector<float> off_diagonal, diagonal_excess, inverse, is_free;  // as in LinkMatrix
-  std::vector<std::uint8_t> near_held;                                   // (n) held, or next to one that is
-  AlignedVector<Float4> x, b, r;                                         // (padded nodes)
+  AlignedVector<float> links, diagonal_excess, inverse, is_free;  // as in LinkMatrix
+  std::size_t link_floats = kBlockFloats;
+  std::vector<std::uint8_t> near_held;  // (n) held, or next to one that is
+  AlignedVector<Float4> x, b, r;        // (padded nodes)
 
   std::uint32_t Size() const { return layout->node_count; }
   LinkMatrix Matrix() const;
+  /// S of an entry as a block. \param is_firm  what softens a compressed spring's ends across is left out
+  std::array<float, 6> Link(std::size_t entry, bool is_firm = false) const noexcept {
+    const float* const from =
+        links.data() + entry / kSliceNodes * link_floats * kSliceNodes + entry % kSliceNodes;
+    const auto at = [from](std::size_t value) { return from[value * kSliceNodes]; };
+    if (link_floats == kBlockFloats) return {at(0), at(1), at(2), at(3), at(4), at(5)};
+    const float a = is_firm ? std::max(at(0), 0.0f) : at(0);
+    return {a + at(1) * at(1), at(1) * at(2), at(1) * at(3),
+            a + at(2) * at(2), at(2) * at(3), a + at(3) * at(3)};
+  }
   /// \param of  must outlive this
   void SetLayout(const SliceLayout& of);
   void Reserve(const LevelCapacity& capacity);
@@ -55,22 +68,18 @@ class LinkHierarchy {
   /// \note Allocates nothing where the spare share was enough.
   void SetTopology(const HierarchyTopology& topology, const NodeGraph& graph);
 
-  /// Matrix of the finest level: off_diagonal, diagonal_excess and is_free are the caller's to fill.
+  /// Matrix of the finest level, of springs: links, diagonal_excess and is_free are the caller's to fill.
   LinkLevel& Finest() { return levels_.front(); }
   const LinkLevel& Finest() const { return levels_.front(); }
   std::span<const LinkLevel> Levels() const { return std::span(levels_).first(topology_->level_count); }
 
-  /// Computes all coarser levels. Links may be indefinite where springs are compressed; here they count as
-  /// shift. The finest level, its inverse blocks included, is the caller's.
-  ///
-  /// \param shift  (entries) what is to be added to each finest link's stiffness, in every direction [N/m]
+  /// Computes all coarser levels, without what softens compressed springs across: such links may be indefinite. The finest
+  /// level, its inverse blocks included, is the caller's.
   /// \note Real-time safe.
-  void UpdateCoarse(const Kernels& kernels, Workers& workers, std::span<const float> shift) noexcept;
+  void UpdateCoarse(const Kernels& kernels, Workers& workers) noexcept;
   /// Follows a change of the finest level without the coarser ones.
   /// \note Real-time safe.
-  void UpdateLineSmoother(std::span<const float> shift) noexcept {
-    line_smoother_.Factorise(levels_.front(), shift);
-  }
+  void UpdateLineSmoother() noexcept { line_smoother_.Factorise(levels_.front()); }
 
   /// x = about K^-1 b, a V-cycle with one damped block-Jacobi step on either side: symmetric and, where the
   /// matrix is, positive definite. Held nodes get 0.
@@ -82,8 +91,8 @@ class LinkHierarchy {
   void Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b, Float4* x) noexcept;
   void Smooth(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* from, const Float4* b,
               Float4* x) noexcept;
-  void Coarsen(Workers& workers, std::size_t at, std::span<const float> shift) noexcept;
-  void GatherDiagonal(std::size_t at, std::uint32_t aggregate, std::span<const float> shift) noexcept;
+  void Coarsen(Workers& workers, std::size_t at) noexcept;
+  void GatherDiagonal(std::size_t at, std::uint32_t aggregate) noexcept;
   void InvertCoarsest() noexcept;
   void SolveCoarsest(const Float4* b, Float4* x) const noexcept;
 

@@ -33,8 +33,9 @@ LocalSolve::LocalSolve(const OrderedModel& whole, const OrderedSprings& springs)
   for (auto* values : {&springs_.stiffness, &springs_.rest_length}) values->reserve(links);
   model_.rest.reserve(n), model_.shape.reserve(n), model_.strands.reserve(links);
   load_.constant.reserve(n), load_.is_free.reserve(n), load_.contacts.reserve(kMaxContacts);
+  level_.link_floats = kSpringLinkFloats;
   level_.Reserve({n, links / kSliceNodes});
-  linearisation_.Reserve(n, links, n);
+  linearisation_.Reserve(n, n);
   balance_.residual.reserve(n), balance_.is_pressing.resize(kMaxContacts);
   for (auto* vector : {&position_, &start_, &first_}) vector->reserve(n);
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->reserve(n);

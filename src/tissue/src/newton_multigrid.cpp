@@ -68,8 +68,7 @@ NewtonMultigrid::NewtonMultigrid(const SolverModel& made, const OrderedSprings& 
       preconditioner_(made.ordered, hierarchy_) {
   const OrderedModel& model = *model_;
   const std::size_t n = model.Size(), padded = model.layout.PaddedNodes();
-  linearisation_.Reserve(padded, core::AddSpare(model.layout.Steps() * kSliceNodes, spare_share),
-                         core::AddSpare(model.strands.size(), spare_share));
+  linearisation_.Reserve(padded, core::AddSpare(model.strands.size(), spare_share));
   linearisation_.SetModel(model);
   load_.constant.resize(n);
   load_.is_free.resize(n);
@@ -210,7 +209,7 @@ void NewtonMultigrid::Linearise(Context& c) noexcept {
 }
 
 void NewtonMultigrid::UpdateCoarseLevels(Context& c) noexcept {
-  hierarchy_.UpdateCoarse(c.kernels, c.workers, linearisation_.StabilisingShift());
+  hierarchy_.UpdateCoarse(c.kernels, c.workers);
   preconditioner_.Invalidate();
   c.moved = 0;
 }
@@ -219,7 +218,7 @@ void NewtonMultigrid::UpdateCoarseLevels(Context& c) noexcept {
 void NewtonMultigrid::Estimate(Context& c) noexcept {
   preconditioner_.SetActive(c.constraints);
   c.workers.Run(2 + static_cast<std::uint32_t>(preconditioner_.Count()), [&](std::uint32_t part) {
-    if (part == 0) return hierarchy_.UpdateLineSmoother(linearisation_.StabilisingShift());
+    if (part == 0) return hierarchy_.UpdateLineSmoother();
     if (part == 1) {
       std::copy(balance_.residual.begin(), balance_.residual.end(), r_.begin());
       return;

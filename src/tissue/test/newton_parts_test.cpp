@@ -105,25 +105,34 @@ double Norm(const Float4& v) {
 std::vector<float> Values(const LinkHierarchy& hierarchy) {
   std::vector<float> all;
   for (const LinkLevel& level : hierarchy.Levels()) {
-    for (const auto* values : {&level.off_diagonal, &level.diagonal_excess, &level.inverse, &level.is_free})
+    for (const auto* values : {&level.links, &level.diagonal_excess, &level.inverse, &level.is_free})
       all.insert(all.end(), values->begin(), values->end());
   }
   return all;
 }
 
-/// Value v of the symmetric matrix of a node or an entry.
-double ValueAt(const AlignedVector<float>& values, std::size_t at, std::size_t v) {
-  return static_cast<double>(values[at / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + at % kSliceNodes]);
+/// Value v of the `floats` of a node or an entry.
+double ValueAt(const AlignedVector<float>& values, std::size_t at, std::size_t v, std::size_t floats = 6) {
+  return static_cast<double>(
+      values[at / kSliceNodes * floats * kSliceNodes + v * kSliceNodes + at % kSliceNodes]);
+}
+
+/// What an entry adds to the coarser level: a spring nothing that would soften its ends across.
+std::array<double, 6> StableBlock(const LinkLevel& level, std::size_t entry) {
+  std::array<double, 6> block;
+  for (std::size_t v = 0; v < 6; ++v)
+    block[v] = v < level.link_floats ? ValueAt(level.links, entry, v, level.link_floats) : 0.0;
+  if (level.link_floats == kBlockFloats) return block;
+  const double across = std::max(0.0, block[0]), x = block[1], y = block[2], z = block[3];
+  return {across + x * x, x * y, x * z, across + y * y, y * z, across + z * z};
 }
 
 // Oracle: two aggregates' members, pair by pair. What joins a member to a held node holds its aggregate.
 TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
-  constexpr std::size_t kDiagonal[] = {0, 3, 5};
   const Patient patient;
   const TissueModel model = MakeTissueModel(patient.definition);
   Evaluated evaluated(model, {}, Shake(model, 1e-3, 3), Levels().back());
-  evaluated.hierarchy.UpdateCoarse(*evaluated.kernels, evaluated.workers,
-                                   evaluated.linearisation.StabilisingShift());
+  evaluated.hierarchy.UpdateCoarse(*evaluated.kernels, evaluated.workers);
   const auto levels = evaluated.hierarchy.Levels();
   ASSERT_GE(levels.size(), 3u);
   for (std::size_t at = 0; at + 1 < levels.size(); ++at) {
@@ -140,10 +149,7 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
         const std::size_t entry = fine.layout->Entry(i, h);
         const std::uint32_t other = fine.layout->others[entry];
         if (other == i) break;
-        std::array<double, 6> link;
-        for (std::size_t v = 0; v < 6; ++v) link[v] = ValueAt(fine.off_diagonal, entry, v);
-        for (const std::size_t v : kDiagonal)
-          link[v] += at == 0 ? static_cast<double>(evaluated.linearisation.StabilisingShift()[entry]) : 0.0;
+        const std::array<double, 6> link = StableBlock(fine, entry);
         const bool is_held = fine.is_free[other] == 0.0f;
         held += is_held;
         if (!is_held && aggregate[other] == aggregate[i]) continue;
@@ -164,7 +170,7 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
         if (b == a) break;
         const std::array<double, 6> sum = links[{a, b}];
         for (std::size_t v = 0; v < 6; ++v) {
-          EXPECT_NEAR(ValueAt(coarse.off_diagonal, entry, v), sum[v], 1e-6 * (std::fabs(sum[0]) + 1000.0))
+          EXPECT_NEAR(ValueAt(coarse.links, entry, v), sum[v], 1e-6 * (std::fabs(sum[0]) + 1000.0))
               << at << ": " << a << " " << b;
         }
       }
@@ -180,21 +186,21 @@ TEST(LinkHierarchy, CoarseLevelsAreAsMadeAnewForAnyThreads) {
   TissueState other = Shake(model, 1e-3, 3);
   other.condition[5] = NodeCondition::kFree, other.condition[70] = NodeCondition::kPrescribed;
   Evaluated anew(model, {}, Shake(model, 5e-4, 7), level);
-  anew.hierarchy.UpdateCoarse(*anew.kernels, anew.workers, anew.linearisation.StabilisingShift());
+  anew.hierarchy.UpdateCoarse(*anew.kernels, anew.workers);
   ASSERT_GE(anew.hierarchy.Levels().size(), 3u);
   const std::vector<float> expected = Values(anew.hierarchy);
   for (const int threads : {1, 2, 3, 4, 8}) {
     Evaluated again(model, {}, other, level);
     Workers workers(threads);
     const Workers::Session session(workers);
-    again.hierarchy.UpdateCoarse(*again.kernels, workers, again.linearisation.StabilisingShift());
+    again.hierarchy.UpdateCoarse(*again.kernels, workers);
     ASSERT_NE(Values(again.hierarchy), expected);
     LinkLevel& finest = again.hierarchy.Finest();
     const LinkLevel& wanted = anew.hierarchy.Finest();
-    finest.off_diagonal = wanted.off_diagonal, finest.diagonal_excess = wanted.diagonal_excess,
+    finest.links = wanted.links, finest.diagonal_excess = wanted.diagonal_excess,
     finest.inverse = wanted.inverse;
     finest.is_free = wanted.is_free;
-    again.hierarchy.UpdateCoarse(*again.kernels, workers, anew.linearisation.StabilisingShift());
+    again.hierarchy.UpdateCoarse(*again.kernels, workers);
     EXPECT_EQ(Values(again.hierarchy), expected) << threads << " threads";
   }
 }
@@ -208,7 +214,7 @@ TEST(LinkHierarchy, ArraysBeginAtCacheLines) {
     return reinterpret_cast<std::uintptr_t>(p) % math::kCacheLine == 0;
   };
   for (const LinkLevel& level : here.hierarchy.Levels()) {
-    for (const auto* values : {&level.off_diagonal, &level.diagonal_excess, &level.inverse, &level.is_free})
+    for (const auto* values : {&level.links, &level.diagonal_excess, &level.inverse, &level.is_free})
       EXPECT_TRUE(is_aligned(values->data()));
     for (const auto* nodes : {&level.x, &level.b, &level.r}) EXPECT_TRUE(is_aligned(nodes->data()));
   }
@@ -290,7 +296,7 @@ TEST(Linearisation, WideVectorsGiveTheSameBits) {
   const TissueState state = Shake(model, 1e-3, 9);
   const Evaluated a(model, load, state, SimdLevel::kAvx2), b(model, load, state, SimdLevel::kAvx512);
   EXPECT_EQ(a.balance.energy, b.balance.energy);
-  EXPECT_EQ(a.hierarchy.Finest().off_diagonal, b.hierarchy.Finest().off_diagonal);
+  EXPECT_EQ(a.hierarchy.Finest().links, b.hierarchy.Finest().links);
   EXPECT_EQ(a.hierarchy.Finest().inverse, b.hierarchy.Finest().inverse);
   for (std::size_t i = 0; i < a.balance.residual.size(); ++i) {
     ASSERT_EQ(a.balance.residual[i].x, b.balance.residual[i].x);
@@ -311,7 +317,7 @@ TEST(LineSmoother, SolveTheDuctExactly) {
   ASSERT_EQ(found, patient.duct);
   std::vector<Float4> b(here.balance.residual.size()), x = b, product = b;
   for (const std::uint32_t i : smoother.Nodes()) b[i] = {1.0f, -0.5f, 0.25f, 0.0f};
-  smoother.Factorise(here.hierarchy.Finest(), here.linearisation.StabilisingShift());
+  smoother.Factorise(here.hierarchy.Finest());
   smoother.Solve(here.hierarchy.Finest(), nullptr, b.data());
   smoother.Add(nullptr, 1.0f, x.data());
   RunPass(*here.kernels, here.workers, here.hierarchy.Finest(), LinkPass::kProduct, x.data(), nullptr, 0.0f,

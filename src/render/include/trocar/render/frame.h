@@ -150,8 +150,9 @@ struct Frame {
   double time = 0;            ///< of the scene [s]: smoke drifts with it
   bool has_mask = true;       ///< round picture, black outside
   bool has_smooth_edges = true;
-  bool is_wireframe = false;                               ///< edges only
-  std::array<double, 3> clear_colour{0.01, 0.004, 0.003};  ///< where nothing is, sRGB [0, 1]
+  bool is_wireframe = false;  ///< edges only
+  /// Where nothing is, sRGB [0, 1]; black does not count for the exposure.
+  std::array<double, 3> clear_colour{};
 };
 
 }  // namespace trocar::render
