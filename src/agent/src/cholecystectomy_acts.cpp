@@ -225,7 +225,6 @@ void CholecystectomySurgeon::VisitState(core::StateArchive& archive) {
   archive.Field("camera", picture_.camera);
   archive.Field("camera_to", picture_.to);
   archive.Field("first_azimuth", picture_.first_azimuth);
-  archive.Field("has_looked", picture_.has_looked);
   archive.Field("has_view", has_view_);
   archive.Field("stops", stops_);
   archive.Field("bail_out", bail_out_);

@@ -33,10 +33,10 @@ constexpr double kLeastFlap = 0.012,
 
 /// Where an eye is about the cystic duct, in the frame of the gallbladder's neck, which turns under the hand; 0 as at the
 /// start.
-double CholecystectomySurgeon::CalcAzimuth(const Snapshot& seen, const Vec3& eye) const {
+double CholecystectomySurgeon::CalcAzimuth(std::span<const Vec3> positions, const Vec3& eye) const {
   tissue::MotionMoments moments;
   for (const std::uint32_t node : known_.neck_nodes)
-    moments.AddPoint(1.0, known_.rest[node], seen.positions[node]);
+    moments.AddPoint(1.0, known_.rest[node], positions[node]);
   const Pose X_world_neck = tissue::FitRigidMotion(moments, math::Quaternion{});
   const auto& duct = known_.tube_nodes[FindTube(TubeRole::kCysticDuct)];
   const Vec3 along = math::Normalized(known_.rest[duct.front()] - known_.rest[duct.back()]);

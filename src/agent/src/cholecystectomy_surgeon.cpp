@@ -133,6 +133,14 @@ void CholecystectomySurgeon::Learn(ModelDescription model) {
     if (math::Distance(known_.rest[node], neck) <= kNeckRadius) known_.neck_nodes.push_back(node);
   }
   picture_.field = Place::AtNode(known_.neck);
+  KnowFirstView(scene_->laparoscope.home);
+}
+
+void CholecystectomySurgeon::KnowFirstView(const instrument::TrocarJoints& laparoscope) {
+  if (known_.tube_nodes.empty()) return;
+  picture_.first_azimuth = 0;
+  picture_.first_azimuth =
+      CalcAzimuth(known_.rest, CalcLaparoscopePose(scene_->laparoscope, laparoscope).translation);
 }
 
 /// The picture goes where the right hand works.
@@ -214,11 +222,6 @@ bool CholecystectomySurgeon::WatchProgress(const SurgeonAct& act, const Snapshot
 
 Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   const double dt = scene_->tick_seconds;
-  if (!picture_.has_looked && !known_.tube_nodes.empty()) {
-    picture_.first_azimuth =
-        CalcAzimuth(seen, CalcLaparoscopePose(scene_->laparoscope, picture_.camera).translation);
-    picture_.has_looked = true;
-  }
   has_view_ = has_view_ || seen.operation.critical_view.IsAchieved();
   if (stops_) acts_.clear();
   if (acts_.empty()) {

@@ -10,6 +10,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -72,6 +73,7 @@ class CholecystectomySurgeon final : public Surgeon {
   std::string_view Doing() const override { return doing_; }
   std::string_view BailOutReason() const override { return bail_out_; }
   void VisitState(core::StateArchive& archive) override;
+  void KnowFirstView(const instrument::TrocarJoints& laparoscope) override;
 
  private:
   static constexpr int kHoldTries = 3;
@@ -147,7 +149,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void SwingOutOfWay(const Snapshot& seen, DissectionGoal& goal);
   void OpenTriangle(const SurgeonAct& act, const Snapshot& seen);
   void TurnNeck(const Snapshot& seen, int side, double by);
-  void SwingAround(const Snapshot& seen, int turn);
+  void GoRoundDuct(const Snapshot& seen, double angle);
   void FreeFromFundus(int rounds);
   void PlanFundusFirst(const SurgeonAct& act, const Snapshot& seen);
   void BailOut(std::string reason);
@@ -188,7 +190,7 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::uint32_t> CoveringStrands() const;
   std::vector<std::uint32_t> BedStrands(double share) const;
   double EndDistance(const Snapshot& seen, const collision::Segment& segment) const;
-  double CalcAzimuth(const Snapshot& seen, const Vec3& eye) const;
+  double CalcAzimuth(std::span<const Vec3> positions, const Vec3& eye) const;
   bool AreTubesBare(const Snapshot& seen) const;
   bool IsTriangleClear(const Snapshot& seen) const;
   bool MayHold(const HoldFilter& may, std::uint32_t node) const;
@@ -241,7 +243,6 @@ class CholecystectomySurgeon final : public Surgeon {
     Place field;               // what it is about
     bool follows = false;      // the right hand's tool
     double first_azimuth = 0;  // of the lens, at the start [rad]
-    bool has_looked = false;
     double unseen_seconds = 0;
   };
   Picture picture_;

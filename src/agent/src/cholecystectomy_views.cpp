@@ -27,8 +27,8 @@ constexpr double kAside = 0.4;                          // of a view from the fr
 constexpr double kJustAside = 0.28;     // likewise where no better is found; the judge asks for 0.25 [rad]
 constexpr double kSkin = 0.004;         // sight ends at the skin of a duct, not at its axis [m]
 constexpr double kSightClear = 0.0002;  // of a line of sight from organs [m]
-constexpr double kSwungAside = 0.045;  // of a free gallbladder's hold, from the line of sight to the duct [m]
-constexpr double kNeckStep = 0.008;    // of the hold about the duct, to show the other side of the neck [m]
+constexpr double kFreeTurn = 0.5;       // of a free gallbladder about the duct [rad]
+constexpr double kNeckStep = 0.008;     // of the hold about the duct, to show the other side of the neck [m]
 /// Between the line of sight and a shaft: more is not better, and less than the second is worth another look [rad].
 constexpr double kWellPastShaft = 0.9, kPastShaft = 0.6;
 
@@ -76,14 +76,14 @@ std::optional<TrocarJoints> CholecystectomySurgeon::FindSideView(const Snapshot&
                                       0.5 * (TubePoint(seen, duct, 0.5) + TubePoint(seen, hepatic, 0.5))};
   const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
   std::optional<TrocarJoints> view;
-  TryViews(
-      scene_->laparoscope, middle, TubeDirection(seen, duct, 0.5), kDistances,
-      [&](const TrocarJoints& joints, const Pose& X_world_lens) {
-        if (side * CalcAzimuth(seen, X_world_lens.translation) < aside || !Shows(seen, X_world_lens, points))
-          return false;
-        view = joints;
-        return true;
-      });
+  TryViews(scene_->laparoscope, middle, TubeDirection(seen, duct, 0.5), kDistances,
+           [&](const TrocarJoints& joints, const Pose& X_world_lens) {
+             if (side * CalcAzimuth(seen.positions, X_world_lens.translation) < aside ||
+                 !Shows(seen, X_world_lens, points))
+               return false;
+             view = joints;
+             return true;
+           });
   return view;
 }
 
@@ -109,7 +109,7 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
     return;
   }
   if (may_turn) {
-    HangsFree(seen) ? SwingAround(seen, act.side * act.count) : TurnNeck(seen, act.side, kNeckStep);
+    HangsFree(seen) ? GoRoundDuct(seen, -act.side * kFreeTurn) : TurnNeck(seen, act.side, kNeckStep);
     LookFromSide(act.side, act.count - 1, act.is_on);
   } else if (!act.is_on) {
     HoldOn(Place::AtNode(known_.neck));
@@ -117,14 +117,13 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
   }
 }
 
-/// Takes a gallbladder that hangs free to one of kNeckTurns places around the line of sight to the duct.
-void CholecystectomySurgeon::SwingAround(const Snapshot& seen, int turn) {
-  const Vec3 duct = TubePoint(seen, FindTube(TubeRole::kCysticDuct), 0.5);
-  const Vec3 sight = math::Normalized(scene_->laparoscope.p_world_port - duct);
-  const Vec3 arm = HandOf(kLeft).Tip() - duct;
-  const Vec3 aside = math::Normalized(math::Cross(sight, known_.bed_normal), {1, 0, 0});
-  const Vec3 to = math::Rotate(math::RotationAbout(sight, 2.0 * M_PI * turn / kNeckTurns), aside);
-  DrawGently(kLeft, kSwungAside * to + math::Dot(arm, sight) * sight - arm);
+/// Takes a gallbladder that hangs free round the duct by the hold, which comes no farther from it.
+void CholecystectomySurgeon::GoRoundDuct(const Snapshot& seen, double angle) {
+  const std::size_t duct = FindTube(TubeRole::kCysticDuct);
+  const Vec3 neck = TubePoint(seen, duct, 0.0), axis = math::Normalized(neck - TubePoint(seen, duct, 1.0));
+  const Vec3 arm = HandOf(kLeft).Tip() - neck;
+  Ease(kLeft);
+  DrawGently(kLeft, math::Rotate(math::RotationAbout(axis, angle), arm) - arm);
 }
 
 /// Turns the picture so that the right hand's shaft does not hide the vessel that it works on.

@@ -23,6 +23,9 @@ class SkilledSurgeon final : public Surgeon {
   std::string_view Doing() const override { return hands_->Doing(); }
   std::string_view BailOutReason() const override { return hands_->BailOutReason(); }
   void VisitState(core::StateArchive& archive) override;
+  void KnowFirstView(const instrument::TrocarJoints& laparoscope) override {
+    hands_->KnowFirstView(laparoscope);
+  }
 
  private:
   static constexpr int kSines = 2;

@@ -11,7 +11,9 @@ core::Result<std::unique_ptr<Surgeon>> MakeSurgeonTakingOver(std::string_view na
   for (std::size_t hand = 0; hand < scene::kHandCount; ++hand)
     begun->instruments[hand].home = seen.instruments[hand].joints;
   begun->laparoscope.home = seen.laparoscope;
-  return MakeSurgeon(name, std::move(begun), seed);
+  auto surgeon = MakeSurgeon(name, std::move(begun), seed);
+  if (surgeon.ok()) (*surgeon)->KnowFirstView(scene.laparoscope.home);
+  return surgeon;
 }
 
 }  // namespace trocar::agent

@@ -13,6 +13,7 @@
 #include "operation_harness.h"
 #include "task_play.h"
 #include "task_surgeon.h"
+#include "trocar/agent/taking_over.h"
 #include "trocar/math/random.h"
 #include "trocar/simulation/simulation.h"
 
@@ -203,6 +204,30 @@ TEST(OperatorMemoryWhole, EveryFieldOfTheOperatorIsNeeded) {
     if (!fields.decisive.contains(path)) idle += path + " ";
   }
   EXPECT_EQ(idle, "") << "of " << fields.all.size();
+}
+
+// Sides are counted from how the laparoscope lay at the start, not from where it was turned to since.
+TEST(OperatorMemory, WhoTakesOverCountsSidesFromTheStart) {
+  const auto first_azimuth = [](Surgeon& surgeon) {
+    std::uint64_t found = 0;
+    core::StateHash all;
+    core::StateArchive archive = core::StateArchive::ForHash(all);
+    archive.Trace([&](const std::string& path, std::uint64_t hash) {
+      if (path == "first_azimuth") found = hash;
+    });
+    surgeon.VisitState(archive);
+    return found;
+  };
+  auto simulation = simulation::Simulation::Make(OperationScene(), 1);
+  ASSERT_TRUE(simulation.ok());
+  auto surgeon = MakeSurgeon("expert", OperationScene(), 1);
+  ASSERT_TRUE(surgeon.ok());
+  Snapshot seen = simulation->GetSnapshot();
+  seen.laparoscope.pan += 0.3;
+  auto later = MakeSurgeonTakingOver("expert", *OperationScene(), seen, 1);
+  ASSERT_TRUE(later.ok());
+  EXPECT_NE(first_azimuth(**surgeon), 0u);
+  EXPECT_EQ(first_azimuth(**later), first_azimuth(**surgeon));
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ class Surgeon {
   /// Its memory: the plan, timers, random streams. Restored into a surgeon made from the same entry, scene and seed, it
   /// goes on as the one that was saved, from the snapshot that one would have seen next.
   virtual void VisitState(core::StateArchive& archive) = 0;
+  /// For one who takes over: how the laparoscope lay at the start, from where sides are counted.
+  virtual void KnowFirstView(const instrument::TrocarJoints& /*laparoscope*/) {}
   /// What is being done, for a person: "ring_3: hand over".
   virtual std::string_view Doing() const = 0;
   /// Why an operation was ended before its end because going on would not be safe; "" while it goes on, where it was
