@@ -287,21 +287,26 @@ core::Result<double> MeasurePictures(const std::shared_ptr<EnvironmentModel>& mo
   if (!view) return view.error();
   view->SetOptions({.has_force_arrows = false, .has_automatic_exposure = false});
   render::Image image;
+  const auto draw = [&] {
+    view->Update(simulation.GetSnapshot());
+    target->Bind();
+    view->Draw(kPictureSide, kPictureSide);
+    target->Read(image);
+  };
+  // the first, because random motions may turn the laparoscope to where nothing is
+  draw();
+  if (std::all_of(image.pixels.begin(), image.pixels.end(),
+                  [&](std::uint8_t byte) { return byte == image.pixels.front(); }))
+    return WrongAnswer(model->Settings().task, "a picture shows nothing");
   math::Random random(1);
   double steps = 0;
   const WorkStopwatch stopwatch(1);
   while (stopwatch.Seconds() < kSeconds && !environment->IsOver()) {
     if (const auto outcome = environment->Step(DrawActions(*model, 1, random)); !outcome)
       return outcome.error();
-    view->Update(simulation.GetSnapshot());
-    target->Bind();
-    view->Draw(kPictureSide, kPictureSide);
-    target->Read(image);
+    draw();
     ++steps;
   }
-  const bool is_blank = std::all_of(image.pixels.begin(), image.pixels.end(),
-                                    [&](std::uint8_t byte) { return byte == image.pixels.front(); });
-  if (is_blank) return WrongAnswer(model->Settings().task, "a picture shows nothing");
   return steps / stopwatch.Seconds();
 }
 
