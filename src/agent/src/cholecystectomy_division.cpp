@@ -18,7 +18,7 @@ using instrument::ToolKind;
 constexpr int kRounds = 3;               // with another hold each
 constexpr int kMostActs = 16;            // clips, cuts and vain tries at one time
 constexpr int kTries = 4;                // to bring a vessel between the legs
-constexpr double kFreeTurn = 1.0;        // of a free gallbladder about the duct [rad]
+constexpr double kTurnForClips = 1.0;    // of a free gallbladder about the duct [rad]
 constexpr double kStandOff = 0.012;      // of a tool's tip from the vessel while it is lined up [m]
 constexpr double kWithdrawn = 0.020;     // [m]
 constexpr double kFromTips = 0.0004;     // of a flattened vessel's edge from the ends of the legs [m]
@@ -48,7 +48,7 @@ void CholecystectomySurgeon::PlanDivision(const SurgeonAct& act, const Snapshot&
         math::Cross(known_.bed_normal, known_.rest[known_.fundus] - known_.rest[known_.neck]));
     HoldOn(Place::AtNode(known_.neck));
     if (HangsFree(seen)) {
-      GoRoundDuct(seen, rounds % 2 == 0 ? kFreeTurn : -kFreeTurn);
+      GoRoundDuct(seen, rounds % 2 == 0 ? kTurnForClips : -kTurnForClips);
     } else {
       DrawGently(kLeft, 0.008 * known_.bed_normal + (rounds % 2 == 0 ? 0.012 : -0.012) * aside);
     }

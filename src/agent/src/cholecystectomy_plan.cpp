@@ -21,8 +21,8 @@ constexpr double kBesideView = 0.05;    // of a tool, out of the way of the view
 constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
 /// Of the hold about the duct, so that tools come to the other side of the triangle [m].
 constexpr double kOpenNeck = 0.014;
-constexpr double kOutOfWay = 0.050;  // of a gallbladder that hangs free, off the hook's way [m]
-constexpr double kPeelShare = 0.2;   // of the bed's fibres that are left: where the gallbladder peels off [-]
+constexpr double kSwungAside = 0.050;  // of a gallbladder that hangs free, off the hook's way [m]
+constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
 /// How far the flap is folded back at first [m], and how steeply [-].
 constexpr double kFold = 0.030, kFoldUp = 0.6;
 constexpr double kOutOfTheWay = 0.080;  // of a tool that waits while the bag leaves [m]
@@ -151,7 +151,7 @@ void CholecystectomySurgeon::SwingOutOfWay(const Snapshot& seen, DissectionGoal&
   const Vec3 duct = TubePoint(seen, FindTube(TubeRole::kCysticDuct), 0.0);
   const Vec3 in = math::Normalized(duct - hands_[kRight].Port());
   const Vec3 off = seen.positions[known_.fundus] - duct;
-  goal.traction = kOutOfWay;
+  goal.traction = kSwungAside;
   goal.way = math::Normalized(off - math::Dot(off, in) * in, known_.bed_normal);
 }
 

@@ -27,7 +27,7 @@ constexpr double kAside = 0.4;                          // of a view from the fr
 constexpr double kJustAside = 0.28;     // likewise where no better is found; the judge asks for 0.25 [rad]
 constexpr double kSkin = 0.004;         // sight ends at the skin of a duct, not at its axis [m]
 constexpr double kSightClear = 0.0002;  // of a line of sight from organs [m]
-constexpr double kFreeTurn = 0.5;       // of a free gallbladder about the duct [rad]
+constexpr double kTurnForView = 0.5;    // of a free gallbladder about the duct [rad]
 constexpr double kNeckStep = 0.008;     // of the hold about the duct, to show the other side of the neck [m]
 /// Between the line of sight and a shaft: more is not better, and less than the second is worth another look [rad].
 constexpr double kWellPastShaft = 0.9, kPastShaft = 0.6;
@@ -109,7 +109,7 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
     return;
   }
   if (may_turn) {
-    HangsFree(seen) ? GoRoundDuct(seen, -act.side * kFreeTurn) : TurnNeck(seen, act.side, kNeckStep);
+    HangsFree(seen) ? GoRoundDuct(seen, -act.side * kTurnForView) : TurnNeck(seen, act.side, kNeckStep);
     LookFromSide(act.side, act.count - 1, act.is_on);
   } else if (!act.is_on) {
     HoldOn(Place::AtNode(known_.neck));
