@@ -47,6 +47,7 @@ void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) 
       break;
     case Kind::kDraw:
       hand.MoveTo(hand.Tip() + act.by, 0.25);
+      if (act.amount != 0) hand.Turn(hand.Spin() + act.amount);
       break;
     case Kind::kBurn:
       controls_[h].coagulate = true;
@@ -122,7 +123,8 @@ bool CholecystectomySurgeon::IsDone(const SurgeonAct& act, const Snapshot& seen)
     case Kind::kDraw: {
       const bool is_tight = math::Norm(seen.instruments[h].force) > kPull;
       if (is_tight) hand.MoveTo(hand.Tip());
-      return is_tight || !hand.IsMoving();
+      if (is_tight && act.amount != 0) hand.Turn(hand.Spin());
+      return is_tight || (!hand.IsMoving() && (act.amount == 0 || !hand.IsTurning()));
     }
     case Kind::kEase: {
       const Vec3& force = seen.instruments[h].force;
@@ -211,6 +213,8 @@ void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen)
       return Withdraw();
     case Kind::kTurnNeck:
       return TurnNeck(seen, act.side, act.amount);
+    case Kind::kGoRoundDuct:
+      return GoRoundDuct(seen, act.amount);
     case Kind::kFundusFirst:
       return PlanFundusFirst(act, seen);
     default:

@@ -48,7 +48,9 @@ void CholecystectomySurgeon::PlanDivision(const SurgeonAct& act, const Snapshot&
         math::Cross(known_.bed_normal, known_.rest[known_.fundus] - known_.rest[known_.neck]));
     HoldOn(Place::AtNode(known_.neck));
     if (HangsFree(seen)) {
-      GoRoundDuct(seen, rounds % 2 == 0 ? kTurnForClips : -kTurnForClips);
+      // from the hold that it gets
+      Decide(SurgeonAct::Kind::kGoRoundDuct, "turn the neck").amount =
+          rounds % 2 == 0 ? kTurnForClips : -kTurnForClips;
     } else {
       DrawGently(kLeft, 0.008 * known_.bed_normal + (rounds % 2 == 0 ? 0.012 : -0.012) * aside);
     }

@@ -172,13 +172,14 @@ void CholecystectomySurgeon::OpenTriangle(const SurgeonAct& act, const Snapshot&
 
 /// Draws what the left hand holds about the cystic duct.
 /// \param side  from where the neck is to be seen, +1 or -1
-void CholecystectomySurgeon::TurnNeck(const Snapshot& seen, int side, double by) {
+/// \param turn  of the hold about the duct [rad]
+void CholecystectomySurgeon::TurnNeck(const Snapshot& seen, int side, double by, double turn) {
   if (!seen.instruments[kLeft].is_grasping) return;
   const std::size_t duct = FindTube(TubeRole::kCysticDuct);
   const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
   const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
   const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, known_.bed_normal);
-  DrawGently(kLeft, -side * by * math::Cross(axis, off_axis));
+  DrawGently(kLeft, -side * by * math::Cross(axis, off_axis), RollAbout(kLeft, axis, -side * turn));
 }
 
 void CholecystectomySurgeon::FreeLowerThird(int rounds) {

@@ -108,7 +108,8 @@ class CholecystectomySurgeon final : public Surgeon {
   void Exchange(int hand, instrument::ToolKind kind, bool over_field = true);
   void Grasp(int hand, const Place& at, double squeeze = 0);
   void Draw(int hand, const Vec3& by);
-  void DrawGently(int hand, const Vec3& by);
+  void DrawGently(int hand, const Vec3& by, double roll = 0);
+  double RollAbout(int hand, const Vec3& axis, double angle) const;
   void LetGo(int hand);
   void Ease(int hand);
   void LineUp(const std::string& what, std::size_t tube, double share, double jaw);
@@ -148,7 +149,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void CheckTriangle(const SurgeonAct& act, const Snapshot& seen);
   void SwingOutOfWay(const Snapshot& seen, DissectionGoal& goal);
   void OpenTriangle(const SurgeonAct& act, const Snapshot& seen);
-  void TurnNeck(const Snapshot& seen, int side, double by);
+  void TurnNeck(const Snapshot& seen, int side, double by, double turn = 0);
   void GoRoundDuct(const Snapshot& seen, double angle);
   void FreeFromFundus(int rounds);
   void PlanFundusFirst(const SurgeonAct& act, const Snapshot& seen);
@@ -281,6 +282,7 @@ class CholecystectomySurgeon final : public Surgeon {
   Progress progress_;
   std::vector<collision::TriangleTree> trees_;  // (organs)
   std::uint64_t trees_tick_ = kNever;           // of the snapshot that they follow
+  training::TriangleSight sight_;               // by the fat that was left when it was last asked
   std::deque<SurgeonAct> acts_,
       inserted_;           // the latter by the act that is under way, to be done next; empty between ticks
   Dissection dissection_;  // that is under way, or planned next

@@ -88,11 +88,19 @@ void CholecystectomySurgeon::Draw(int hand, const Vec3& by) {
 }
 
 /// Draws until the pull is felt.
-void CholecystectomySurgeon::DrawGently(int hand, const Vec3& by) {
+/// \param roll  of the tool about its shaft meanwhile [rad]
+void CholecystectomySurgeon::DrawGently(int hand, const Vec3& by, double roll) {
   SurgeonAct& act = Add(SurgeonAct::Kind::kDraw, "draw", 5.0);
   act.hand = hand;
   act.by = by;
+  act.amount = roll;
   Wait(0.2);
+}
+
+/// Roll of a tool that turns what it holds about an axis [rad]: as much of it as lies along the shaft.
+double CholecystectomySurgeon::RollAbout(int hand, const Vec3& axis, double angle) const {
+  const HandMotion& it = hands_[static_cast<std::size_t>(hand)];
+  return angle * math::Dot(axis, math::Normalized(it.Port() - it.Tip()));
 }
 
 /// Gives way to what it holds until hardly a pull is felt: what is let go under a pull springs back.

@@ -20,14 +20,14 @@ namespace {
 
 constexpr double kTurnStep = 0.2;  // of the lens about the duct, to either side in turn [rad]
 constexpr int kTurnSteps = 26;
-constexpr double kTilts[] = {0.0, 0.5, -0.5};           // of the lens along the duct [rad]
-constexpr double kDistances[] = {0.060, 0.072, 0.050};  // of the lens from the duct [m]
-constexpr double kWorkDistances[] = {0.085, 0.072};     // likewise while a tool is at it [m]
-constexpr double kAside = 0.4;                          // of a view from the front of the neck [rad]
+constexpr double kTilts[] = {0.0, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75};  // of the lens along the duct [rad]
+constexpr double kDistances[] = {0.060, 0.072, 0.050};                   // of the lens from the duct [m]
+constexpr double kWorkDistances[] = {0.085, 0.072};                      // likewise while a tool is at it [m]
+constexpr double kAside = 0.4;          // of a view from the front of the neck [rad]
 constexpr double kJustAside = 0.28;     // likewise where no better is found; the judge asks for 0.25 [rad]
-constexpr double kSkin = 0.004;         // sight ends at the skin of a duct, not at its axis [m]
 constexpr double kSightClear = 0.0002;  // of a line of sight from organs [m]
 constexpr double kTurnForView = 0.5;    // of a free gallbladder about the duct [rad]
+constexpr double kRollForView = 0.3;    // of the neck that is held, likewise [rad]
 constexpr double kNeckStep = 0.008;     // of the hold about the duct, to show the other side of the neck [m]
 /// Between the line of sight and a shaft: more is not better, and less than the second is worth another look [rad].
 constexpr double kWellPastShaft = 0.9, kPastShaft = 0.6;
@@ -57,13 +57,15 @@ void TryViews(const LaparoscopeSetup& setup, const Vec3& middle, const Vec3& axi
 
 }  // namespace
 
-/// Whether all points lie in the picture with no organ before them.
+/// Whether all points lie in the picture with no organ and no fat before them.
 bool CholecystectomySurgeon::Shows(const Snapshot& seen, const Pose& X_world_lens,
                                    std::span<const Vec3> points) {
   const Vec3& eye = X_world_lens.translation;
+  sight_.Update(seen.operation.strand_is_intact);
   return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
     return IsInView(X_world_lens, scene_->laparoscope.field_of_view, p) &&
-           Clearance(seen, {eye, p + kSkin * math::Normalized(eye - p)}) > kSightClear;
+           Clearance(seen, training::TriangleSight::LineTo(p, eye)) > kSightClear &&
+           !sight_.DoesFatHide(seen.positions, p, eye);
   });
 }
 
@@ -71,9 +73,8 @@ bool CholecystectomySurgeon::Shows(const Snapshot& seen, const Pose& X_world_len
 /// \param aside  from the front of the neck at least [rad]
 std::optional<TrocarJoints> CholecystectomySurgeon::FindSideView(const Snapshot& seen, int side,
                                                                  double aside) {
-  const std::size_t duct = FindTube(TubeRole::kCysticDuct), hepatic = FindTube(TubeRole::kCommonHepaticDuct);
-  const std::array<Vec3, 3> points = {TubePoint(seen, duct, 0.3), TubePoint(seen, duct, 0.7),
-                                      0.5 * (TubePoint(seen, duct, 0.5) + TubePoint(seen, hepatic, 0.5))};
+  const std::size_t duct = FindTube(TubeRole::kCysticDuct);
+  const std::array<Vec3, 3> points = sight_.Points(seen.positions);
   const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
   std::optional<TrocarJoints> view;
   TryViews(scene_->laparoscope, middle, TubeDirection(seen, duct, 0.5), kDistances,
@@ -109,7 +110,8 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
     return;
   }
   if (may_turn) {
-    HangsFree(seen) ? GoRoundDuct(seen, -act.side * kTurnForView) : TurnNeck(seen, act.side, kNeckStep);
+    HangsFree(seen) ? GoRoundDuct(seen, -act.side * kTurnForView)
+                    : TurnNeck(seen, act.side, kNeckStep, kRollForView);
     LookFromSide(act.side, act.count - 1, act.is_on);
   } else if (!act.is_on) {
     HoldOn(Place::AtNode(known_.neck));
@@ -117,13 +119,13 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
   }
 }
 
-/// Takes a gallbladder that hangs free round the duct by the hold, which comes no farther from it.
+/// Takes a gallbladder that hangs free round the duct by the hold, which comes no farther from it and rolls along.
 void CholecystectomySurgeon::GoRoundDuct(const Snapshot& seen, double angle) {
   const std::size_t duct = FindTube(TubeRole::kCysticDuct);
   const Vec3 neck = TubePoint(seen, duct, 0.0), axis = math::Normalized(neck - TubePoint(seen, duct, 1.0));
   const Vec3 arm = HandOf(kLeft).Tip() - neck;
   Ease(kLeft);
-  DrawGently(kLeft, math::Rotate(math::RotationAbout(axis, angle), arm) - arm);
+  DrawGently(kLeft, math::Rotate(math::RotationAbout(axis, angle), arm) - arm, RollAbout(kLeft, axis, angle));
 }
 
 /// Turns the picture so that the right hand's shaft does not hide the vessel that it works on.

@@ -121,6 +121,7 @@ struct SurgeonAct {
     kStopBleeding,
     kCoagulate,
     kTurnNeck,
+    kGoRoundDuct,
     kFundusFirst,
     // pedals of the suction-irrigator
     kRinse,

@@ -33,6 +33,8 @@ core::Result<ModelDescription> DescribeModel(const Scene& scene) {
         MakeTriangleWindow(tissue->surfaces, tissue->strands, tissue->definition.rest, main_ducts,
                            main_arteries, scene.operation->parameters.judgement)
             .Strands();
+    description.sight = MakeTriangleSight(tissue->surfaces, tissue->strands, tissue->definition.rest,
+                                          scene.operation->parameters.judgement);
   }
   description.surfaces = std::move(tissue->surfaces);
   description.strands = std::move(tissue->strands);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The built-in patient's critical view: what the eye sees of the hepatocystic triangle is what is judged.
 #include <algorithm>
+#include <cmath>
 
 #include "operation_harness.h"
 #include "trocar/simulation/model_description.h"
@@ -9,6 +10,7 @@ namespace trocar::simulation {
 namespace {
 
 using Kind = StrandInfo::Kind;
+using training::TriangleSight;
 
 class TriangleOfPatient : public OperationHarness {
  protected:
@@ -40,6 +42,23 @@ class TriangleOfPatient : public OperationHarness {
     return least;
   }
   void Divide(std::uint32_t strand) { state_.strand_is_intact[strand] = 0; }
+  /// Lenses about the cystic duct, 60 mm from it, from which fat hides nothing of what has to be seen.
+  int CountOpenViews() {
+    TriangleSight& sight = model_description_.sight;
+    sight.Update(state_.strand_is_intact);
+    const auto points = sight.Points(state_.position);
+    const Vec3 along = math::Normalized(points[1] - points[0]);
+    const Vec3 up = math::Normalized(math::Cross(along, {1, 0, 0}), {0, 0, 1});
+    int open = 0;
+    for (int step = 0; step < kLenses; ++step) {
+      const Vec3 eye =
+          points[2] + 0.06 * math::Rotate(math::RotationAbout(along, 2 * M_PI * step / kLenses), up);
+      open += std::none_of(points.begin(), points.end(),
+                           [&](const Vec3& p) { return sight.DoesFatHide(state_.position, p, eye); });
+    }
+    return open;
+  }
+  static constexpr int kLenses = 36;
 
   ModelDescription model_description_;
 };
@@ -67,6 +86,13 @@ TEST_F(TriangleOfPatient, IsClearWhenNothingCoversItThoughTheMainDuctsKeepTheirF
   for (std::uint32_t i = 0; i < operation_->Strands().size(); ++i)
     kept += IsFat(i) && state_.strand_is_intact[i] != 0 ? 1 : 0;
   EXPECT_GT(kept, 100u) << "the common hepatic duct need not be exposed";
+}
+
+// The fat that is drawn is the fat that hides: none of the triangle is seen before it is cleared.
+TEST_F(TriangleOfPatient, IsHiddenByItsFatFromAllSidesAndSeenOnceItIsCleared) {
+  EXPECT_EQ(CountOpenViews(), 0);
+  for (const std::uint32_t strand : model_description_.window_strands) Divide(strand);
+  EXPECT_GT(CountOpenViews(), 0);
 }
 
 }  // namespace

@@ -16,8 +16,6 @@ namespace {
 
 /// A part of the bed is off when no more than this share of its strands is left [-].
 constexpr double kLeftInBin = 0.1;
-/// What is seen may lie this near behind a surface [m]: sight ends at the skin of a duct, not at its axis.
-constexpr double kSkin = 0.004;
 
 }  // namespace
 
@@ -74,22 +72,21 @@ void DissectionMonitor::Look(const tissue::TissueState& tissue, std::span<const 
                              const instrument::Camera& camera) noexcept {
   facts_.is_triangle_in_view = false;
   facts_.view_azimuth = std::nan("");
-  const auto &cystic = anatomy_.cystic_duct, &hepatic = anatomy_.hepatic_duct;
-  if (cystic.empty() || hepatic.empty()) return;
-  const auto at = [&](const std::vector<std::uint32_t>& nodes, double share) {
-    return tissue.position[nodes[static_cast<std::size_t>(share * static_cast<double>(nodes.size() - 1))]];
-  };
-  const std::array<Vec3, 3> points = {at(cystic, 0.3), at(cystic, 0.7),
-                                      0.5 * (at(cystic, 0.5) + at(hepatic, 0.5))};
+  TriangleSight& sight = anatomy_.sight;
+  if (!sight.HasTriangle()) return;
+  sight.Update(tissue.strand_is_intact);
+  const std::array<Vec3, 3> points = sight.Points(tissue.position);
   const Vec3 eye = camera.X_world_camera.translation;
   facts_.is_triangle_in_view = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
     if (!instrument::IsInView(camera.X_world_camera, camera.field_of_view, p)) return false;
-    const Vec3 end = p + kSkin * math::Normalized(eye - p);
-    return std::none_of(organs.begin(), organs.end(), [&](const surgery::OrganSurface& organ) {
-      const auto nearest =
-          organ.tree.FindNearestToSegment(organ.Nodes(tissue.position), {eye, end}, {.max_distance = 1e-6});
-      return nearest.Found();
-    });
+    const bool is_behind_organ =
+        std::any_of(organs.begin(), organs.end(), [&](const surgery::OrganSurface& organ) {
+          return organ.tree
+              .FindNearestToSegment(organ.Nodes(tissue.position), TriangleSight::LineTo(p, eye),
+                                    {.max_distance = 1e-6})
+              .Found();
+        });
+    return !is_behind_organ && !sight.DoesFatHide(tissue.position, p, eye);
   });
   facts_.view_azimuth = CalcAzimuth(tissue, eye);
 }

@@ -11,6 +11,8 @@
 #include "trocar/collision/triangle_tree.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
+#include "trocar/simulation/model_description.h"
+#include "trocar/training/triangle_sight.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::view {
@@ -24,18 +26,12 @@ using simulation::Snapshot;
 constexpr double kTurns[] = {0.7, 0.9, 0.5, 1.1, 0.35, 1.4, 1.7, 2.0};
 constexpr double kTilts[] = {0.0, 0.35, -0.35, 0.7, -0.7};
 constexpr double kDistances[] = {0.055, 0.045, 0.065};
-/// Sight ends at the skin of a duct, not at its axis [m].
-constexpr double kSkin = 0.004;
 
 /// Where ducts are now, from where they meet on.
 struct Ducts {
   std::vector<Vec3> cystic, hepatic;
 
-  static Vec3 At(const std::vector<Vec3>& line, double share) {
-    return line[static_cast<std::size_t>(share * static_cast<double>(line.size() - 1))];
-  }
-  Vec3 Middle() const { return 0.5 * (At(cystic, 0.5) + At(hepatic, 0.5)); }
-  std::array<Vec3, 3> Points() const { return {At(cystic, 0.3), At(cystic, 0.7), Middle()}; }
+  Vec3 Middle() const { return 0.5 * (cystic[(cystic.size() - 1) / 2] + hepatic[(hepatic.size() - 1) / 2]); }
 };
 
 std::vector<Vec3> LineOf(std::span<const SurfaceInfo> surfaces, const Snapshot& now, roles::TubeRole role) {
@@ -67,22 +63,28 @@ core::Result<Ducts> FindDucts(const simulation::Simulation& simulation) {
   return ducts;
 }
 
-/// The organs as they are now, asked for what hides a point.
+/// Organs and fat as they are now, asked for what hides a point.
 class Occluders {
  public:
-  explicit Occluders(const simulation::Simulation& simulation) : now_(simulation.GetSnapshot()) {
+  Occluders(const simulation::Simulation& simulation, const training::TriangleSight& sight)
+      : now_(simulation.GetSnapshot()), sight_(sight) {
+    sight_.Update(now_.operation.strand_is_intact);
     for (const SurfaceInfo& surface : simulation.Surfaces()) {
       if (surface.triangles.empty()) continue;
       auto tree = collision::TriangleTree::Make(Nodes(surface), surface.triangles);
       if (tree.ok()) organs_.push_back({&surface, std::move(*tree)});
     }
   }
+  /// What has to be seen.
+  std::array<Vec3, 3> Points() const { return sight_.Points(now_.positions); }
   bool Hide(const Vec3& p, const Vec3& eye) const {
-    const Vec3 end = p + kSkin * math::Normalized(eye - p);
-    return std::any_of(organs_.begin(), organs_.end(), [&](const Organ& organ) {
-      return organ.tree.FindNearestToSegment(Nodes(*organ.surface), {eye, end}, {.max_distance = 1e-6})
+    const bool do_organs = std::any_of(organs_.begin(), organs_.end(), [&](const Organ& organ) {
+      return organ.tree
+          .FindNearestToSegment(Nodes(*organ.surface), training::TriangleSight::LineTo(p, eye),
+                                {.max_distance = 1e-6})
           .Found();
     });
+    return do_organs || sight_.DoesFatHide(now_.positions, p, eye);
   }
 
  private:
@@ -94,6 +96,7 @@ class Occluders {
     return std::span(now_.positions).subspan(surface.first_node, surface.node_count);
   }
   const Snapshot& now_;
+  training::TriangleSight sight_;
   std::vector<Organ> organs_;
 };
 
@@ -110,10 +113,10 @@ math::Pose LookAt(const Vec3& eye, const Vec3& at, const Vec3& up) {
 }
 
 /// \param side  -1 front, +1 behind
-Sight FindSight(const Ducts& ducts, const Occluders& organs, const math::Pose& X_world_laparoscope,
+Sight FindSight(const Ducts& ducts, const Occluders& occluders, const math::Pose& X_world_laparoscope,
                 double field_of_view, double azimuth_now, int side) {
   const Vec3 middle = ducts.Middle();
-  const auto points = ducts.Points();
+  const auto points = occluders.Points();
   const Vec3 along = math::Normalized(ducts.cystic.back() - ducts.cystic.front());
   const Vec3 to_eye = math::Normalized(X_world_laparoscope.translation - middle);
   const Vec3 across = math::Normalized(math::Cross(along, to_eye), {1, 0, 0});
@@ -130,7 +133,7 @@ Sight FindSight(const Ducts& ducts, const Occluders& organs, const math::Pose& X
         Sight sight = sight_at(turn, tilt, distance);
         sight.shows_triangle = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
           return simulation::IsInView(sight.X_world_camera, field_of_view, p) &&
-                 !organs.Hide(p, sight.X_world_camera.translation);
+                 !occluders.Hide(p, sight.X_world_camera.translation);
         });
         if (sight.shows_triangle) return sight;
       }
@@ -158,6 +161,8 @@ core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
   const std::shared_ptr<const scene::Scene> scene(std::shared_ptr<const scene::Scene>(), &front.GetScene());
   auto fresh = simulation::Simulation::Make(scene, 1);
   if (!fresh.ok()) return fresh.error();
+  const auto model = simulation::DescribeModel(*scene);
+  if (!model.ok()) return model.error();
   auto context = render::OffscreenContext::Make();
   if (!context.ok()) return context.error();
   auto target = render::OffscreenTarget::Make(width, height);
@@ -171,13 +176,13 @@ core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
 
   const auto draw = [&](const simulation::Simulation& simulation, int side) {
     const auto ducts = FindDucts(simulation);
-    const Occluders organs(simulation);
+    const Occluders occluders(simulation, model->sight);
     Snapshot shown = ClearField(simulation.GetSnapshot());
     const auto result = simulation.GetOperationResult();
     const double azimuth =
         result && std::isfinite(result->facts.view_azimuth) ? result->facts.view_azimuth : 0.0;
-    const Sight sight =
-        FindSight(*ducts, organs, shown.X_world_laparoscope, scene->laparoscope.field_of_view, azimuth, side);
+    const Sight sight = FindSight(*ducts, occluders, shown.X_world_laparoscope,
+                                  scene->laparoscope.field_of_view, azimuth, side);
     shown.X_world_laparoscope = sight.X_world_camera;
     view->Update(shown);
     target->Bind();

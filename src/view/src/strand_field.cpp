@@ -9,6 +9,7 @@
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/random.h"
+#include "trocar/scene/triangle_fat.h"
 #include "trocar/view/labels.h"
 
 namespace trocar::view {
@@ -24,12 +25,7 @@ constexpr double kWebBreadth = 1.3;        // of the bed's web in distances to i
 constexpr double kFatChange = 0.00012;     // m; less movement leaves the fat's surface as it is
 constexpr double kAdhesionWidth = 0.0007;  // m
 constexpr double kEndSpread = 0.0007;      // m, of a fibre's root about its node
-constexpr double kLeastLobule = 0.7, kMostLobule = 1.3;  // times a lobule's radius
-constexpr double kBody = 0.009;        // m about a lobule, of the body of fat that it belongs to
-constexpr double kRemnant = 0.9;       // share of a body from which on what is left of it is thinner
-constexpr double kThinnest = 0.25;     // size of the last lobule of a body, in its size when it was whole
-constexpr double kFatSpread = 0.0016;  // m, from the strand
-constexpr double kFilmOverlap = 1.6;   // breadth of a film in distances to its neighbour
+constexpr double kFilmOverlap = 1.6;       // breadth of a film in distances to its neighbour
 constexpr double kLeastFilm = 0.0010, kMostFilm = 0.0045;  // m
 constexpr double kWave = 0.07;                             // of a strand's length, at rest
 
@@ -72,25 +68,8 @@ StrandField::StrandField(std::span<const scene::StrandInfo> strands, std::span<c
     if (info.kind == Kind::kPeritoneum) breadth = CalcBreadth(middle_of(info), peritoneum, kFilmOverlap);
     if (info.kind == Kind::kBed) breadth = CalcBreadth(middle_of(info), bed, kWebBreadth);
     strands_.push_back({info, math::Distance(start[info.a], start[info.b]), breadth});
-    if (info.kind != Kind::kTriangle) continue;
-    math::Random random(i);
-    for (const double middle : {0.3, 0.7}) {
-      const double along = middle + random.Uniform(-0.15, 0.15);
-      const Vec3 offset = PickOffset(random, kFatSpread);
-      lobules_.push_back({i,
-                          along,
-                          offset,
-                          math::Lerp(start[info.a], start[info.b], along) + offset,
-                          scene::kLobuleRadius * random.Uniform(kLeastLobule, kMostLobule),
-                          {}});
-    }
   }
-  // once, at the start; the square of some hundreds
-  for (Lobule& lobule : lobules_) {
-    for (const Lobule& other : lobules_)
-      if (math::SquaredNorm(other.rest - lobule.rest) < kBody * kBody)
-        lobule.near.push_back(static_cast<std::uint32_t>(other.strand));
-  }
+  lobules_ = scene::MakeTriangleFat(strands, start);
 }
 
 void StrandField::AddTo(render::Renderer& renderer, render::Frame& frame,
@@ -144,37 +123,11 @@ void StrandField::FindRaw(const simulation::Snapshot& snapshot, std::vector<std:
 
 void StrandField::AddFat(render::Renderer& renderer, render::Frame& frame,
                          const simulation::Snapshot& snapshot) {
-  const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
-  const auto is_intact = [&intact](std::size_t strand) {
-    return strand >= intact.size() || intact[strand] != 0;
-  };
-  // a lobule is as full as its strands are whole: they overlap so much that a tenth of them would look like all
-  nodes_.assign(snapshot.positions.size(), {});
-  for (std::size_t i = 0; i < strands_.size(); ++i) {
-    if (strands_[i].info.kind != Kind::kTriangle) continue;
-    for (const std::uint32_t node : {strands_[i].info.a, strands_[i].info.b}) {
-      ++nodes_[node].strands;
-      nodes_[node].intact += is_intact(i) ? 1 : 0;
-    }
-  }
-  // what is left of a body that was divided is a thin layer, however many strands still meet there
-  if (intact != counted_) {
-    counted_ = intact;
-    for (Lobule& lobule : lobules_) {
-      const auto left = std::count_if(lobule.near.begin(), lobule.near.end(), is_intact);
-      const double body = static_cast<double>(left) / static_cast<double>(lobule.near.size());
-      lobule.thin = kThinnest + (1.0 - kThinnest) * std::min(1.0, body / kRemnant);
-    }
-  }
+  lobules_.Update(snapshot.operation.strand_is_intact);
   wanted_.clear();
-  for (const Lobule& lobule : lobules_) {
-    if (!is_intact(lobule.strand)) continue;
-    const scene::StrandInfo& info = strands_[lobule.strand].info;
-    const double thin = lobule.thin;
-    const double filling = std::min(nodes_[info.a].Filling(), nodes_[info.b].Filling()) * thin * thin * thin;
-    wanted_.push_back({math::Lerp(snapshot.positions[info.a], snapshot.positions[info.b], lobule.along) +
-                           thin * lobule.offset,
-                       lobule.rest, lobule.radius * std::cbrt(filling)});
+  for (std::size_t i = 0; i < lobules_.Count(); ++i) {
+    if (lobules_.IsThere(i))
+      wanted_.push_back({lobules_.Centre(i, snapshot.positions), lobules_.Rest(i), lobules_.Radius(i)});
   }
   const bool is_same = std::equal(wanted_.begin(), wanted_.end(), shown_.begin(), shown_.end(),
                                   [](const FatLobule& a, const FatLobule& b) {

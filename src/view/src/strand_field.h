@@ -10,6 +10,7 @@
 #include "trocar/render/renderer.h"
 #include "trocar/simulation/operation_snapshot.h"
 #include "trocar/simulation/snapshot.h"
+#include "trocar/surgery/fat_lobules.h"
 
 namespace trocar::view {
 
@@ -34,26 +35,10 @@ class StrandField {
     double rest_length;  // [m]
     double breadth;      // of its film: of a peritoneal strand, or of the web of the bed [m]
   };
-  /// A lobule on a strand: where along it, and how far beside.
-  struct Lobule {
-    std::size_t strand;
-    double along;
-    math::Vec3 offset, rest;
-    double radius;                    // where all strands are whole [m]
-    std::vector<std::uint32_t> near;  // strands of the lobules about it, its own among them
-    double thin;                      // its size now, in that where all of them are whole [-]
-  };
-  /// How many strands of fat meet in a node.
-  struct FatNode {
-    std::uint16_t strands = 0, intact = 0;
-    double Filling() const { return static_cast<double>(intact) / static_cast<double>(strands); }
-  };
   void AddFat(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot);
 
   std::vector<Strand> strands_;
-  std::vector<Lobule> lobules_;
-  std::vector<FatNode> nodes_;         // (rows of Snapshot::positions)
-  std::vector<std::uint8_t> counted_;  // strand_is_intact that the lobules' sizes are of
+  surgery::FatLobules lobules_;
   FatBody fat_;
   std::vector<FatLobule> shown_, wanted_;  // of the surface that is uploaded; of this snapshot
   std::vector<math::Vec3> normals_;

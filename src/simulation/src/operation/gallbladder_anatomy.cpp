@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/scene/triangle_fat.h"
 #include "trocar/simulation/ground.h"
 
 namespace trocar::simulation {
@@ -22,9 +23,9 @@ using scene::StrandInfo;
 using scene::SurfaceInfo;
 namespace {
 
-/// What lies this near to the infundibulum turns with the neck [m].
 /// About a strand [m]: the inner half of its lobule (scene::kLobuleRadius), which hides what lies behind it.
 constexpr double kCountedRadius = 0.001;
+/// What lies this near to the infundibulum turns with the neck [m].
 constexpr double kNeckRadius = 0.015;
 constexpr std::uint64_t kStoneSeed = 0x73746f6e6573;  // the stones' own stream
 
@@ -146,7 +147,8 @@ training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
   const std::int32_t gallbladder = FindSurface(surfaces, OrganRole::kGallbladder);
   if (gallbladder < 0) return found;
   found.entering = FindEnteringTubes(patient, surfaces, strands);
-  FindDucts(surfaces, rest, found.cystic_duct, found.hepatic_duct);
+  std::vector<std::uint32_t> hepatic_duct;
+  FindDucts(surfaces, rest, found.cystic_duct, hepatic_duct);
   const SurfaceInfo& organ = surfaces[static_cast<std::size_t>(gallbladder)];
   for (std::uint32_t k = 0; neck != nullptr && k < organ.node_count; ++k) {
     if (math::Distance(rest[organ.first_node + k], neck->position) <= kNeckRadius)
@@ -174,6 +176,14 @@ training::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> surface
     fat.push_back({i, {rest[strands[i].a], rest[strands[i].b]}});
   }
   return {borders, fat, {settings.kept_fat, settings.kept_sheath, kCountedRadius}};
+}
+
+training::TriangleSight MakeTriangleSight(std::span<const SurfaceInfo> surfaces,
+                                          std::span<const StrandInfo> strands, std::span<const Vec3> rest,
+                                          const training::JudgementSettings& settings) {
+  std::vector<std::uint32_t> cystic, hepatic;
+  FindDucts(surfaces, rest, cystic, hepatic);
+  return {std::move(cystic), std::move(hepatic), scene::MakeTriangleFat(strands, rest), settings.kept_fat};
 }
 
 surgery::GallstoneSettings FindGallstones(const Scene& scene) {

@@ -43,7 +43,14 @@ training::TriangleWindow MakeTriangleWindow(std::span<const scene::SurfaceInfo> 
                                             std::span<const std::uint32_t> main_arteries,
                                             const training::JudgementSettings& settings);
 
-/// All but the triangle's window.
+/// What an eye has to see of it, and the fat that hides it.
+/// \param rest  (nodes) [m]
+training::TriangleSight MakeTriangleSight(std::span<const scene::SurfaceInfo> surfaces,
+                                          std::span<const scene::StrandInfo> strands,
+                                          std::span<const math::Vec3> rest,
+                                          const training::JudgementSettings& settings);
+
+/// All but the triangle's window and the sight of it.
 /// \param rest  (nodes) [m]
 training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
                                                 std::span<const scene::SurfaceInfo> surfaces,

@@ -9,6 +9,7 @@
 #include "trocar/scene/scene.h"
 #include "trocar/scene/tissue_layout.h"
 #include "trocar/training/injury.h"
+#include "trocar/training/triangle_sight.h"
 
 namespace trocar::simulation {
 
@@ -27,6 +28,7 @@ struct ModelDescription {
   std::vector<std::vector<training::VesselRole>> tube_roles;
   /// Of an operation: strands of fat and peritoneum over the window of the hepatocystic triangle.
   std::vector<std::uint32_t> window_strands;
+  training::TriangleSight sight;  ///< of an operation: of the triangle
 };
 
 /// Compiles the scene's tissue as the simulation does, and keeps what is constant.

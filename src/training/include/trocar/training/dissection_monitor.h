@@ -13,6 +13,7 @@
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/rest_frame.h"
 #include "trocar/training/critical_view.h"
+#include "trocar/training/triangle_sight.h"
 #include "trocar/training/triangle_window.h"
 
 namespace trocar::training {
@@ -25,12 +26,12 @@ struct DissectedAnatomy {
     double along = 0;  ///< 0 at the infundibulum to 1 at the fundus, at rest [-]
   };
   TriangleWindow triangle;
+  TriangleSight sight;
   std::vector<BedFibre> bed;
   std::vector<surgery::EnteringTube> entering;
-  geometry::Rows fibres;  ///< (nodes) strands of fat, peritoneum and adhesions at each
-  /// Of cystic and common hepatic duct, from where they meet on; empty where there is none.
-  std::vector<std::uint32_t> cystic_duct, hepatic_duct;
-  std::vector<std::uint32_t> neck;  ///< nodes of the gallbladder near its infundibulum
+  geometry::Rows fibres;                   ///< (nodes) strands of fat, peritoneum and adhesions at each
+  std::vector<std::uint32_t> cystic_duct;  ///< from the hepatic duct on; empty where there is none
+  std::vector<std::uint32_t> neck;         ///< nodes of the gallbladder near its infundibulum
 };
 
 class DissectionMonitor {

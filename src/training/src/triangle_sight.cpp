@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/training/triangle_sight.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "trocar/core/assert.h"
+
+namespace trocar::training {
+
+using math::Vec3;
+namespace {
+
+/// What is seen may lie this near behind a surface [m]: sight ends at the skin of a duct, not at its axis.
+constexpr double kSkin = 0.004;
+
+}  // namespace
+
+TriangleSight::TriangleSight(std::vector<std::uint32_t> cystic_duct, std::vector<std::uint32_t> hepatic_duct,
+                             surgery::FatLobules fat, double kept_fat)
+    : cystic_duct_(std::move(cystic_duct)),
+      hepatic_duct_(std::move(hepatic_duct)),
+      fat_(std::move(fat)),
+      kept_fat_(kept_fat) {}
+
+std::array<Vec3, 3> TriangleSight::Points(std::span<const Vec3> positions) const noexcept {
+  TROCAR_ASSERT(HasTriangle());
+  const auto at = [&](const std::vector<std::uint32_t>& nodes, double share) {
+    return positions[nodes[static_cast<std::size_t>(share * static_cast<double>(nodes.size() - 1))]];
+  };
+  const Vec3 beside = at(cystic_duct_, 0.5), across = at(hepatic_duct_, 0.5);
+  const double apart = math::Distance(beside, across);
+  const double window = apart > kept_fat_ ? 1.0 - kept_fat_ / apart : 0.0;  // of the way across
+  return {at(cystic_duct_, 0.3), at(cystic_duct_, 0.7), math::Lerp(beside, across, 0.5 * window)};
+}
+
+collision::Segment TriangleSight::LineTo(const Vec3& point, const Vec3& eye) noexcept {
+  return {eye, point + kSkin * math::Normalized(eye - point)};
+}
+
+}  // namespace trocar::training

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sight of the hepatocystic triangle, alone and as the judge of a dissection asks for it.
+#include "trocar/training/triangle_sight.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "trocar/training/dissection_monitor.h"
+
+namespace trocar::training {
+namespace {
+
+using math::Vec3;
+
+constexpr double kKept = 0.005;  // m
+
+/// Cystic and hepatic duct of 20 mm along x, 15 mm apart along y; a strand of fat over the middle of the cystic one.
+struct Triangle {
+  std::vector<std::uint32_t> cystic, hepatic;
+  std::vector<Vec3> rest;
+  std::vector<surgery::FatStrand> fat;
+
+  explicit Triangle(double apart = 0.015) {
+    const auto add_duct = [&](double y) {
+      std::vector<std::uint32_t> nodes;
+      for (int k = 0; k <= 10; ++k) {
+        nodes.push_back(static_cast<std::uint32_t>(rest.size()));
+        rest.push_back({0.002 * k, y, 0});
+      }
+      return nodes;
+    };
+    cystic = add_duct(0);
+    hepatic = add_duct(apart);
+    const auto node = static_cast<std::uint32_t>(rest.size());
+    rest.push_back({0.004, 0, 0.009});
+    rest.push_back({0.008, 0, 0.009});
+    fat.push_back({0, node, node + 1});
+  }
+  TriangleSight Sight() const { return {cystic, hepatic, surgery::FatLobules(fat, rest, 0.003), kKept}; }
+};
+
+TEST(TriangleSight, AsksForTheCysticDuctAndTheMiddleOfTheWindow) {
+  const Triangle triangle;
+  const auto points = triangle.Sight().Points(triangle.rest);
+  EXPECT_NEAR(math::Distance(points[0], {0.006, 0, 0}), 0, 1e-12);
+  EXPECT_NEAR(math::Distance(points[1], {0.014, 0, 0}), 0, 1e-12);
+  // the last 5 mm before the hepatic duct are no window
+  EXPECT_NEAR(math::Distance(points[2], {0.010, 0.005, 0}), 0, 1e-12);
+  const Triangle narrow(0.004);
+  EXPECT_NEAR(math::Distance(narrow.Sight().Points(narrow.rest)[2], {0.010, 0, 0}), 0, 1e-12);
+  EXPECT_FALSE(TriangleSight().HasTriangle());
+}
+
+TEST(TriangleSight, EndsAtTheSkin) {
+  const collision::Segment line = TriangleSight::LineTo({0, 0, 0}, {0, 0, 0.06});
+  EXPECT_EQ(line.start, (Vec3{0, 0, 0.06}));
+  EXPECT_NEAR(math::Distance(line.end, {0, 0, 0.004}), 0, 1e-12);
+}
+
+class SightOfMonitor : public ::testing::Test {
+ protected:
+  bool Sees(const Vec3& eye) {
+    DissectedAnatomy anatomy;
+    anatomy.sight = triangle_.Sight();
+    anatomy.cystic_duct = triangle_.cystic;
+    anatomy.neck = {triangle_.cystic[9], triangle_.cystic[10], triangle_.hepatic[10]};
+    DissectionMonitor monitor(std::move(anatomy), triangle_.rest);
+    const surgery::Vessels none({surgery::FlowNetwork::Make({}, {}).value(), {}, {}, {}, {}},
+                                std::span<const surgery::VesselTube>{}, 0, 0);
+    monitor.Update(tissue_, none, {}, {{{}, eye}, 1.2});
+    return monitor.Facts().is_triangle_in_view;
+  }
+  void SetUp() override {
+    tissue_.position = triangle_.rest;
+    tissue_.strand_is_intact = {1};
+  }
+
+  Triangle triangle_;
+  tissue::TissueState tissue_;
+};
+
+TEST_F(SightOfMonitor, FatOnTheLineOfSightHidesTheTriangleUntilItIsDivided) {
+  const Vec3 above = {0.006, 0, 0.06};
+  EXPECT_FALSE(Sees(above));
+  tissue_.strand_is_intact = {0};
+  EXPECT_TRUE(Sees(above));
+}
+
+TEST_F(SightOfMonitor, TheSameFatBesideTheLineOfSightHidesNothing) {
+  EXPECT_TRUE(Sees({0.006, -0.03, 0.06})) << "past the fat";
+  for (const std::uint32_t node : {triangle_.fat[0].a, triangle_.fat[0].b})
+    tissue_.position[node] += Vec3{0, 0.02, 0};
+  EXPECT_TRUE(Sees({0.006, 0, 0.06})) << "drawn aside";
+}
+
+}  // namespace
+}  // namespace trocar::training
