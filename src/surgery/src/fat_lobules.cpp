@@ -67,7 +67,7 @@ void FatLobules::Update(std::span<const std::uint8_t> is_intact) noexcept {
     const bool is_whole = strand.of.strand >= is_intact.size() || is_intact[strand.of.strand] != 0;
     if (is_whole == strand.is_intact) continue;
     strand.is_intact = is_whole;
-    const std::uint32_t change = is_whole ? 1 : -1U;
+    const int change = is_whole ? 1 : -1;
     for (const std::uint32_t end : strand.ends) ends_[end].intact += change;
     for (std::size_t k = 0; k < kOnStrand; ++k) CountNear(kOnStrand * i + k, change);
     has_changed = true;
@@ -77,7 +77,7 @@ void FatLobules::Update(std::span<const std::uint8_t> is_intact) noexcept {
 
 /// Counts a lobule in, or out, with all near it.
 /// \param change  1 or -1
-void FatLobules::CountNear(std::size_t lobule, std::uint32_t change) noexcept {
+void FatLobules::CountNear(std::size_t lobule, int change) noexcept {
   const Vec3 rest = lobules_[lobule].rest;
   for (Lobule& other : lobules_)
     other.left += math::SquaredNorm(other.rest - rest) < kBody * kBody ? change : 0;

@@ -58,17 +58,17 @@ class FatLobules {
   };
   /// A node in which strands of fat meet.
   struct End {
-    std::uint32_t strands = 0, intact = 0;
+    int strands = 0, intact = 0;
     double Filling() const { return static_cast<double>(intact) / static_cast<double>(strands); }
   };
   struct Lobule {
-    double along = 0;                  // its strand, from a on [-]
-    math::Vec3 offset, rest;           // beside its strand; centre at rest [m]
-    double full = 0;                   // radius where all strands are whole [m]
-    std::uint32_t near = 0, left = 0;  // lobules of its body, itself among them; those of them that are there
-    double thin = 1, radius = 0;       // its size by its body [-]; radius now [m]
+    double along = 0;             // its strand, from a on [-]
+    math::Vec3 offset, rest;      // beside its strand; centre at rest [m]
+    double full = 0;              // radius where all strands are whole [m]
+    int near = 0, left = 0;       // lobules of its body, itself among them; those of them that are there
+    double thin = 1, radius = 0;  // its size by its body [-]; radius now [m]
   };
-  void CountNear(std::size_t lobule, std::uint32_t change) noexcept;
+  void CountNear(std::size_t lobule, int change) noexcept;
   void Resize() noexcept;
 
   std::vector<Strand> strands_;
