@@ -177,9 +177,11 @@ void CholecystectomySurgeon::TurnNeck(const Snapshot& seen, int side, double by,
   if (!seen.instruments[kLeft].is_grasping) return;
   const std::size_t duct = FindTube(TubeRole::kCysticDuct);
   const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
-  const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
+  const HandMotion& hand = HandOf(kLeft);
+  const Vec3 arm = hand.Tip() - TubePoint(seen, duct, 0.0);
   const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, known_.bed_normal);
-  DrawGently(kLeft, -side * by * math::Cross(axis, off_axis), RollAbout(kLeft, axis, -side * turn));
+  DrawGently(kLeft, -side * by * math::Cross(axis, off_axis),
+             FindRoll(hand.Port(), hand.Tip(), axis, -side * turn));
 }
 
 void CholecystectomySurgeon::FreeLowerThird(int rounds) {

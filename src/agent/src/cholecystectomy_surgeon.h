@@ -109,7 +109,6 @@ class CholecystectomySurgeon final : public Surgeon {
   void Grasp(int hand, const Place& at, double squeeze = 0);
   void Draw(int hand, const Vec3& by);
   void DrawGently(int hand, const Vec3& by, double roll = 0);
-  double RollAbout(int hand, const Vec3& axis, double angle) const;
   void LetGo(int hand);
   void Ease(int hand);
   void LineUp(const std::string& what, std::size_t tube, double share, double jaw);

@@ -97,12 +97,6 @@ void CholecystectomySurgeon::DrawGently(int hand, const Vec3& by, double roll) {
   Wait(0.2);
 }
 
-/// Roll of a tool that turns what it holds about an axis [rad]: as much of it as lies along the shaft.
-double CholecystectomySurgeon::RollAbout(int hand, const Vec3& axis, double angle) const {
-  const HandMotion& it = hands_[static_cast<std::size_t>(hand)];
-  return angle * math::Dot(axis, math::Normalized(it.Port() - it.Tip()));
-}
-
 /// Gives way to what it holds until hardly a pull is felt: what is let go under a pull springs back.
 void CholecystectomySurgeon::Ease(int hand) {
   Add(SurgeonAct::Kind::kEase, "ease", 3.0).hand = hand;

@@ -123,9 +123,11 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
 void CholecystectomySurgeon::GoRoundDuct(const Snapshot& seen, double angle) {
   const std::size_t duct = FindTube(TubeRole::kCysticDuct);
   const Vec3 neck = TubePoint(seen, duct, 0.0), axis = math::Normalized(neck - TubePoint(seen, duct, 1.0));
-  const Vec3 arm = HandOf(kLeft).Tip() - neck;
+  const HandMotion& hand = HandOf(kLeft);
+  const Vec3 arm = hand.Tip() - neck;
   Ease(kLeft);
-  DrawGently(kLeft, math::Rotate(math::RotationAbout(axis, angle), arm) - arm, RollAbout(kLeft, axis, angle));
+  DrawGently(kLeft, math::Rotate(math::RotationAbout(axis, angle), arm) - arm,
+             FindRoll(hand.Port(), hand.Tip(), axis, angle));
 }
 
 /// Turns the picture so that the right hand's shaft does not hide the vessel that it works on.

@@ -153,4 +153,9 @@ double FindSpin(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& a
   return spin > M_PI / 2 ? spin - M_PI : spin < -M_PI / 2 ? spin + M_PI : spin;
 }
 
+double FindRoll(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& axis, double angle) noexcept {
+  // spin turns about the tool's z, which points back to the port
+  return angle * math::Dot(axis, math::Normalized(p_world_port - p_world_tip));
+}
+
 }  // namespace trocar::agent

@@ -76,4 +76,10 @@ class HandMotion {
 /// Spin with which the jaws of a tool at `p_world_tip` open as nearly as can be along `across`.
 double FindSpin(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& across) noexcept;
 
+/// Change of spin that turns what a tool at `p_world_tip` holds about an axis: as much of the turn as lies along the shaft.
+/// \param axis   unit
+/// \param angle  [rad]
+/// \return [rad]
+double FindRoll(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& axis, double angle) noexcept;
+
 }  // namespace trocar::agent
