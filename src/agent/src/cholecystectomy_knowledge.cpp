@@ -11,13 +11,12 @@ namespace trocar::agent {
 
 using math::Pose;
 using simulation::ClipSnapshot;
-using simulation::TubePiece;
 namespace {
 
 using Kind = StrandInfo::Kind;
 
-constexpr double kBare = 0.0103;          // of each of them, for the view [m]
-constexpr double kSkeletonised = 0.0125;  // of each tube that enters, from the gallbladder on [m]
+constexpr double kBare = 0.0103;          // of each of them, or all that is exposable, for the view [m]
+constexpr double kSkeletonised = 0.0125;  // likewise of each tube that enters, from the gallbladder on [m]
 /// A hold lies this far from where the work is, clear of the liver.
 constexpr double kHoldAway = 0.020, kLeastAway = 0.010, kMostAway = 0.060, kHoldClear = 0.008;  // [m]
 constexpr double kJawsBeyond = 0.005;                    // of a grasper's tip beyond the hold [m]
@@ -67,10 +66,11 @@ std::vector<std::uint32_t> CholecystectomySurgeon::CoveringStrands() const {
   std::vector<std::uint8_t> is_end(known_.rest.size(), 0);
   for (const std::size_t tube : known_.entering) {
     double arc = 0;
+    const double wanted = std::min(kSkeletonised, known_.exposable[tube]);
     const auto& nodes = known_.tube_nodes[tube];
     for (std::size_t k = 1; k < nodes.size(); ++k) {
       arc += math::Distance(known_.rest[nodes[k - 1]], known_.rest[nodes[k]]);
-      if (arc < kSkeletonised) is_end[nodes[k]] = 1;
+      if (arc <= wanted) is_end[nodes[k]] = 1;
     }
   }
   std::vector<std::uint32_t> found;
@@ -98,7 +98,7 @@ bool CholecystectomySurgeon::AreTubesBare(const Snapshot& seen) const {
     double length = 0;
     for (std::size_t k = 1; k < nodes.size() && !is_covered[nodes[k]]; ++k)
       length += math::Distance(seen.positions[nodes[k - 1]], seen.positions[nodes[k]]);
-    return length >= kBare;
+    return length >= std::min(kBare, known_.exposable[tube]);
   });
 }
 
@@ -189,12 +189,7 @@ std::vector<double> CholecystectomySurgeon::ClipsOn(const Snapshot& seen, std::s
 }
 
 bool CholecystectomySurgeon::IsDivided(const Snapshot& seen, std::size_t tube) const {
-  const auto surface = static_cast<std::uint32_t>(scene_->patient.organs.size() + tube);
-  const auto& pieces = seen.operation.topology.tube_pieces;
-  const auto count = std::count_if(
-      pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(seen.operation.topology.tube_piece_count),
-      [&](const TubePiece& piece) { return piece.surface == surface; });
-  return static_cast<std::size_t>(count) >= known_.tube_nodes[tube].size();
+  return seen.operation.topology.IsDivided(known_.surfaces, scene_->patient.organs.size() + tube);
 }
 
 double CholecystectomySurgeon::Clearance(const Snapshot& seen, const collision::Segment& segment) {

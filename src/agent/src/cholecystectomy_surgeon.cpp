@@ -78,6 +78,7 @@ void CholecystectomySurgeon::Learn(ModelDescription model) {
   known_.rest = std::move(model.rest);
   known_.window_strands = std::move(model.window_strands);
   sight_ = std::move(model.sight);
+  known_.exposable = std::move(model.exposable);
   known_.gallbladder = scene::FindSurface(known_.surfaces, OrganRole::kGallbladder);
   known_.liver = scene::FindSurface(known_.surfaces, OrganRole::kLiver);
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {

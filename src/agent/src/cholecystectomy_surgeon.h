@@ -166,6 +166,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void LookPastShaft(std::size_t which, double arc);
   void PlanLookPastShaft(const SurgeonAct& act, const Snapshot& seen);
   std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side, double aside);
+  void UpdateSight(const Snapshot& seen);
   bool Shows(const Snapshot& seen, const math::Pose& X_world_lens, std::span<const Vec3> points);
   std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
   void Divide(std::vector<std::size_t> tubes, int rounds = 3);
@@ -261,6 +262,7 @@ class CholecystectomySurgeon final : public Surgeon {
     std::vector<std::uint32_t> window_strands;  // fat over the hepatocystic triangle's window
     std::vector<std::uint32_t> main_nodes;      // of ducts and arteries that must stay
     std::vector<std::uint32_t> main_ducts;      // of the ducts among them
+    std::vector<double> exposable;              // (tubes) what may be asked to lie bare [m]
     std::vector<std::uint32_t> careful_nodes;   // of those arteries, and of small ducts of the bed
     std::uint32_t neck = 0, hold = 0, fundus = 0, liver_node = 0;
     Vec3 bed_normal;  // from the liver towards the gallbladder, at rest

@@ -2,6 +2,7 @@
 // Where the laparoscope is held, so that what is judged or worked on is seen.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "cholecystectomy_surgeon.h"
@@ -26,9 +27,10 @@ constexpr double kWorkDistances[] = {0.085, 0.072};                      // like
 constexpr double kAside = 0.4;          // of a view from the front of the neck [rad]
 constexpr double kJustAside = 0.28;     // likewise where no better is found; the judge asks for 0.25 [rad]
 constexpr double kSightClear = 0.0002;  // of a line of sight from organs [m]
-constexpr double kTurnForView = 0.5;    // of a free gallbladder about the duct [rad]
-constexpr double kRollForView = 0.3;    // of the neck that is held, likewise [rad]
-constexpr double kNeckStep = 0.008;     // of the hold about the duct, to show the other side of the neck [m]
+constexpr double kFolded = 0.7;       // a duct whose ends are nearer than that, in their distance at rest [-]
+constexpr double kTurnForView = 0.5;  // of a free gallbladder about the duct [rad]
+constexpr double kRollForView = 0.3;  // of the neck that is held, likewise [rad]
+constexpr double kNeckStep = 0.008;   // of the hold about the duct, to show the other side of the neck [m]
 /// Between the line of sight and a shaft: more is not better, and less than the second is worth another look [rad].
 constexpr double kWellPastShaft = 0.9, kPastShaft = 0.6;
 
@@ -57,11 +59,14 @@ void TryViews(const LaparoscopeSetup& setup, const Vec3& middle, const Vec3& axi
 
 }  // namespace
 
-/// Whether all points lie in the picture with no organ and no fat before them.
+void CholecystectomySurgeon::UpdateSight(const Snapshot& seen) {
+  sight_.Update(seen.operation.strand_is_intact, [&](std::uint32_t tube) { return IsDivided(seen, tube); });
+}
+
+/// Whether all points lie in the picture with no organ, and no fat that was left at the last UpdateSight, before them.
 bool CholecystectomySurgeon::Shows(const Snapshot& seen, const Pose& X_world_lens,
                                    std::span<const Vec3> points) {
   const Vec3& eye = X_world_lens.translation;
-  sight_.Update(seen.operation.strand_is_intact);
   return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
     return IsInView(X_world_lens, scene_->laparoscope.field_of_view, p) &&
            Clearance(seen, training::TriangleSight::LineTo(p, eye)) > kSightClear &&
@@ -74,8 +79,10 @@ bool CholecystectomySurgeon::Shows(const Snapshot& seen, const Pose& X_world_len
 std::optional<TrocarJoints> CholecystectomySurgeon::FindSideView(const Snapshot& seen, int side,
                                                                  double aside) {
   const std::size_t duct = FindTube(TubeRole::kCysticDuct);
-  const std::array<Vec3, 3> points = sight_.Points(seen.positions);
-  const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
+  UpdateSight(seen);
+  const std::span<const Vec3> points = sight_.FindPoints(seen.positions);
+  const Vec3 middle =
+      std::accumulate(points.begin(), points.end(), Vec3{}) / static_cast<double>(points.size());
   std::optional<TrocarJoints> view;
   TryViews(scene_->laparoscope, middle, TubeDirection(seen, duct, 0.5), kDistances,
            [&](const TrocarJoints& joints, const Pose& X_world_lens) {
@@ -110,7 +117,8 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
     return;
   }
   if (may_turn) {
-    HangsFree(seen) ? GoRoundDuct(seen, -act.side * kTurnForView)
+    // what hangs free does not always turn with the hand: by the last hold it goes the other way round
+    HangsFree(seen) ? GoRoundDuct(seen, (act.is_on ? act.side : -act.side) * kTurnForView)
                     : TurnNeck(seen, act.side, kNeckStep, kRollForView);
     LookFromSide(act.side, act.count - 1, act.is_on);
   } else if (!act.is_on) {
@@ -119,14 +127,22 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
   }
 }
 
-/// Takes a gallbladder that hangs free round the duct by the hold, which comes no farther from it and rolls along.
+/// Takes a gallbladder that hangs free round the duct by the hold, which comes no farther from it and rolls along. A duct
+/// that has folded is drawn out as it lay. The assistant, who would hold it back, lets go.
 void CholecystectomySurgeon::GoRoundDuct(const Snapshot& seen, double angle) {
   const std::size_t duct = FindTube(TubeRole::kCysticDuct);
-  const Vec3 neck = TubePoint(seen, duct, 0.0), axis = math::Normalized(neck - TubePoint(seen, duct, 1.0));
+  const auto& nodes = known_.tube_nodes[duct];
+  const Vec3 at_rest = known_.rest[nodes.front()] - known_.rest[nodes.back()];
+  const Vec3 neck = TubePoint(seen, duct, 0.0), root = TubePoint(seen, duct, 1.0);
+  const bool is_folded = math::Distance(neck, root) < kFolded * math::Norm(at_rest);
+  const Vec3 out = is_folded ? root + at_rest - neck : Vec3{};
+  const Vec3 axis = math::Normalized(neck + out - root);
   const HandMotion& hand = HandOf(kLeft);
   const Vec3 arm = hand.Tip() - neck;
+  if (seen.operation.assistant.is_holding)
+    Add(SurgeonAct::Kind::kAssist, "assistant: release", 4.0).command = AssistantCommand::kRelease;
   Ease(kLeft);
-  DrawGently(kLeft, math::Rotate(math::RotationAbout(axis, angle), arm) - arm,
+  DrawGently(kLeft, out + math::Rotate(math::RotationAbout(axis, angle), arm) - arm,
              FindRoll(hand.Port(), hand.Tip(), axis, angle));
 }
 
@@ -146,6 +162,7 @@ void CholecystectomySurgeon::PlanLookPastShaft(const SurgeonAct& act, const Snap
     return math::AngleBetween(X_world_lens.translation - p, shaft);
   };
   const std::array<Vec3, 1> points = {p};
+  UpdateSight(seen);
   const Pose& now = seen.X_world_laparoscope;
   double best = Shows(seen, now, points) ? angle_past_shaft(now) : 0.0;
   if (best > kPastShaft) return;

@@ -68,7 +68,7 @@ inline void AddResult(PublishedHash& hash, const simulation::OperationResult& re
            injuries.bile_rate, injuries.blood_rate, injuries.structures_entering, injuries.spilled_stones,
            injuries.wrong_vessels);
   hash.Add(result.was_critical_view_achieved, result.bed_blood, result.facts.skeletonised,
-           result.facts.is_triangle_in_view, result.facts.view_azimuth);
+           result.facts.exposable, result.facts.is_triangle_in_view, result.facts.view_azimuth);
 }
 
 /// Of the snapshot but its clock times, and of the operation's result.

@@ -2,9 +2,12 @@
 // The built-in patient's critical view: what the eye sees of the hepatocystic triangle is what is judged.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "operation_harness.h"
+#include "trocar/anatomy/generate_patient.h"
 #include "trocar/simulation/model_description.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::simulation {
 namespace {
@@ -42,11 +45,27 @@ class TriangleOfPatient : public OperationHarness {
     return least;
   }
   void Divide(std::uint32_t strand) { state_.strand_is_intact[strand] = 0; }
+  /// Fat on the last of what enters the gallbladder, as far as it is exposable.
+  void DivideAboutEntries() {
+    for (std::size_t t = 0; t < model_description_.exposable.size(); ++t) {
+      const double exposable = model_description_.exposable[t];
+      if (exposable == 0.0) continue;
+      const SurfaceInfo& tube = model_description_.surfaces[OperationScene()->patient.organs.size() + t];
+      const std::int32_t gallbladder =
+          scene::FindSurface(model_description_.surfaces, roles::OrganRole::kGallbladder);
+      const std::uint32_t end = tube.first_node + (tube.ends[0] == gallbladder ? 0 : tube.node_count - 1);
+      for (std::uint32_t i = 0; i < operation_->Strands().size(); ++i) {
+        const StrandInfo& strand = operation_->Strands()[i];
+        const Vec3 middle = 0.5 * (state_.position[strand.a] + state_.position[strand.b]);
+        if (IsFat(i) && math::Distance(middle, state_.position[end]) < exposable) Divide(i);
+      }
+    }
+  }
   /// Lenses about the cystic duct, 60 mm from it, from which fat hides nothing of what has to be seen.
   int CountOpenViews() {
     TriangleSight& sight = model_description_.sight;
-    sight.Update(state_.strand_is_intact);
-    const auto points = sight.Points(state_.position);
+    sight.Update(state_.strand_is_intact, [](std::uint32_t) { return false; });
+    const auto points = sight.FindPoints(state_.position);
     const Vec3 along = math::Normalized(points[1] - points[0]);
     const Vec3 up = math::Normalized(math::Cross(along, {1, 0, 0}), {0, 0, 1});
     int open = 0;
@@ -88,10 +107,46 @@ TEST_F(TriangleOfPatient, IsClearWhenNothingCoversItThoughTheMainDuctsKeepTheirF
   EXPECT_GT(kept, 100u) << "the common hepatic duct need not be exposed";
 }
 
+/// What may be asked to lie bare of the tube in that role [m].
+double ExposableOf(const Scene& scene, roles::TubeRole role) {
+  const auto model = DescribeModel(scene);
+  EXPECT_TRUE(model.ok());
+  double found = 0;
+  for (std::size_t t = 0; model.ok() && t < scene.patient.tubes.size(); ++t) {
+    if (scene.patient.tubes[t].role == role) found = std::max(found, model->exposable[t]);
+  }
+  return found;
+}
+
+// The cystic duct of generated patient 4 is 11 mm long.
+TEST(ExposableOfTubes, EndsWhereMainDuctsKeepWhatLiesBesideThem) {
+  const Scene& whole = *OperationScene();
+  const double usual = training::CriticalViewSettings{}.skeletonised;
+  EXPECT_GT(ExposableOf(whole, roles::TubeRole::kCysticDuct), usual);
+  EXPECT_GT(ExposableOf(whole, roles::TubeRole::kCysticArtery), usual);
+  EXPECT_EQ(ExposableOf(whole, roles::TubeRole::kCommonHepaticDuct), 0.0) << "it enters no gallbladder";
+  Scene wide = whole;
+  wide.operation->parameters.judgement.kept_fat = 0.020;
+  EXPECT_LT(ExposableOf(wide, roles::TubeRole::kCysticDuct),
+            ExposableOf(whole, roles::TubeRole::kCysticDuct) - 0.010);
+
+  const test::TemporaryFolder temporary;
+  const auto patient = anatomy::GeneratePatient(4);
+  ASSERT_TRUE(patient.ok()) << patient.error().Text();
+  ASSERT_TRUE(anatomy::WritePatient(temporary.Path() / "patient", *patient).ok());
+  const auto read = scene::ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json",
+                                     temporary.Path() / "patient");
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_GT(ExposableOf(*read, roles::TubeRole::kCysticDuct), 0.003);
+  EXPECT_LT(ExposableOf(*read, roles::TubeRole::kCysticDuct), 0.007);
+}
+
 // The fat that is drawn is the fat that hides: none of the triangle is seen before it is cleared.
-TEST_F(TriangleOfPatient, IsHiddenByItsFatFromAllSidesAndSeenOnceItIsCleared) {
+TEST_F(TriangleOfPatient, IsHiddenByItsFatFromAllSidesAndSeenOnceItAndTheEntriesAreCleared) {
   EXPECT_EQ(CountOpenViews(), 0);
   for (const std::uint32_t strand : model_description_.window_strands) Divide(strand);
+  EXPECT_EQ(CountOpenViews(), 0) << "fat lies where duct and artery enter";
+  DivideAboutEntries();
   EXPECT_GT(CountOpenViews(), 0);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "trocar/core/assert.h"
 #include "trocar/core/state_archive.h"
 
 namespace trocar::training {
@@ -18,12 +19,20 @@ int Grade(double value, double wanted) noexcept {
   return value >= kHalf * wanted ? 1 : 0;
 }
 
-/// Two structures, both freed; in part: two, not yet freed, or more because something lies over them.
-int GradeStructures(const DissectionFacts& facts, double wanted) noexcept {
+/// Of a tube that enters [m].
+double WantedOf(const DissectionFacts& facts, std::size_t tube, double skeletonised) noexcept {
+  return std::min(skeletonised, facts.exposable[tube]);
+}
+
+/// Two structures, both freed; in part: two, not yet freed.
+int GradeStructures(const DissectionFacts& facts, double skeletonised) noexcept {
+  TROCAR_ASSERT(facts.exposable.size() == facts.skeletonised.size());
   const bool are_two = facts.structures_entering == 2 && facts.skeletonised.size() == 2;
   if (!are_two) return 0;
-  const double least = std::min(facts.skeletonised[0], facts.skeletonised[1]);
-  return Grade(least, wanted);
+  const auto grade = [&](std::size_t tube) {
+    return Grade(facts.skeletonised[tube], WantedOf(facts, tube, skeletonised));
+  };
+  return std::min(grade(0), grade(1));
 }
 
 std::string Percent(double share) {
@@ -67,14 +76,15 @@ std::vector<std::string> ExplainCriticalView(const DissectionFacts& facts, const
       reasons.push_back(std::to_string(facts.structures_entering) +
                         " structures enter the gallbladder; there must be two and only two.");
     } else {
-      const double least = facts.skeletonised.empty()
-                               ? 0
-                               : *std::min_element(facts.skeletonised.begin(), facts.skeletonised.end());
+      const auto lacks = [&](std::size_t tube) {
+        return WantedOf(facts, tube, settings.skeletonised) - facts.skeletonised[tube];
+      };
+      const std::size_t tube = lacks(0) > lacks(1) ? 0 : 1;
       char text[160];
       std::snprintf(
           text, sizeof text,
           "Two structures enter the gallbladder, but one is freed over %.0f mm only; %.0f mm are needed.",
-          1e3 * least, 1e3 * settings.skeletonised);
+          1e3 * facts.skeletonised[tube], 1e3 * WantedOf(facts, tube, settings.skeletonised));
       reasons.emplace_back(text);
     }
   }
@@ -91,6 +101,7 @@ void VisitState(core::StateArchive& archive, DissectionFacts& facts) {
   archive.Field("detached_share", facts.detached_share);
   archive.Field("structures_entering", facts.structures_entering);
   archive.Field("skeletonised", facts.skeletonised);
+  archive.Field("exposable", facts.exposable);
   archive.Field("is_triangle_in_view", facts.is_triangle_in_view);
   archive.Field("view_azimuth", facts.view_azimuth);
 }

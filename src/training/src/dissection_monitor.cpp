@@ -28,6 +28,7 @@ DissectionMonitor::DissectionMonitor(DissectedAnatomy anatomy, std::span<const V
   if (!anatomy_.cystic_duct.empty())
     duct_rest_ = {rest[anatomy_.cystic_duct.front()], rest[anatomy_.cystic_duct.back()]};
   facts_.skeletonised.reserve(anatomy_.entering.size());
+  facts_.exposable.reserve(anatomy_.entering.size());
 }
 
 void DissectionMonitor::Update(const tissue::TissueState& tissue, const surgery::Vessels& vessels,
@@ -50,7 +51,9 @@ void DissectionMonitor::Update(const tissue::TissueState& tissue, const surgery:
 
   facts_.structures_entering = 0;
   facts_.skeletonised.clear();
-  for (const surgery::EnteringTube& tube : anatomy_.entering) {
+  facts_.exposable.clear();
+  for (std::size_t i = 0; i < anatomy_.entering.size(); ++i) {
+    const surgery::EnteringTube& tube = anatomy_.entering[i];
     const bool holds = std::any_of(tube.end_strands.begin(), tube.end_strands.end(), is_intact);
     if (!holds || vessels.CountCuts(tube.tube) > 0) continue;
     ++facts_.structures_entering;
@@ -64,7 +67,10 @@ void DissectionMonitor::Update(const tissue::TissueState& tissue, const surgery:
       length += math::Distance(tissue.position[tube.nodes[k - 1]], tissue.position[node]);
     }
     facts_.skeletonised.push_back(length);
+    facts_.exposable.push_back(anatomy_.exposable[i]);
   }
+  anatomy_.sight.Update(tissue.strand_is_intact,
+                        [&](std::uint32_t tube) { return vessels.CountCuts(tube) > 0; });
   Look(tissue, organs, camera);
 }
 
@@ -74,8 +80,7 @@ void DissectionMonitor::Look(const tissue::TissueState& tissue, std::span<const 
   facts_.view_azimuth = std::nan("");
   TriangleSight& sight = anatomy_.sight;
   if (!sight.HasTriangle()) return;
-  sight.Update(tissue.strand_is_intact);
-  const std::array<Vec3, 3> points = sight.Points(tissue.position);
+  const std::span<const Vec3> points = sight.FindPoints(tissue.position);
   const Vec3 eye = camera.X_world_camera.translation;
   facts_.is_triangle_in_view = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
     if (!instrument::IsInView(camera.X_world_camera, camera.field_of_view, p)) return false;

@@ -13,17 +13,21 @@ namespace {
 
 /// What is seen may lie this near behind a surface [m]: sight ends at the skin of a duct, not at its axis.
 constexpr double kSkin = 0.004;
+constexpr std::size_t kDuctPoints = 3;
 
 }  // namespace
 
 TriangleSight::TriangleSight(std::vector<std::uint32_t> cystic_duct, std::vector<std::uint32_t> hepatic_duct,
-                             surgery::FatLobules fat, double kept_fat)
+                             std::vector<TubeEntry> entries, surgery::FatLobules fat, double kept_fat)
     : cystic_duct_(std::move(cystic_duct)),
       hepatic_duct_(std::move(hepatic_duct)),
+      entries_(std::move(entries)),
+      enters_(entries_.size(), 1),
+      points_(kDuctPoints + entries_.size()),
       fat_(std::move(fat)),
       kept_fat_(kept_fat) {}
 
-std::array<Vec3, 3> TriangleSight::Points(std::span<const Vec3> positions) const noexcept {
+std::span<const Vec3> TriangleSight::FindPoints(std::span<const Vec3> positions) noexcept {
   TROCAR_ASSERT(HasTriangle());
   const auto at = [&](const std::vector<std::uint32_t>& nodes, double share) {
     return positions[nodes[static_cast<std::size_t>(share * static_cast<double>(nodes.size() - 1))]];
@@ -31,7 +35,16 @@ std::array<Vec3, 3> TriangleSight::Points(std::span<const Vec3> positions) const
   const Vec3 beside = at(cystic_duct_, 0.5), across = at(hepatic_duct_, 0.5);
   const double apart = math::Distance(beside, across);
   const double window = apart > kept_fat_ ? 1.0 - kept_fat_ / apart : 0.0;  // of the way across
-  return {at(cystic_duct_, 0.3), at(cystic_duct_, 0.7), math::Lerp(beside, across, 0.5 * window)};
+  points_[0] = at(cystic_duct_, 0.3);
+  points_[1] = at(cystic_duct_, 0.7);
+  points_[2] = math::Lerp(beside, across, 0.5 * window);
+  std::size_t count = kDuctPoints;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const TubeEntry& entry = entries_[i];
+    if (enters_[i] != 0)
+      points_[count++] = math::Lerp(positions[entry.nodes[0]], positions[entry.nodes[1]], entry.share);
+  }
+  return std::span(points_).first(count);
 }
 
 collision::Segment TriangleSight::LineTo(const Vec3& point, const Vec3& eye) noexcept {

@@ -11,7 +11,7 @@ namespace {
 constexpr double kTick = 1.0 / 120;
 
 DissectionFacts MakeWhole() {
-  return {0.95, 0.4, 2, {0.012, 0.011}, true, -0.4};
+  return {0.95, 0.4, 2, {0.012, 0.011}, {0.03, 0.03}, true, -0.4};
 }
 
 void Look(CriticalView& view, DissectionFacts facts, double azimuth, double seconds) {
@@ -42,12 +42,12 @@ TEST(CriticalView, GradesEachCriterion) {
     DissectionFacts facts;
     std::array<int, 3> grades;
   };
-  const Case cases[] = {{{0.0, 0.0, 5, {}, false, 0}, {0, 0, 0}},
-                        {{0.5, 0.2, 2, {0.02, 0.006}, false, 0}, {1, 1, 1}},
-                        {{0.9, 1.0 / 3, 2, {0.01, 0.01}, false, 0}, {2, 2, 2}},
-                        {{0.9, 1.0 / 3, 3, {0.02, 0.02, 0.02}, false, 0}, {2, 2, 0}},
-                        {{0.9, 1.0 / 3, 1, {0.02}, false, 0}, {2, 2, 0}},
-                        {{NAN, NAN, 2, {NAN, NAN}, true, NAN}, {0, 0, 0}}};
+  const Case cases[] = {{{0.0, 0.0, 5, {}, {}, false, 0}, {0, 0, 0}},
+                        {{0.5, 0.2, 2, {0.02, 0.006}, {0.03, 0.03}, false, 0}, {1, 1, 1}},
+                        {{0.9, 1.0 / 3, 2, {0.01, 0.01}, {0.03, 0.03}, false, 0}, {2, 2, 2}},
+                        {{0.9, 1.0 / 3, 3, {0.02, 0.02, 0.02}, {0.03, 0.03, 0.03}, false, 0}, {2, 2, 0}},
+                        {{0.9, 1.0 / 3, 1, {0.02}, {0.03}, false, 0}, {2, 2, 0}},
+                        {{NAN, NAN, 2, {NAN, NAN}, {0.03, 0.03}, true, NAN}, {0, 0, 0}}};
   for (const Case& c : cases) {
     CriticalView view;
     view.Update(c.facts, kTick);
@@ -74,9 +74,24 @@ TEST(CriticalView, CountsOnlyWhatIsInTheMiddleOfThePicture) {
   EXPECT_FALSE(view.Score().is_seen_from_front);
 }
 
+// A cystic duct of 11 mm would have to be bared into the hepatic duct otherwise.
+TEST(CriticalView, AsksOfAShortDuctOnlyWhatIsExposable) {
+  CriticalView view;
+  DissectionFacts facts = MakeWhole();
+  facts.skeletonised = {0.006, 0.012};
+  view.Update(facts, kTick);
+  EXPECT_EQ(view.Score().criteria[2], 1);
+  facts.exposable = {0.006, 0.03};
+  view.Update(facts, kTick);
+  EXPECT_EQ(view.Score().criteria[2], 2);
+  facts.skeletonised = {0.006, 0.006};
+  view.Update(facts, kTick);
+  EXPECT_EQ(view.Score().criteria[2], 1) << "the artery is long";
+}
+
 TEST(ExplainCriticalView, SaysWhatIsMissingAndNothingWhenAchieved) {
   CriticalView view;
-  DissectionFacts facts{0.3, 0.1, 3, {0.01, 0.01, 0.002}, true, 0};
+  DissectionFacts facts{0.3, 0.1, 3, {0.01, 0.01, 0.002}, {0.03, 0.03, 0.03}, true, 0};
   view.Update(facts, kTick);
   const auto reasons = ExplainCriticalView(facts, view.Score());
   ASSERT_EQ(reasons.size(), 3u);
@@ -88,7 +103,9 @@ TEST(ExplainCriticalView, SaysWhatIsMissingAndNothingWhenAchieved) {
   facts.skeletonised = {0.012, 0.004};
   view.Update(facts, kTick);
   ASSERT_EQ(ExplainCriticalView(facts, view.Score()).size(), 1u);
-  EXPECT_NE(ExplainCriticalView(facts, view.Score())[0].find("4 mm"), std::string::npos);
+  EXPECT_NE(ExplainCriticalView(facts, view.Score())[0].find("4 mm only; 10 mm"), std::string::npos);
+  facts.exposable = {0.03, 0.006};
+  EXPECT_NE(ExplainCriticalView(facts, view.Score())[0].find("4 mm only; 6 mm"), std::string::npos);
 
   view.Update(MakeWhole(), kTick);
   EXPECT_EQ(ExplainCriticalView(MakeWhole(), view.Score()).size(), 2u);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -16,9 +17,12 @@ using math::Vec3;
 
 constexpr double kKept = 0.005;  // m
 
-/// Cystic and hepatic duct of 20 mm along x, 15 mm apart along y; a strand of fat over the middle of the cystic one.
+/// Cystic and hepatic duct of 20 mm along x, 15 mm apart along y; a strand of fat over the middle of the cystic one. Tubes 0
+/// and 1, the cystic duct and an artery beside it, enter a gallbladder that begins 24 mm out; they show 5 mm before it.
 struct Triangle {
+  static constexpr std::uint32_t kDuct = 0, kArtery = 1;
   std::vector<std::uint32_t> cystic, hepatic;
+  std::vector<TubeEntry> entries;
   std::vector<Vec3> rest;
   std::vector<surgery::FatStrand> fat;
 
@@ -37,20 +41,49 @@ struct Triangle {
     rest.push_back({0.004, 0, 0.009});
     rest.push_back({0.008, 0, 0.009});
     fat.push_back({0, node, node + 1});
+    const auto add_entry = [&](std::uint32_t tube, double y) {
+      const auto first = static_cast<std::uint32_t>(rest.size());
+      rest.push_back({0.018, y, 0});
+      rest.push_back({0.022, y, 0});
+      entries.push_back({tube, {first, first + 1}, 0.25});
+    };
+    add_entry(kDuct, 0.0);
+    add_entry(kArtery, 0.008);
   }
-  TriangleSight Sight() const { return {cystic, hepatic, surgery::FatLobules(fat, rest, 0.003), kKept}; }
+  TriangleSight Sight() const {
+    return {cystic, hepatic, entries, surgery::FatLobules(fat, rest, 0.003), kKept};
+  }
 };
 
 TEST(TriangleSight, AsksForTheCysticDuctAndTheMiddleOfTheWindow) {
   const Triangle triangle;
-  const auto points = triangle.Sight().Points(triangle.rest);
+  TriangleSight sight = triangle.Sight();
+  const auto points = sight.FindPoints(triangle.rest);
   EXPECT_NEAR(math::Distance(points[0], {0.006, 0, 0}), 0, 1e-12);
   EXPECT_NEAR(math::Distance(points[1], {0.014, 0, 0}), 0, 1e-12);
   // the last 5 mm before the hepatic duct are no window
   EXPECT_NEAR(math::Distance(points[2], {0.010, 0.005, 0}), 0, 1e-12);
   const Triangle narrow(0.004);
-  EXPECT_NEAR(math::Distance(narrow.Sight().Points(narrow.rest)[2], {0.010, 0, 0}), 0, 1e-12);
+  TriangleSight sight_of_narrow = narrow.Sight();
+  EXPECT_NEAR(math::Distance(sight_of_narrow.FindPoints(narrow.rest)[2], {0.010, 0, 0}), 0, 1e-12);
   EXPECT_FALSE(TriangleSight().HasTriangle());
+}
+
+TEST(TriangleSight, AsksForWhereEachWholeTubeEntersTheGallbladder) {
+  const Triangle triangle;
+  TriangleSight sight = triangle.Sight();
+  const auto ask = [&](std::vector<std::uint32_t> divided) {
+    sight.Update(std::vector<std::uint8_t>{1}, [&](std::uint32_t tube) {
+      return std::find(divided.begin(), divided.end(), tube) != divided.end();
+    });
+    const auto points = sight.FindPoints(triangle.rest);
+    return std::vector<Vec3>(points.begin() + 3, points.end());
+  };
+  const Vec3 duct = {0.019, 0, 0}, artery = {0.019, 0.008, 0};
+  EXPECT_EQ(ask({}), (std::vector<Vec3>{duct, artery}));
+  EXPECT_EQ(ask({Triangle::kDuct}), std::vector<Vec3>{artery});
+  EXPECT_EQ(ask({Triangle::kArtery}), std::vector<Vec3>{duct});
+  EXPECT_TRUE(ask({Triangle::kDuct, Triangle::kArtery}).empty());
 }
 
 TEST(TriangleSight, EndsAtTheSkin) {
@@ -86,6 +119,19 @@ TEST_F(SightOfMonitor, FatOnTheLineOfSightHidesTheTriangleUntilItIsDivided) {
   EXPECT_FALSE(Sees(above));
   tissue_.strand_is_intact = {0};
   EXPECT_TRUE(Sees(above));
+}
+
+// A gallbladder that was swung about lies with its neck beside the lump: the duct is seen, its entry is not.
+TEST_F(SightOfMonitor, FatBeforeAnEntryHidesTheTriangle) {
+  const Vec3 above = {0.006, 0, 0.06};
+  const auto move_fat = [&](double x, double y) {
+    tissue_.position[triangle_.fat[0].a] = {x - 0.002, y, 0.009};
+    tissue_.position[triangle_.fat[0].b] = {x + 0.002, y, 0.009};
+  };
+  move_fat(0.017, 0.007);
+  EXPECT_FALSE(Sees(above)) << "before the artery's";
+  move_fat(0.017, 0.017);
+  EXPECT_TRUE(Sees(above)) << "beside both";
 }
 
 TEST_F(SightOfMonitor, TheSameFatBesideTheLineOfSightHidesNothing) {

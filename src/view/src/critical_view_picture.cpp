@@ -68,7 +68,10 @@ class Occluders {
  public:
   Occluders(const simulation::Simulation& simulation, const training::TriangleSight& sight)
       : now_(simulation.GetSnapshot()), sight_(sight) {
-    sight_.Update(now_.operation.strand_is_intact);
+    const std::size_t organ_count = simulation.GetScene().patient.organs.size();
+    sight_.Update(now_.operation.strand_is_intact, [&](std::uint32_t tube) {
+      return now_.operation.topology.IsDivided(simulation.Surfaces(), organ_count + tube);
+    });
     for (const SurfaceInfo& surface : simulation.Surfaces()) {
       if (surface.triangles.empty()) continue;
       auto tree = collision::TriangleTree::Make(Nodes(surface), surface.triangles);
@@ -76,7 +79,7 @@ class Occluders {
     }
   }
   /// What has to be seen.
-  std::array<Vec3, 3> Points() const { return sight_.Points(now_.positions); }
+  std::span<const Vec3> FindPoints() { return sight_.FindPoints(now_.positions); }
   bool Hide(const Vec3& p, const Vec3& eye) const {
     const bool do_organs = std::any_of(organs_.begin(), organs_.end(), [&](const Organ& organ) {
       return organ.tree
@@ -113,10 +116,10 @@ math::Pose LookAt(const Vec3& eye, const Vec3& at, const Vec3& up) {
 }
 
 /// \param side  -1 front, +1 behind
-Sight FindSight(const Ducts& ducts, const Occluders& occluders, const math::Pose& X_world_laparoscope,
+Sight FindSight(const Ducts& ducts, Occluders& occluders, const math::Pose& X_world_laparoscope,
                 double field_of_view, double azimuth_now, int side) {
   const Vec3 middle = ducts.Middle();
-  const auto points = occluders.Points();
+  const std::span<const Vec3> points = occluders.FindPoints();
   const Vec3 along = math::Normalized(ducts.cystic.back() - ducts.cystic.front());
   const Vec3 to_eye = math::Normalized(X_world_laparoscope.translation - middle);
   const Vec3 across = math::Normalized(math::Cross(along, to_eye), {1, 0, 0});
@@ -176,7 +179,7 @@ core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
 
   const auto draw = [&](const simulation::Simulation& simulation, int side) {
     const auto ducts = FindDucts(simulation);
-    const Occluders occluders(simulation, model->sight);
+    Occluders occluders(simulation, model->sight);
     Snapshot shown = ClearField(simulation.GetSnapshot());
     const auto result = simulation.GetOperationResult();
     const double azimuth =

@@ -27,6 +27,8 @@ namespace {
 constexpr double kCountedRadius = 0.001;
 /// What lies this near to the infundibulum turns with the neck [m].
 constexpr double kNeckRadius = 0.015;
+/// Where a tube is seen to enter the gallbladder: in the middle of what has to be bare of it [m].
+constexpr double kEntryArc = 0.5 * training::CriticalViewSettings{}.skeletonised;
 constexpr std::uint64_t kStoneSeed = 0x73746f6e6573;  // the stones' own stream
 
 /// A tube's nodes, from the gallbladder on where it ends there.
@@ -70,6 +72,17 @@ void FindDucts(std::span<const SurfaceInfo> surfaces, std::span<const Vec3> rest
       math::Distance(rest[hepatic.back()], rest[cystic.front()]) <
           math::Distance(rest[hepatic.front()], rest[cystic.front()]))
     std::reverse(hepatic.begin(), hepatic.end());
+}
+
+/// At kEntryArc along a tube at rest, or its far end.
+training::TubeEntry EntryOf(const surgery::EnteringTube& tube, std::span<const Vec3> rest) {
+  double left = kEntryArc;
+  for (std::size_t k = 1; k < tube.nodes.size(); ++k) {
+    const double length = math::Distance(rest[tube.nodes[k - 1]], rest[tube.nodes[k]]);
+    if (left <= length) return {tube.tube, {tube.nodes[k - 1], tube.nodes[k]}, left / length};
+    left -= length;
+  }
+  return {tube.tube, {tube.nodes.back(), tube.nodes.back()}, 0.0};
 }
 
 double NumberOf(const anatomy::Patient& patient, std::string_view name, double otherwise) {
@@ -178,12 +191,41 @@ training::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> surface
   return {borders, fat, {settings.kept_fat, settings.kept_sheath, kCountedRadius}};
 }
 
-training::TriangleSight MakeTriangleSight(std::span<const SurfaceInfo> surfaces,
+training::TriangleSight MakeTriangleSight(const anatomy::Patient& patient,
+                                          std::span<const SurfaceInfo> surfaces,
                                           std::span<const StrandInfo> strands, std::span<const Vec3> rest,
                                           const training::JudgementSettings& settings) {
   std::vector<std::uint32_t> cystic, hepatic;
   FindDucts(surfaces, rest, cystic, hepatic);
-  return {std::move(cystic), std::move(hepatic), scene::MakeTriangleFat(strands, rest), settings.kept_fat};
+  std::vector<training::TubeEntry> entries;
+  for (const surgery::EnteringTube& tube : FindEnteringTubes(patient, surfaces, strands))
+    entries.push_back(EntryOf(tube, rest));
+  return {std::move(cystic), std::move(hepatic), std::move(entries), scene::MakeTriangleFat(strands, rest),
+          settings.kept_fat};
+}
+
+std::vector<double> CalcExposable(std::span<const surgery::EnteringTube> entering, std::span<const Vec3> rest,
+                                  std::span<const std::uint32_t> main_ducts,
+                                  std::span<const std::uint32_t> main_arteries,
+                                  const training::JudgementSettings& settings) {
+  const auto is_near = [&](std::uint32_t node, std::span<const std::uint32_t> main, double kept) {
+    return std::any_of(main.begin(), main.end(), [&](std::uint32_t other) {
+      return math::Distance(rest[node], rest[other]) < kept + kCountedRadius;
+    });
+  };
+  std::vector<double> exposable;
+  for (const surgery::EnteringTube& tube : entering) {
+    double arc = 0, last = 0;
+    for (std::size_t k = 1; k < tube.nodes.size() && !is_near(tube.nodes[k], main_ducts, settings.kept_fat) &&
+                            !is_near(tube.nodes[k], main_arteries, settings.kept_sheath);
+         ++k) {
+      last = math::Distance(rest[tube.nodes[k - 1]], rest[tube.nodes[k]]);
+      arc += last;
+    }
+    // what covers the next node reaches half the way to this one; and a tube may be drawn together
+    exposable.push_back(std::max(arc - 0.5 * last, kLeastExposable));
+  }
+  return exposable;
 }
 
 surgery::GallstoneSettings FindGallstones(const Scene& scene) {

@@ -45,12 +45,24 @@ training::TriangleWindow MakeTriangleWindow(std::span<const scene::SurfaceInfo> 
 
 /// What an eye has to see of it, and the fat that hides it.
 /// \param rest  (nodes) [m]
-training::TriangleSight MakeTriangleSight(std::span<const scene::SurfaceInfo> surfaces,
+training::TriangleSight MakeTriangleSight(const anatomy::Patient& patient,
+                                          std::span<const scene::SurfaceInfo> surfaces,
                                           std::span<const scene::StrandInfo> strands,
                                           std::span<const math::Vec3> rest,
                                           const training::JudgementSettings& settings);
 
-/// All but the triangle's window and the sight of it.
+/// How much of each tube, from the gallbladder on, may be asked to lie bare: as far as main ducts and arteries, which keep
+/// what lies beside them, fat that reaches there included. At least kLeastExposable.
+/// \param rest        (nodes) [m]
+/// \param main_ducts, main_arteries  nodes of those that must stay
+/// \return (entering) along the tube at rest [m]
+std::vector<double> CalcExposable(std::span<const surgery::EnteringTube> entering,
+                                  std::span<const math::Vec3> rest, std::span<const std::uint32_t> main_ducts,
+                                  std::span<const std::uint32_t> main_arteries,
+                                  const training::JudgementSettings& settings);
+inline constexpr double kLeastExposable = 0.003;  // [m]
+
+/// All but the triangle's window, the sight of it, and what is exposable.
 /// \param rest  (nodes) [m]
 training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
                                                 std::span<const scene::SurfaceInfo> surfaces,

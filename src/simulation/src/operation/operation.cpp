@@ -414,7 +414,10 @@ training::OperationJudge Operation::MakeJudge() const {
       MakeDissectedAnatomy(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest);
   anatomy.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest, facts_.main_ducts,
                                         facts_.main_arteries, settings);
-  anatomy.sight = MakeTriangleSight(tissue.surfaces, strands_, tissue.definition.rest, settings);
+  anatomy.exposable = CalcExposable(anatomy.entering, tissue.definition.rest, facts_.main_ducts,
+                                    facts_.main_arteries, settings);
+  anatomy.sight =
+      MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest, settings);
   return {training::DissectionMonitor(std::move(anatomy), tissue.definition.rest), facts_.gallbladder >= 0,
           settings};
 }

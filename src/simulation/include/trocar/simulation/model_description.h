@@ -29,6 +29,9 @@ struct ModelDescription {
   /// Of an operation: strands of fat and peritoneum over the window of the hepatocystic triangle.
   std::vector<std::uint32_t> window_strands;
   training::TriangleSight sight;  ///< of an operation: of the triangle
+  /// (tubes) Of an operation: what may be asked to lie bare of each that enters the gallbladder, from there on, along it at
+  /// rest [m]; 0 for the others.
+  std::vector<double> exposable;
 };
 
 /// Compiles the scene's tissue as the simulation does, and keeps what is constant.

@@ -2,8 +2,11 @@
 /// \file operation_snapshot.h  What surgery has changed: cut surfaces and tubes, clips, burns, what runs and what lies there.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "trocar/geometry/triangle_mesh.h"
@@ -35,6 +38,15 @@ struct TopologySnapshot {
   std::vector<std::uint32_t> first_triangle, triangle_count;  ///< (organs)
   std::vector<TubePiece> tube_pieces;                         ///< the first tube_piece_count count
   std::size_t tube_piece_count = 0;
+
+  /// Whether a duct or artery was cut through somewhere, so that it has as many pieces as it had nodes, or more.
+  /// \param tube  among the surfaces
+  bool IsDivided(std::span<const scene::SurfaceInfo> surfaces, std::size_t tube) const noexcept {
+    const auto last = tube_pieces.begin() + static_cast<std::ptrdiff_t>(tube_piece_count);
+    const auto count = std::count_if(tube_pieces.begin(), last,
+                                     [&](const TubePiece& piece) { return piece.surface == tube; });
+    return static_cast<std::size_t>(count) >= surfaces[tube].node_count;
+  }
 };
 
 /// What runs out, and where it gathers.

@@ -25,6 +25,8 @@ struct DissectionFacts {
   int structures_entering = 0;  ///< tubes that enter the gallbladder and are not cut
   /// Freed of strands all around, next to the gallbladder, of each tube that enters [m].
   std::vector<double> skeletonised;
+  /// (skeletonised) As much of it as may be asked for: what lies beside a main duct or artery need not be exposed [m].
+  std::vector<double> exposable;
   bool is_triangle_in_view = false;  ///< unoccluded, in the picture, wholly
   /// Direction of sight about the cystic duct, in the frame of the gallbladder's neck: from -pi to pi; views to either
   /// side of 0, the view at the start, show its front and its back [rad].
@@ -36,7 +38,7 @@ void VisitState(core::StateArchive& archive, DissectionFacts& facts);
 struct CriticalViewSettings {
   double cleared_share = 0.9;
   double detached_share = 1.0 / 3;
-  double skeletonised = 0.010;  ///< [m]
+  double skeletonised = 0.010;  ///< of each that enters, or what is exposable of it [m]
   double seen_seconds = 1.0;    ///< of each view [s]
   double azimuth_apart = 0.5;   ///< that front and back views differ by at least [rad]
 };

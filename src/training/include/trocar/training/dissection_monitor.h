@@ -29,6 +29,7 @@ struct DissectedAnatomy {
   TriangleSight sight;
   std::vector<BedFibre> bed;
   std::vector<surgery::EnteringTube> entering;
+  std::vector<double> exposable;           ///< (entering) DissectionFacts::exposable [m]
   geometry::Rows fibres;                   ///< (nodes) strands of fat, peritoneum and adhesions at each
   std::vector<std::uint32_t> cystic_duct;  ///< from the hepatic duct on; empty where there is none
   std::vector<std::uint32_t> neck;         ///< nodes of the gallbladder near its infundibulum
