@@ -67,9 +67,11 @@ inline const std::map<std::string, Alteration>& Alterations() {
       {"blade_beyond_duct",
        {{"operation/left_hand/blade/a", SetTo(math::Vec3{0.02, 0.02, -0.14})},
         {"operation/left_hand/blade/b", SetTo(math::Vec3{0.02, 0.05, -0.14})}}},
-      // what the bed lost in the last tick, and the opening of a dissector that is not in the hand
+      // what the bed lost in the last tick, that the triangle was seen, and the opening of a dissector that is not in the hand
       {"left_over_values",
-       {{"operation/ooze/rate", SetTo(1e-6)}, {"operation/right_hand/spread_upper/jaw", SetTo(-1.0)}}},
+       {{"operation/ooze/rate", SetTo(1e-6)},
+        {"judge/dissection/facts/is_triangle_in_view", SetTo(std::uint8_t{1})},
+        {"operation/right_hand/spread_upper/jaw", SetTo(-1.0)}}},
       // every object goes from the right hand to the left one
       {"handed_over",
        {{"task_monitor/from", SetTo(std::int32_t{1})}, {"task_monitor/to", SetTo(std::int32_t{0})}}}};
