@@ -66,11 +66,11 @@ std::vector<std::uint32_t> CholecystectomySurgeon::CoveringStrands() const {
   std::vector<std::uint8_t> is_end(known_.rest.size(), 0);
   for (const std::size_t tube : known_.entering) {
     double arc = 0;
-    const double wanted = std::min(kSkeletonised, known_.exposable[tube]);
     const auto& nodes = known_.tube_nodes[tube];
-    for (std::size_t k = 1; k < nodes.size(); ++k) {
+    // a covered node ends what is bare at the node before it
+    for (std::size_t k = 1; k < nodes.size() && arc < known_.exposable[tube]; ++k) {
       arc += math::Distance(known_.rest[nodes[k - 1]], known_.rest[nodes[k]]);
-      if (arc <= wanted) is_end[nodes[k]] = 1;
+      if (arc < kSkeletonised) is_end[nodes[k]] = 1;
     }
   }
   std::vector<std::uint32_t> found;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "trocar/core/assert.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::training {
@@ -21,6 +22,7 @@ constexpr double kLeftInBin = 0.1;
 
 DissectionMonitor::DissectionMonitor(DissectedAnatomy anatomy, std::span<const Vec3> rest)
     : anatomy_(std::move(anatomy)) {
+  TROCAR_ASSERT(anatomy_.exposable.size() == anatomy_.entering.size());
   for (const DissectedAnatomy::BedFibre& fibre : anatomy_.bed)
     bed_bins_.push_back(static_cast<std::uint8_t>(
         std::clamp(fibre.along * static_cast<double>(kBins), 0.0, static_cast<double>(kBins - 1))));

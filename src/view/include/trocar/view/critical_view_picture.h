@@ -22,8 +22,8 @@ struct CriticalViewPicture {
   render::Image image;
   /// Of the eye about the cystic duct, as DissectionFacts::view_azimuth: negative from the front [rad].
   double azimuth = 0;
-  /// The cystic duct and the middle of the triangle's window lie in it with neither organ nor fat before them. Where no
-  /// such place was found, the picture is taken from 0.7 rad to that side all the same.
+  /// The cystic duct, the middle of the triangle's window and where tubes enter the gallbladder lie in it with neither
+  /// organ nor fat before them. Where no such place was found, the picture is taken from 0.7 rad to that side all the same.
   bool shows_triangle = false;
 };
 
