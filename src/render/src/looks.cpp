@@ -45,7 +45,7 @@ MaterialLook ReadLook(const JsonView& view) {
                   "cell_amount", "vessel_amount", "vessel_width", "detail_tile_m", "broad_tile_m",
                   "bump_tile_m", "bump",          "wet",          "wet_exponent",  "sheen",
                   "wrap",        "glow",          "grooves",      "wear",          "opacity",
-                  "emission"});
+                  "emission",    "line_tile_m",   "lines"});
   MaterialLook look;
   const auto number = [&view](std::string_view key, float& value, const NumberRange& range) {
     value = ToFloat(view.NumberOr(key, double{value}, range));
@@ -74,6 +74,8 @@ MaterialLook ReadLook(const JsonView& view) {
   number("glow", look.glow, kShare);
   number("grooves", look.grooves, kShare);
   number("wear", look.wear, kShare);
+  number("line_tile_m", look.line_tile, {0, 10});
+  number("lines", look.lines, kShare);
   number("opacity", look.opacity, kShare);
   number("emission", look.emission, {0, 100});
   return look;

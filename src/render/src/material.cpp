@@ -37,6 +37,8 @@ constexpr std::string_view kNames[] = {NameOf(TissueRole::kLiver),
                                        "green_rubber",
                                        "blue_rubber",
                                        "white_plastic",
+                                       "board",
+                                       "box_wall",
                                        "mark",
                                        "steam"};
 static_assert(std::size(kNames) == static_cast<std::size_t>(Material::kCount));

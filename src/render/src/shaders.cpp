@@ -13,6 +13,7 @@ namespace trocar::render {
 const char* const kVersion = "#version 330 core\n";
 const char* const kFine = "#define FINE\n";
 const char* const kSmeared = "#define SMEARED\n";
+const char* const kPlain = "#define PLAIN\n";
 
 const char* const kSurfaceVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 a_position;
@@ -23,12 +24,13 @@ layout(location = 5) in float a_pallor;
 uniform mat4 u_camera_from_surface;
 uniform mat3 u_rotation;              // of the above, without its scale
 uniform mat4 u_clip_from_camera;
-uniform vec4 u_shade_a[4];            // capsules that shade what is near: first end, radius
-uniform vec3 u_shade_b[4];            // second end
+uniform vec4 u_shade_a[10];            // capsules that shade what is near: first end, radius
+uniform vec3 u_shade_b[10];            // second end
 uniform int u_shade_count;
 out vec3 v_position;
 out vec3 v_normal;
 out vec4 v_rest;                      // rest position, how open it lies here and now
+out float v_open;                     // how open it lies, but for tools
 out vec4 v_mark;
 out float v_pallor;
 
@@ -53,6 +55,7 @@ void main() {
   v_position = position.xyz;
   v_normal = u_rotation * a_normal;
   v_rest = vec4(a_rest.xyz, a_rest.w * CalcToolShade(v_position, v_normal));
+  v_open = a_rest.w;
   v_mark = a_mark;
   v_pallor = a_pallor;
   gl_Position = u_clip_from_camera * position;
@@ -208,16 +211,21 @@ void main() {
 const char* const kToolFragmentShader = R"(
 const float kGroovesPerMetre = 11000.0;  // radians: 0.57 mm from one to the next
 const vec3 kWorn = vec3(0.9, 0.95, 1.0);
-uniform sampler3D u_pattern;
+in float v_open;
 uniform vec3 u_low, u_high;
 uniform vec3 u_gloss;        // wet, wet exponent, sheen
+#ifdef PLAIN
+uniform vec2 u_lines;        // printed lines: how many a metre along each edge, how dark
+#else
+uniform sampler3D u_pattern;
 uniform float u_grooves;     // depth of fine grooves across the shaft
 uniform float u_wear;        // scratches and rubbed places that are lighter than the rest
+#endif
 uniform vec3 u_axis;         // of the shaft, along which it was polished
 uniform vec3 u_room;         // what is mirrored from all round
 uniform vec4 u_overhead;     // lamp of a box trainer: direction to it, power
-uniform vec4 u_shade_a[4];   // capsules and, below, lying rings that take its light
-uniform vec3 u_shade_b[4];
+uniform vec4 u_shade_a[10];   // capsules and, below, lying rings that take its light
+uniform vec3 u_shade_b[10];
 uniform int u_shade_count;
 uniform vec4 u_ring[12];     // centre, radius
 uniform int u_ring_count;
@@ -247,6 +255,22 @@ float CalcOverheadShade(vec3 p) {
   return open;
 }
 
+#ifdef PLAIN
+// Share of a pixel that printed lines cover: thin ones at each tile, broader ones at each fifth.
+float CalcLines(vec3 place) {
+  float most = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    float at = place[i], width = fwidth(at);
+    if (width < 1e-5) continue;  // a face square to this axis has no such lines
+    float fine = abs(fract(at + 0.5) - 0.5), broad = 5.0 * abs(fract(0.2 * at + 0.5) - 0.5);
+    float cover = max(0.7 * clamp((0.022 + 0.5 * width - fine) / width, 0.0, 1.0) * min(1.0, 0.044 / width),
+                      clamp((0.035 + 0.5 * width - broad) / width, 0.0, 1.0) * min(1.0, 0.07 / width));
+    most = max(most, cover);
+  }
+  return most;
+}
+#endif
+
 void main() {
   float inverse_distance = inversesqrt(dot(v_position, v_position));
   vec3 n = normalize(v_normal);
@@ -258,17 +282,22 @@ void main() {
 
   // steel is brushed across the shaft; on insulation the trocar's valve has drawn scratches along it; both are worn where
   // they are touched
+  float pattern = 1.0, grooves = 1.0, unevenness = 0.0;
+#ifdef PLAIN
+  if (u_lines.x > 0.0) pattern -= u_lines.y * CalcLines(u_lines.x * v_rest.xyz);
+#else
   bool is_metal = u_grooves > 0.0;
   float metal = is_metal ? 1.0 : 0.0;
   vec4 clouds = texture(u_pattern, 45.0 * v_rest.xyz);
   vec4 streaks = texture(u_pattern, (is_metal ? vec3(9.0, 9.0, 760.0) : vec3(170.0, 170.0, 7.0)) * v_rest.xyz);
-  float brushed = 1.0 + metal * (0.5 * (streaks.r - 0.5) + 0.5 * (clouds.r - 0.5));
+  pattern = 1.0 + metal * (0.5 * (streaks.r - 0.5) + 0.5 * (clouds.r - 0.5));
+  unevenness = metal * 0.05 * (streaks.r - 0.5);
   // grooves too fine for the picture become an even grey
-  float grooves = 1.0;
   if (is_metal) {
     float groove = v_rest.z * kGroovesPerMetre;
     grooves -= u_grooves * (0.5 + 0.5 * sin(groove) * clamp(1.6 - 0.7 * fwidth(groove), 0.0, 1.0));
   }
+#endif
 
   // what it mirrors: tissue or box all round, the dark middle of the lens; only metal gives it the colour of tissue
   vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
@@ -277,21 +306,24 @@ void main() {
   room = mix(vec3(dot(room, vec3(0.30, 0.55, 0.15))), room, 0.15 + 0.60 * smoothstep(0.1, 0.3, u_gloss.z));
 
   float cosine = clamp(dot(n, l), 0.0, 1.0);
-  float along = dot(u_axis, h) + metal * 0.05 * (streaks.r - 0.5);
+  float along = dot(u_axis, h) + unevenness;
   float streak = exp2(-u_gloss.y * along * along) * cosine * cosine;
   float point = exp2(4.0 * u_gloss.y * (max(dot(n, h), 0.0) - 1.0));
   float rim = 1.0 - facing;
-  vec3 base = mix(u_low, u_high, cosine * cosine) * brushed;
+  vec3 base = mix(u_low, u_high, cosine * cosine) * pattern;
+#ifndef PLAIN
   if (u_wear > 0.0) {
     float scratch = clamp(11.0 * streaks.b - 9.9, 0.0, 1.0) * clamp(4.0 * clouds.r - 1.6, 0.0, 1.0);
     base += u_wear * (0.033 * scratch + 0.015 * clamp(2.9 * clouds.r - 1.3, 0.0, 1.0)) * kWorn;
   }
-  vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
-  colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * brushed * (0.25 + 0.75 * min(light, 1.5));
-  colour += u_gloss.x * (0.30 * streak * brushed + 0.8 * point) * min(light, 2.0) * kMetalHighlight;
+#endif
+  vec3 colour = base * (0.55 * cosine * (0.5 + 0.5 * v_open) + 0.04 * v_open) * light * grooves;
+  colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * pattern * (0.25 + 0.75 * min(light, 1.5));
+  colour += u_gloss.x * (0.30 * streak * pattern + 0.8 * point) * min(light, 2.0) * kMetalHighlight;
   if (u_overhead.w > 0.0) {
     float up = dot(n, u_overhead.xyz), open = CalcOverheadShade(v_position);
-    colour = colour * (0.6 + 0.4 * open) + u_overhead.w * mix(u_low, u_high, 0.75) * brushed * open * (0.30 + 0.20 * up + 0.5 * max(up, 0.0));
+    colour = colour * (0.6 + 0.4 * open) + u_overhead.w * mix(u_low, u_high, 0.75) * pattern * open *
+              ((0.30 + 0.20 * up) * v_open + 0.5 * max(up, 0.0) * (0.4 + 0.6 * v_open));
     colour += u_overhead.w * u_gloss.z * open * room * max(mirrored.y, 0.0);
   }
   o_colour = WithBrightness(Finish(1.6 * colour, v_position, gl_FragCoord.xy));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface_drawer.h"
 
+#include <array>
+
 #include "camera_matrices.h"
 #include "fine_shaders.h"
 #include "shaders.h"
@@ -24,6 +26,7 @@ void SetLook(const Program& program, const MaterialLook& look, float tool_wear) 
   if (!look.is_tissue) {
     program.Set("u_grooves", look.grooves);
     program.Set("u_wear", tool_wear * look.wear);
+    program.Set("u_lines", std::array<float, 2>{inverse(look.line_tile), look.lines});
     return;
   }
   program.Set("u_cell", look.cell);
@@ -57,6 +60,10 @@ core::Status SurfaceDrawer::Make(const Looks& looks) {
                                                          kShadingFunctions, kToolFragmentShader});
   if (!tool) return tool.error();
   tool_ = *tool;
+  const auto plain = MakeProgram({kSurfaceVertexShader}, {kVersion, kPlain, kFragmentHead, colours.c_str(),
+                                                          kShadingFunctions, kToolFragmentShader});
+  if (!plain) return plain.error();
+  plain_ = *plain;
   const auto clear = MakeProgram({kClearVertexShader}, {kVersion, kFragmentHead, colours.c_str(),
                                                         kShadingFunctions, kClearFragmentShader});
   if (!clear) return clear.error();
@@ -71,7 +78,7 @@ void SurfaceDrawer::Begin(Quality quality, double tool_wear) {
   noise_.Bind();
   is_fine_ = quality == Quality::kHigh;
   tool_wear_ = ToFloat(tool_wear);
-  for (const Program& program : {Tissue(), tool_, clear_}) {
+  for (const Program& program : {Tissue(), tool_, plain_, clear_}) {
     glUseProgram(program.name);
     program.Set("u_pattern", 0);
     program.Set("u_bumps", 1);
@@ -82,9 +89,15 @@ void SurfaceDrawer::End() {
   NoiseTextures::Unbind();
 }
 
+const Program& SurfaceDrawer::FindProgram(const MaterialLook& look) const {
+  if (look.opacity < 1.0f) return clear_;
+  if (look.is_tissue) return Tissue();
+  return look.grooves > 0.0f || look.wear > 0.0f ? tool_ : plain_;
+}
+
 void SurfaceDrawer::Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale,
                          const MaterialLook& look) {
-  const Program& program = look.opacity < 1.0f ? clear_ : look.is_tissue ? Tissue() : tool_;
+  const Program& program = FindProgram(look);
   glUseProgram(program.name);
   program.Set("u_camera_from_surface", MakeMatrix(X_camera_surface, scale));
   program.Set("u_rotation", MakeRotation(X_camera_surface.rotation));

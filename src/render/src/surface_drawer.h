@@ -23,7 +23,7 @@ class SurfaceDrawer {
   core::Status Make(const Looks& looks);
 
   /// For the uniforms that the renderer sets once a frame.
-  std::array<Program, 4> GetPrograms() const { return {tool_, clear_, tissue_[0], tissue_[1]}; }
+  std::array<Program, 5> GetPrograms() const { return {tool_, plain_, clear_, tissue_[0], tissue_[1]}; }
 
   /// Before the first surface of a frame, after those uniforms; and after the last.
   /// \param tool_wear  of Frame
@@ -37,9 +37,10 @@ class SurfaceDrawer {
 
  private:
   const Program& Tissue() const { return tissue_[is_fine_ ? 1 : 0]; }
+  const Program& FindProgram(const MaterialLook& look) const;
 
   std::array<Program, 2> tissue_;  // plain, fine
-  Program tool_, clear_;
+  Program tool_, plain_, clear_;
   bool is_fine_ = false;
   float tool_wear_ = 1;
   NoiseTextures noise_;

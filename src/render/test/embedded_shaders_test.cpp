@@ -141,7 +141,7 @@ TEST_F(EmbeddedShaders, EachProgramIsGlslEs30) {
 
   const std::vector<Sources> programs = ReadPrograms();
   // tissue twice, tools, what is clear, the fine, mask, four ways to smooth, glow, geometry, two of figures
-  EXPECT_EQ(programs.size(), 14u);
+  EXPECT_EQ(programs.size(), 15u);
   const EmbeddedContext embedded;
   ASSERT_TRUE(embedded.IsCurrent());
   ASSERT_TRUE(

@@ -294,6 +294,84 @@ TEST_F(RendererTest, ClosedInPlacesAreDarker) {
   EXPECT_LT(dark, Brightness(Draw(frame), kWidth / 2, kHeight / 2));
 }
 
+/// A lamp in the lid, and nothing else, on a level board 100 mm away that is seen from straight above.
+class BoxTrainerTest : public RendererTest {
+ protected:
+  static Frame LidFrame() {
+    Frame frame = PlainFrame();
+    frame.light_power = 0;
+    frame.overhead = {{0, 0, 1}, 1};
+    return frame;
+  }
+  SurfaceId AddBoard(Material material, std::span<const double> open = {}) {
+    return renderer_->AddSurface(geometry::MakeGrid(60, 0.002), material, open);
+  }
+  static SurfaceDraw Place(SurfaceId board) { return {board, {{}, {-0.059, -0.059, -kDistance}}}; }
+};
+
+TEST_F(BoxTrainerTest, CornersAreDarker) {
+  const std::vector<double> closed(geometry::MakeGrid(60, 0.002).positions.size(), 0.2);
+  Frame frame = LidFrame();
+  frame.surfaces = {Place(AddBoard(Material::kBoxWall, closed))};
+  const int dark = Brightness(Draw(frame), kWidth / 2, kHeight / 2);
+  frame.surfaces = {Place(AddBoard(Material::kBoxWall))};
+  const int open = Brightness(Draw(frame), kWidth / 2, kHeight / 2);
+  EXPECT_GT(dark, 0);
+  EXPECT_LT(dark, 0.9 * open);
+}
+
+// The lamp stands straight above: what hangs over the board darkens what is under it, and no other place.
+TEST_F(BoxTrainerTest, RodsAndRingsThrowShadowsStraightDown) {
+  Frame frame = LidFrame();
+  frame.surfaces = {Place(AddBoard(Material::kWhitePlastic))};
+  const Image lit = Draw(frame);
+  const auto at = [&](const Image& image, const Vec3& p_board) {
+    const math::Vec2 pixel = CalcPixel(frame.camera, p_board, kWidth, kHeight);
+    return Brightness(image, static_cast<int>(pixel.x), static_cast<int>(pixel.y));
+  };
+  const Vec3 middle{0, 0, -kDistance}, aside{0.03, 0, -kDistance};
+  frame.shades = {{{-0.001, 0, -kDistance + 0.01}, {0.001, 0, -kDistance + 0.01}, 0.004}};
+  const Image under_rod = Draw(frame);
+  EXPECT_LT(at(under_rod, middle), at(lit, middle));
+  EXPECT_EQ(at(under_rod, aside), at(lit, aside));
+  frame.shades.clear();
+  frame.ring_section = 0.002;
+  frame.ring_shades = {{{0, 0, -kDistance + 0.006}, 0.015}};
+  const Image under_ring = Draw(frame);
+  EXPECT_EQ(at(under_ring, middle), at(lit, middle)) << "through its hole the light falls";
+  EXPECT_LT(at(under_ring, {0.015, 0, -kDistance}), at(lit, {0.015, 0, -kDistance}));
+}
+
+// 10 mm apart, broader ones at every fifth; where they are finer than pixels they grey the board and make no pattern.
+TEST_F(BoxTrainerTest, ABoardHasLinesAtItsTiles) {
+  Frame frame = LidFrame();
+  frame.surfaces = {Place(AddBoard(Material::kBoard))};
+  const Image board = Draw(frame);
+  const double focal = CalcFocalPixels(frame.camera, kHeight);
+  // the grid's own origin lies 59 mm beside the middle: lines at 1 and 11 mm, the broad one at -9 mm
+  const auto darkest_near = [&](double x) {
+    int darkest = 3 * 255;
+    for (int dx = -1; dx <= 1; ++dx)
+      darkest = std::min(
+          darkest,
+          Brightness(board, static_cast<int>(0.5 * kWidth + x * focal / kDistance) + dx, kHeight / 2 + 5));
+    return darkest;
+  };
+  const int between = darkest_near(0.006), fine = darkest_near(0.001), broad = darkest_near(-0.009);
+  EXPECT_LT(fine, between - 10);
+  EXPECT_LT(broad, fine);
+  // from 0.9 m away a tile is little more than a pixel
+  frame.surfaces = {{AddBoard(Material::kBoard), {{}, {-0.059, -0.059, -0.9}}}};
+  const Image far = Draw(frame);
+  int low = 3 * 255, high = 0;
+  for (int x = -3; x <= 3; ++x) {
+    low = std::min(low, Brightness(far, kWidth / 2 + x, kHeight / 2));
+    high = std::max(high, Brightness(far, kWidth / 2 + x, kHeight / 2));
+  }
+  EXPECT_GT(low, 0);
+  EXPECT_LT(high - low, 25);
+}
+
 TEST_F(RendererTest, ArrowPointsAlongItsSpan) {
   Frame frame = PlainFrame();
   frame.arrows = {{{0, 0, -kDistance}, {0.03, 0, 0}, 0.001}};

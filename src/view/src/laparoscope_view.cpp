@@ -22,6 +22,7 @@
 #include "organ_shape.h"
 #include "stone_view.h"
 #include "strand_field.h"
+#include "trainer_box.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
@@ -406,15 +407,13 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
   content->tools.Add(content->renderer, scene);
   content->objects.Add(content->renderer, scene, start);
   content->bands.Add(content->renderer, scene, strands, start.positions);
-  if (scene.objects.empty() || scene.HasPatient()) {
+  if (!HasTrainerBox(scene)) {
     content->AddSurroundings(surfaces, start, scene.patient);
   } else {
     content->AddModel();
     content->light_scale = looks->trainer_light;
     content->frame.overhead = {math::Normalized(-start.gravity, {0, 0, 1}), looks->trainer_lid};
-    content->background.push_back({content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve),
-                                   {},
-                                   MakeLabel(LabelClass::kTrainerBox)});
+    content->background.push_back({content->objects.Walls(), {}, MakeLabel(LabelClass::kTrainerBox)});
   }
   content->strands.emplace(strands, start.positions);
   content->frame.camera.field_of_view = scene.laparoscope.field_of_view;

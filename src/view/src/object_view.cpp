@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "trainer_box.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/view/labels.h"
@@ -21,29 +22,28 @@ using rigid::RigidShape;
 using scene::ObjectColour;
 
 constexpr int kSides = 28;
-constexpr int kRingSteps = 48;
+constexpr int kRingSteps = 44, kRingSides = 12;
+constexpr int kMarkSides = 6;              // of a line's section
 constexpr double kMarkThickness = 0.0006;  // half of a mark's line [m]
 constexpr double kBandMark = 0.00045;      // likewise, of a ring round a duct [m]
-constexpr double kBoxRoom = 0.060;         // between the objects and the walls of the trainer [m]
-constexpr double kBoxHeight = 0.150;       // of the walls [m]
 
 /// Torus about z: as a closed tube would be, without a seam.
-TriangleMesh MakeTorus(double radius, double section) {
+/// \param around  sides of its section
+TriangleMesh MakeTorus(double radius, double section, int around) {
   TriangleMesh mesh;
-  constexpr int kAround = 16;
   for (int i = 0; i < kRingSteps; ++i) {
     const double u = 2 * M_PI * i / kRingSteps;
     const Vec3 out{std::cos(u), std::sin(u), 0};
-    for (int j = 0; j < kAround; ++j) {
-      const double v = 2 * M_PI * j / kAround;
+    for (int j = 0; j < around; ++j) {
+      const double v = 2 * M_PI * j / around;
       mesh.positions.push_back((radius + section * std::cos(v)) * out + Vec3{0, 0, section * std::sin(v)});
     }
   }
-  const auto at = [](int i, int j) {
-    return static_cast<std::uint32_t>((i % kRingSteps) * kAround + j % kAround);
+  const auto at = [around](int i, int j) {
+    return static_cast<std::uint32_t>((i % kRingSteps) * around + j % around);
   };
   for (int i = 0; i < kRingSteps; ++i) {
-    for (int j = 0; j < kAround; ++j) {
+    for (int j = 0; j < around; ++j) {
       mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
       mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
@@ -57,6 +57,11 @@ TriangleMesh MakeRod(std::vector<double> heights, std::vector<double> radii) {
   for (const double z : heights) axis.points.push_back({0, 0, z});
   axis.radii = std::move(radii);
   return geometry::MakeTube(axis, kSides);
+}
+
+/// A board of such a colour is a mat with lines on it.
+bool IsPale(ObjectColour colour) {
+  return colour == ObjectColour::kGrey || colour == ObjectColour::kWhite;
 }
 
 }  // namespace
@@ -103,7 +108,7 @@ TriangleMesh MakeShape(const RigidShape& shape) {
   const Vec3& s = shape.size;
   switch (shape.kind) {
     case RigidShape::Kind::kBox:
-      return geometry::MakeBox(-1.0 * s, s);
+      return MakeFacedBox(-1.0 * s, s);
     case RigidShape::Kind::kCylinder:
       return MakeRod({-s.z, s.z}, {s.x, s.x});
     case RigidShape::Kind::kCapsule:
@@ -111,20 +116,9 @@ TriangleMesh MakeShape(const RigidShape& shape) {
     case RigidShape::Kind::kSphere:
       return geometry::MakeSphere({}, s.x, 3);
     case RigidShape::Kind::kRing:
-      return MakeTorus(s.x, s.y);
+      return MakeTorus(s.x, s.y, kRingSides);
   }
   return {};
-}
-
-/// Each face with vertices of its own, so that edges are sharp.
-TriangleMesh Facet(const TriangleMesh& mesh) {
-  TriangleMesh sharp;
-  for (const auto& t : mesh.triangles) {
-    const auto first = static_cast<std::uint32_t>(sharp.positions.size());
-    for (const auto corner : t) sharp.positions.push_back(mesh.positions[corner]);
-    sharp.triangles.push_back({first, first + 1, first + 2});
-  }
-  return sharp;
 }
 
 void Append(TriangleMesh& to, const TriangleMesh& mesh, const Pose& X) {
@@ -141,13 +135,15 @@ TriangleMesh MakeMark(const scene::Region& region) {
     case scene::RegionMark::kBall:
       return geometry::MakeSphere({}, reach, 3);
     case scene::RegionMark::kRing:
-      Append(mesh, MakeTorus(reach, kMarkThickness),
+      Append(mesh, MakeTorus(reach, kMarkThickness, kMarkSides),
              {{}, {0, 0, region.radius > 0 ? 0.0 : -0.5 * region.half.z}});
       break;
     case scene::RegionMark::kCage:
-      Append(mesh, MakeTorus(reach, kMarkThickness), {});
-      Append(mesh, MakeTorus(reach, kMarkThickness), {math::RotationAbout({1, 0, 0}, M_PI / 2), {}});
-      Append(mesh, MakeTorus(reach, kMarkThickness), {math::RotationAbout({0, 1, 0}, M_PI / 2), {}});
+      Append(mesh, MakeTorus(reach, kMarkThickness, kMarkSides), {});
+      Append(mesh, MakeTorus(reach, kMarkThickness, kMarkSides),
+             {math::RotationAbout({1, 0, 0}, M_PI / 2), {}});
+      Append(mesh, MakeTorus(reach, kMarkThickness, kMarkSides),
+             {math::RotationAbout({0, 1, 0}, M_PI / 2), {}});
       break;
     case scene::RegionMark::kBand:
     case scene::RegionMark::kNone:
@@ -178,7 +174,7 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const si
       radius = std::lerp(piece.radius_a, piece.radius_b, t);
       mark.is_on_tube = true, mark.a = piece.a, mark.b = piece.b, mark.t = t;
     }
-    mesh = MakeTorus(radius + 0.5 * kBandMark, kBandMark);
+    mesh = MakeTorus(radius + 0.5 * kBandMark, kBandMark, kMarkSides);
   }
   if (region.facing) {
     // it sits in a socket, so that its open side shows
@@ -186,6 +182,8 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const si
     const double r = region.radius;
     view::Append(mesh, MakeRod({-1.7 * r, -0.2 * r}, {1.5 * r, 1.5 * r}), {});
   }
+  if (region.mark == scene::RegionMark::kBall)
+    still_shades_.push_back({region.centre, region.centre, region.radius});
   mark.idle = renderer.AddSurface(mesh, Material::kSleeve);
   mark.next = renderer.AddSurface(mesh, Material::kMark);
   mark.X_world_mark = X;
@@ -194,20 +192,84 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const si
 
 void ObjectView::Add(render::Renderer& renderer, const scene::Scene& scene,
                      const simulation::Snapshot& start) {
+  if (HasTrainerBox(scene)) AddStill(renderer, scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const scene::SceneObject& object = scene.objects[i];
+    if (HasTrainerBox(scene) && !object.Moves()) continue;
     for (const RigidShape& shape : object.body.shapes) {
-      if (shape.kind == RigidShape::Kind::kRing && object.Moves())
-        rings_.push_back({i, shape.X_body_shape, shape.size.x, shape.size.y});
-      const bool is_sharp = shape.kind == RigidShape::Kind::kBox;
-      const TriangleMesh mesh = MakeShape(shape);
-      parts_.push_back({renderer.AddSurface(is_sharp ? Facet(mesh) : mesh, MaterialOf(object.colour)), i,
-                        shape.X_body_shape});
+      if (object.Moves()) AddShade(i, shape);
+      parts_.push_back(
+          {renderer.AddSurface(MakeShape(shape), MaterialOf(object.colour)), i, shape.X_body_shape});
     }
   }
   task_ = scene.task;
   if (!task_) return;
   for (std::size_t region = 0; region < task_->regions.size(); ++region) AddMark(renderer, region, start);
+}
+
+/// The box, and what stands still in it, each with the shade of all.
+void ObjectView::AddStill(render::Renderer& renderer, const scene::Scene& scene) {
+  struct Piece {
+    std::size_t object = 0;
+    const RigidShape* shape = nullptr;
+    Pose X_world_piece;
+    TriangleMesh mesh;
+    Material material = Material::kBoxWall;
+  };
+  std::vector<Piece> pieces;
+  std::vector<TriangleMesh> in_world;
+  const auto place = [&](const Piece& piece, TriangleMesh& to) {
+    to = {};
+    view::Append(to, piece.mesh, piece.X_world_piece);
+  };
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const scene::SceneObject& object = scene.objects[i];
+    if (object.Moves()) continue;
+    for (const RigidShape& shape : object.body.shapes) {
+      pieces.push_back(
+          {i, &shape, object.body.X_world_body * shape.X_body_shape, MakeShape(shape),
+           IsBoard(shape) && IsPale(object.colour) ? Material::kBoard : MaterialOf(object.colour)});
+      place(pieces.back(), in_world.emplace_back());
+    }
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!IsBoard(*pieces[i].shape)) continue;
+    pieces[i].mesh = MakeBoard(pieces[i].shape->size, pieces[i].X_world_piece, in_world);
+    place(pieces[i], in_world[i]);
+  }
+  in_world.push_back(MakeTrainerBox(scene));
+  const std::vector<std::vector<double>> open = CalcTrainerOpenness(in_world);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    parts_.push_back({renderer.AddSurface(pieces[i].mesh, pieces[i].material, open[i]), pieces[i].object,
+                      pieces[i].shape->X_body_shape});
+  }
+  walls_ = renderer.AddSurface(in_world.back(), Material::kBoxWall, open.back());
+}
+
+/// A ring throws a ring's shadow, all else that of a rod through its longest axis.
+void ObjectView::AddShade(std::size_t object, const RigidShape& shape) {
+  if (shape.kind == RigidShape::Kind::kRing) {
+    rings_.push_back({object, shape.X_body_shape, shape.size.x, shape.size.y});
+    return;
+  }
+  Rod rod{object, shape.X_body_shape, {}, shape.size.x};
+  switch (shape.kind) {
+    case RigidShape::Kind::kBox: {
+      const Vec3& half = shape.size;
+      const int longest = half.x >= half.y && half.x >= half.z ? 0 : half.y >= half.z ? 1 : 2;
+      rod.radius = 0.5 * (half.x + half.y + half.z - half[longest]);
+      rod.half_span[longest] = std::max(0.0, half[longest] - rod.radius);
+      break;
+    }
+    case RigidShape::Kind::kCylinder:
+    case RigidShape::Kind::kCapsule:
+      rod.half_span.z = shape.size.z;
+      break;
+    case RigidShape::Kind::kSphere:
+    case RigidShape::Kind::kRing:
+      break;
+  }
+  rods_.push_back(rod);
 }
 
 void ObjectView::Append(const simulation::Snapshot& snapshot,
@@ -236,6 +298,14 @@ void ObjectView::AppendShades(const simulation::Snapshot& snapshot, render::Fram
     frame.ring_shades.push_back({X_world_ring.translation, ring.radius});
     frame.ring_section = ring.section;
   }
+  for (const render::Shade& shade : still_shades_) {
+    if (frame.shades.size() < render::kMaxShades) frame.shades.push_back(shade);
+  }
+  for (const Rod& rod : rods_) {
+    if (frame.shades.size() == render::kMaxShades) break;
+    const Pose X = snapshot.objects[rod.object].X_world_object * rod.X_object_rod;
+    frame.shades.push_back({X * (-1.0 * rod.half_span), X * rod.half_span, rod.radius});
+  }
 }
 
 /// Of the goal that is being worked on, else of the first that may be: where it leads to next.
@@ -254,19 +324,6 @@ std::vector<int> ObjectView::FindNextRegions(const scene::TaskSnapshot& now) con
     if (!steps[step].regions.empty()) return steps[step].regions;
   }
   return {};
-}
-
-TriangleMesh MakeTrainerBox(const scene::Scene& scene) {
-  Vec3 low = scene.laparoscope.p_world_port, high = low;
-  for (const scene::SceneObject& object : scene.objects) {
-    low = math::Min(low, object.body.X_world_body.translation);
-    high = math::Max(high, object.body.X_world_body.translation);
-  }
-  TriangleMesh box = Facet(
-      geometry::MakeBox(low - Vec3{kBoxRoom + 0.05, kBoxRoom, 0.006},
-                        Vec3{high.x + kBoxRoom + 0.05, high.y + kBoxRoom + 0.03, low.z + kBoxHeight + 0.03}));
-  for (auto& t : box.triangles) std::swap(t[1], t[2]);  // seen from inside
-  return box;
 }
 
 }  // namespace trocar::view

@@ -237,6 +237,31 @@ TEST_F(LaparoscopeViewTest, AnOrganOfWhichNothingIsKnownIsDrawn) {
   EXPECT_GT(CountChanges(known, Draw(), {0, 0, -0.10}, 40).near, 500) << "there, covered with serosa";
 }
 
+// The lamp in the lid of a box trainer knows what hangs over the board: a bar is a rod along its longest edge.
+TEST_F(LaparoscopeViewTest, ThingsThatMoveThrowShadowsInABox) {
+  scene::SceneObject board, bar;
+  board.colour = scene::ObjectColour::kGrey;
+  board.body.shapes = {{rigid::RigidShape::Kind::kBox, {0.08, 0.06, 0.005}, {}}};
+  board.body.X_world_body.translation = {0, 0, -0.15};
+  bar.body.shapes = {{rigid::RigidShape::Kind::kBox, {0.004, 0.020, 0.006}, {}}};
+  bar.body.mass = 0.003;
+  scene_.objects = {board, bar};
+  snapshot_.objects.resize(2);
+  snapshot_.objects[0].X_world_object = board.body.X_world_body;
+  snapshot_.objects[1].X_world_object = {math::RotationAbout({0, 0, 1}, M_PI / 2), {0.01, 0.02, -0.13}};
+  auto view = LaparoscopeView::Make(scene_, surfaces_, snapshot_);
+  ASSERT_TRUE(view.ok()) << view.error().Text();
+  view_.emplace(std::move(*view));
+  const render::Frame& frame = view_->GetFrame();
+  ASSERT_EQ(frame.shades.size(), 3u) << "of two tools and the bar";
+  const render::Shade& shade = frame.shades.back();
+  EXPECT_NEAR(shade.radius, 0.005, 1e-12);
+  EXPECT_NEAR(math::Distance(shade.a, shade.b), 2 * (0.020 - 0.005), 1e-12);
+  EXPECT_NEAR(std::abs(shade.a.x - shade.b.x), 2 * (0.020 - 0.005), 1e-12) << "turned with it";
+  EXPECT_NEAR(math::Distance(0.5 * (shade.a + shade.b), {0.01, 0.02, -0.13}), 0.0, 1e-12);
+  EXPECT_GT(frame.overhead.power, 0.0);
+}
+
 TEST_F(LaparoscopeViewTest, UnknownMaterialIsNamed) {
   surfaces_[1].look = "granite";
   const auto view = LaparoscopeView::Make(scene_, surfaces_, snapshot_);

@@ -46,12 +46,12 @@ struct Arrow {
   double radius = 0.0012;   ///< of its shaft [m]
 };
 
-/// A straight piece that takes light from the tissue near it, for example the end of a tool.
+/// A straight piece that takes light from what is near it, for example the end of a tool.
 struct Shade {
   math::Vec3 a, b;    ///< ends, world frame [m]
   double radius = 0;  ///< [m]
 };
-inline constexpr std::size_t kMaxShades = 4;
+inline constexpr std::size_t kMaxShades = 10;
 
 /// A ring that lies, for example on a peg: it takes light from what is under it where there is an overhead light.
 struct RingShade {

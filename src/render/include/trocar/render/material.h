@@ -34,14 +34,16 @@ enum class Material {
   kGreenRubber,
   kBlueRubber,
   kWhitePlastic,
-  kMark,   ///< bright: what is to be done next
-  kSteam,  ///< of water that heat drives out of tissue
+  kBoard,    ///< what things of training tasks stand on: a pale mat with printed lines
+  kBoxWall,  ///< of a box trainer
+  kMark,     ///< bright: what is to be done next
+  kSteam,    ///< of water that heat drives out of tissue
   kCount
 };
 
 /// "liver", "gallbladder", "duct", "artery", "fat", "bowel", "peritoneum", "shaft", "steel", "sleeve",
 /// "force", "fibre", "film", "blood", "bile", "rinse", "lumen", "titanium", "pouch", "stone", "spark", "red_rubber",
-/// "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark", "steam".
+/// "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "board", "box_wall", "mark", "steam".
 std::string_view MaterialName(Material material) noexcept;
 /// The material of that name, or nothing.
 std::optional<Material> FindMaterial(std::string_view name) noexcept;
