@@ -33,11 +33,12 @@ core::Result<ModelDescription> DescribeModel(const Scene& scene) {
         MakeTriangleWindow(tissue->surfaces, tissue->strands, tissue->definition.rest, main_ducts,
                            main_arteries, scene.operation->parameters.judgement)
             .Strands();
-    description.sight = MakeTriangleSight(scene.patient, tissue->surfaces, tissue->strands,
-                                          tissue->definition.rest, scene.operation->parameters.judgement);
     const auto entering = FindEnteringTubes(scene.patient, tissue->surfaces, tissue->strands);
-    const std::vector<double> exposable = CalcExposable(entering, tissue->definition.rest, main_ducts,
-                                                        main_arteries, scene.operation->parameters.judgement);
+    const training::JudgementSettings& settings = scene.operation->parameters.judgement;
+    const std::vector<double> exposable =
+        CalcExposable(entering, tissue->definition.rest, main_ducts, main_arteries, settings);
+    description.sight = MakeTriangleSight(scene.patient, tissue->surfaces, tissue->strands,
+                                          tissue->definition.rest, exposable, settings);
     description.exposable.resize(scene.patient.tubes.size());
     for (std::size_t i = 0; i < entering.size(); ++i) description.exposable[entering[i].tube] = exposable[i];
   }

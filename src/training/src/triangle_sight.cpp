@@ -18,9 +18,11 @@ constexpr std::size_t kDuctPoints = 3;
 }  // namespace
 
 TriangleSight::TriangleSight(std::vector<std::uint32_t> cystic_duct, std::vector<std::uint32_t> hepatic_duct,
-                             std::vector<TubeEntry> entries, surgery::FatLobules fat, double kept_fat)
+                             double kept_share, std::vector<TubeEntry> entries, surgery::FatLobules fat,
+                             double kept_fat)
     : cystic_duct_(std::move(cystic_duct)),
       hepatic_duct_(std::move(hepatic_duct)),
+      kept_share_(kept_share),
       entries_(std::move(entries)),
       enters_(entries_.size(), 1),
       points_(kDuctPoints + entries_.size()),
@@ -32,11 +34,12 @@ std::span<const Vec3> TriangleSight::FindPoints(std::span<const Vec3> positions)
   const auto at = [&](const std::vector<std::uint32_t>& nodes, double share) {
     return positions[nodes[static_cast<std::size_t>(share * static_cast<double>(nodes.size() - 1))]];
   };
-  const Vec3 beside = at(cystic_duct_, 0.5), across = at(hepatic_duct_, 0.5);
+  const auto on_duct = [&](double share) { return at(cystic_duct_, std::max(share, kept_share_)); };
+  const Vec3 beside = on_duct(0.5), across = at(hepatic_duct_, 0.5);
   const double apart = math::Distance(beside, across);
   const double window = apart > kept_fat_ ? 1.0 - kept_fat_ / apart : 0.0;  // of the way across
-  points_[0] = at(cystic_duct_, 0.3);
-  points_[1] = at(cystic_duct_, 0.7);
+  points_[0] = on_duct(0.3);
+  points_[1] = on_duct(0.7);
   points_[2] = math::Lerp(beside, across, 0.5 * window);
   std::size_t count = kDuctPoints;
   for (std::size_t i = 0; i < entries_.size(); ++i) {

@@ -50,8 +50,8 @@ struct Triangle {
     add_entry(kDuct, 0.0);
     add_entry(kArtery, 0.008);
   }
-  TriangleSight Sight() const {
-    return {cystic, hepatic, entries, surgery::FatLobules(fat, rest, 0.003), kKept};
+  TriangleSight Sight(double kept_share = 0) const {
+    return {cystic, hepatic, kept_share, entries, surgery::FatLobules(fat, rest, 0.003), kKept};
   }
 };
 
@@ -67,6 +67,19 @@ TEST(TriangleSight, AsksForTheCysticDuctAndTheMiddleOfTheWindow) {
   TriangleSight sight_of_narrow = narrow.Sight();
   EXPECT_NEAR(math::Distance(sight_of_narrow.FindPoints(narrow.rest)[2], {0.010, 0, 0}), 0, 1e-12);
   EXPECT_FALSE(TriangleSight().HasTriangle());
+}
+
+// It runs beside the hepatic duct for more than half of its length.
+TEST(TriangleSight, AsksForNothingThatKeepsItsFat) {
+  const Triangle triangle;
+  TriangleSight sight = triangle.Sight(0.6);
+  const auto points = sight.FindPoints(triangle.rest);
+  EXPECT_NEAR(math::Distance(points[0], {0.012, 0, 0}), 0, 1e-12);
+  EXPECT_NEAR(math::Distance(points[1], {0.014, 0, 0}), 0, 1e-12) << "as ever";
+  const Vec3 beside{0.012, 0, 0}, across{0.010, 0.015, 0};
+  const double window = math::Distance(beside, across) - 0.005;
+  EXPECT_NEAR(math::Distance(points[2], beside), 0.5 * window, 1e-12)
+      << "the middle of the window from there";
 }
 
 TEST(TriangleSight, AsksForWhereEachWholeTubeEntersTheGallbladder) {

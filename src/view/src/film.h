@@ -21,6 +21,7 @@ class Film {
   /// \param rows  (rows of Snapshot::positions) 1 where connective tissue was torn off; outlives this
   void SetRaw(std::span<const std::uint8_t> rows) { raw_ = rows; }
   bool IsEmpty() const { return runs_.empty() && pools_.empty() && raw_.empty(); }
+  bool HasLiquid() const { return !runs_.empty() || !pools_.empty(); }
   /// Adds what wets a place to its mark.
   void Wet(const math::Vec3& p_world, render::SurfaceMark& mark) const;
   /// The same for a node that may lie raw.

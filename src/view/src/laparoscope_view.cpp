@@ -304,12 +304,16 @@ struct LaparoscopeView::Content {
       tube.SetPieces(std::span(operation.topology.tube_pieces).first(pieces), memory, snapshot.positions);
   }
 
-  void UpdateShapes(const Snapshot& snapshot) {
-    FollowTopology(snapshot);
+  Film MakeFilm(const Snapshot& snapshot) {
     Film film(snapshot);
     for (const render::Puddle& puddle : frame.puddles) film.AddPool(puddle);
     strands->FindRaw(snapshot, raw_rows);
     film.SetRaw(raw_rows);
+    return film;
+  }
+
+  void UpdateShapes(const Snapshot& snapshot, const Film& film) {
+    FollowTopology(snapshot);
     WetGround(film);
     for (std::size_t i = 0; i < tubes.size(); ++i) {
       TubeShape& tube = tubes[i];
@@ -324,13 +328,12 @@ struct LaparoscopeView::Content {
       organs[i].Upload(renderer, memory);
       frame.surfaces.push_back({organs[i].Surface(), {}, organ_labels[i]});
     }
-    if (pool) ShapePool(snapshot);
   }
 
   void ShapePool(const Snapshot& snapshot) {
     std::vector<GroundShape> ground;
     for (const OrganShape& organ : organs) ground.push_back({organ.Positions(), organ.Triangles()});
-    pool->Shape(renderer, frame, snapshot, std::move(ground));
+    pool->Shape(renderer, frame, snapshot, std::move(ground), strands->Fat());
   }
 
   /// Ventilation pushes the abdomen's contents towards the feet; organs of the model are held where they are.
@@ -449,10 +452,12 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
   c.clips.AddTo(c.renderer, c.frame, snapshot.operation);
   c.stones.AddTo(c.renderer, c.frame, snapshot.operation);
   if (c.pool) c.pool->AddTo(c.frame, snapshot);
-  c.UpdateShapes(snapshot);
+  const Film film = c.MakeFilm(snapshot);
+  c.UpdateShapes(snapshot, film);
   for (NeighbourView& neighbour : c.neighbours) neighbour.Update(c.renderer, snapshot);
   c.Breathe(snapshot.time);
-  c.strands->AddTo(c.renderer, c.frame, snapshot);
+  c.strands->AddTo(c.renderer, c.frame, snapshot, film);
+  if (c.pool) c.ShapePool(snapshot);
   AddStreams(c.frame, snapshot);
   c.frame.smoke = snapshot.operation.smoke;
   c.frame.time = snapshot.time;

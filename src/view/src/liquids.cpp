@@ -120,11 +120,11 @@ Pool::Pool(std::vector<geometry::TriangleMesh> scenery) : scenery_(std::move(sce
 }
 
 void Pool::Shape(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot,
-                 std::vector<GroundShape> organs) {
+                 std::vector<GroundShape> organs, std::span<const FatLobule> lobules) {
   if (frame.puddles.empty()) return;
   render::Puddle& puddle = frame.puddles.back();
   for (const geometry::TriangleMesh& mesh : scenery_) organs.push_back({mesh.positions, mesh.triangles});
-  shape_.Make(puddle, snapshot.operation.flow.p_world_pool, organs);
+  shape_.Make(puddle, snapshot.operation.flow.p_world_pool, organs, lobules);
   const std::vector<Vec3>& positions = shape_.Mesh().positions;
   const bool is_same = std::equal(
       positions.begin(), positions.end(), shown_.begin(), shown_.end(),

@@ -34,7 +34,7 @@ class Pool {
   /// The surface of the pool that AddTo has added, made anew when level or ground have changed.
   /// \param organs  where they are now
   void Shape(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot,
-             std::vector<GroundShape> organs);
+             std::vector<GroundShape> organs, std::span<const FatLobule> lobules);
 
  private:
   std::vector<geometry::TriangleMesh> scenery_;

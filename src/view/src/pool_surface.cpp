@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "trocar/core/assert.h"
 
@@ -21,8 +22,12 @@ constexpr double kLeastSlope = 0.15;  // cosine; a steeper piece holds no liquid
 constexpr double kClimb = 0.0006;     // m that surface tension draws the liquid up at its shore
 constexpr double kInside = 0.0009, kOutside = 0.0005;  // m of depth over which that fades
 constexpr double kFilm = 0.0009;                       // m above the level that is still covered
+constexpr double kDry = -kFilm - kSpacing;             // m; there is none
+constexpr double kBankSlope = 0.6;                     // of the steepest bank
 constexpr double kClear = 0.0008;                      // m of liquid that hide 63 % of what is under it
-constexpr double kShoreSlope = 0.6;                    // of an end where there is no ground
+constexpr double kBulge = 0.0010;    // m that lobules under one membrane stand out of themselves
+constexpr double kFatShore = 0.006;  // m from a lobule, farther than its shore reaches
+constexpr double kShoreSlope = 0.6;  // of an end where there is no ground
 
 constexpr double kUnknown = -std::numeric_limits<double>::infinity();
 
@@ -32,8 +37,8 @@ double CalcPoolShare(double depth) noexcept {
   return depth > -kFilm ? 1.0 - std::exp(-(depth + kFilm) / kClear) : 0.0;
 }
 
-void PoolSurface::Make(const render::Puddle& puddle, const Vec3& lowest,
-                       std::span<const GroundShape> ground) {
+void PoolSurface::Make(const render::Puddle& puddle, const Vec3& lowest, std::span<const GroundShape> ground,
+                       std::span<const FatLobule> lobules) {
   mesh_.positions.clear();
   mesh_.triangles.clear();
   rest_.clear();
@@ -49,8 +54,12 @@ void PoolSurface::Make(const render::Puddle& puddle, const Vec3& lowest,
   corner_ = lowest + deepest * up_ - (half * kSpacing) * (right_ + ahead_);
   heights_.assign(At(side_ - 1, side_ - 1) + 1, kUnknown);
   overhangs_.assign(heights_.size(), -kUnknown);
+  clearances_.assign(heights_.size(), -kUnknown);
   for (const GroundShape& shape : ground) MeetGround(shape);
-  AddVertices(puddle, deepest);
+  for (const FatLobule& lobule : lobules) MeetLobule(lobule);
+  FindThickness(puddle, deepest);
+  AddBanks();
+  AddVertices();
   AddTriangles();
 }
 
@@ -92,25 +101,80 @@ void PoolSurface::MeetGround(const GroundShape& shape) {
   }
 }
 
-void PoolSurface::AddVertices(const render::Puddle& puddle, double deepest) {
+/// A lobule is too steep to be ground: what counts is how far a point lies from where it passes through the level.
+void PoolSurface::MeetLobule(const FatLobule& lobule) {
+  const Vec3 from = lobule.centre - corner_;
+  const double above = math::Dot(from, up_), squared = lobule.radius * lobule.radius - above * above;
+  if (!(squared > 0.0)) return;
+  const double radius = std::sqrt(squared), x = math::Dot(from, right_), y = math::Dot(from, ahead_);
+  const double reach = radius + kFatShore;
+  const auto range = [&](double middle) {
+    return std::pair{std::max(0, static_cast<int>(std::ceil((middle - reach) / kSpacing))),
+                     std::min(side_ - 1, static_cast<int>(std::floor((middle + reach) / kSpacing)))};
+  };
+  const auto [from_x, to_x] = range(x);
+  const auto [from_y, to_y] = range(y);
+  for (int row = from_y; row <= to_y; ++row) {
+    for (int column = from_x; column <= to_x; ++column) {
+      double& clearance = clearances_[At(column, row)];
+      clearance = std::min(clearance, std::hypot(column * kSpacing - x, row * kSpacing - y) - radius);
+    }
+  }
+}
+
+void PoolSurface::FindThickness(const render::Puddle& puddle, double deepest) {
+  thickness_.resize(heights_.size());
+  const double half = 0.5 * (side_ - 1);
+  for (int row = 0; row < side_; ++row) {
+    for (int column = 0; column < side_; ++column) {
+      const std::size_t at = At(column, row);
+      const double side = kSpacing * std::hypot(column - half, row - half) / puddle.radius;
+      // what stands above the level with nothing under it is ground, too: an island
+      double height = heights_[at];
+      if (height == kUnknown && overhangs_[at] < kTallest) height = overhangs_[at];
+      double depth = height == kUnknown ? deepest * (1.0 - side * side) : -height;
+      depth = std::min(depth, kShoreSlope * puddle.radius * (1.0 - side) + kFilm);
+      // at fat it thins out to nothing, so that no edge is seen there
+      thickness_[at] = std::max(std::min(depth, clearances_[at] - kFilm - kBulge), kDry);
+    }
+  }
+}
+
+/// Nowhere does it end as a wall, whatever the ground does between two points: its thickness follows a bank. Two sweeps carry
+/// that from point to point (Borgefors 1986).
+void PoolSurface::AddBanks() {
+  const auto follow = [this](int column, int row, int to_column, int to_row, double steps) {
+    if (to_column < 0 || to_row < 0 || to_column >= side_ || to_row >= side_) return;
+    double& here = thickness_[At(column, row)];
+    here = std::min(here, thickness_[At(to_column, to_row)] + steps * kBankSlope * kSpacing);
+  };
+  for (const int way : {-1, 1}) {
+    for (int i = 0; i < side_; ++i) {
+      const int row = way < 0 ? i : side_ - 1 - i;
+      for (int j = 0; j < side_; ++j) {
+        const int column = way < 0 ? j : side_ - 1 - j;
+        follow(column, row, column + way, row, 1.0);
+        follow(column, row, column, row + way, 1.0);
+        follow(column, row, column - 1, row + way, M_SQRT2);
+        follow(column, row, column + 1, row + way, M_SQRT2);
+      }
+    }
+  }
+}
+
+void PoolSurface::AddVertices() {
   vertex_.assign(heights_.size(), -1);
   const double half = 0.5 * (side_ - 1);
   for (int row = 0; row < side_; ++row) {
     for (int column = 0; column < side_; ++column) {
-      const double x = (column - half) * kSpacing, y = (row - half) * kSpacing;
-      const double side = std::hypot(x, y) / puddle.radius;
-      // what stands above the level with nothing under it is ground, too: an island
-      double height = heights_[At(column, row)];
-      if (height == kUnknown && overhangs_[At(column, row)] < kTallest) height = overhangs_[At(column, row)];
-      double depth = height == kUnknown ? deepest * (1.0 - side * side) : -height;
-      depth = std::min(depth, kShoreSlope * puddle.radius * (1.0 - side) + kFilm);
       // a lattice point beyond the shore closes the mesh there
-      if (depth < -kFilm - kSpacing) continue;
+      const double depth = thickness_[At(column, row)];
+      if (depth <= kDry) continue;
       const double climb = kClimb * std::exp(depth > 0.0 ? -depth / kInside : depth / kOutside);
       vertex_[At(column, row)] = static_cast<std::int32_t>(mesh_.positions.size());
       mesh_.positions.push_back(corner_ + (column * kSpacing) * right_ + (row * kSpacing) * ahead_ +
                                 (climb + std::max(0.0, -depth)) * up_);
-      rest_.push_back({x, y, 0});
+      rest_.push_back({(column - half) * kSpacing, (row - half) * kSpacing, 0});
       shares_.push_back(CalcPoolShare(depth));
       depths_.push_back(depth);
     }

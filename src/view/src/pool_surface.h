@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "fat_body.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/render/renderer.h"
 
@@ -25,7 +26,9 @@ class PoolSurface {
   /// \param puddle  its centre, up and radius count
   /// \param lowest  place of the ground under its middle [m]
   /// \param ground  where none is known it is a bowl that ends at the puddle's radius
-  void Make(const render::Puddle& puddle, const math::Vec3& lowest, std::span<const GroundShape> ground);
+  /// \param lobules  of fat, world frame: where they stand in the liquid it has a shore, too
+  void Make(const render::Puddle& puddle, const math::Vec3& lowest, std::span<const GroundShape> ground,
+            std::span<const FatLobule> lobules = {});
 
   const geometry::TriangleMesh& Mesh() const { return mesh_; }
   /// (vertices) place on the level, for ripples [m]
@@ -37,7 +40,10 @@ class PoolSurface {
 
  private:
   void MeetGround(const GroundShape& shape);
-  void AddVertices(const render::Puddle& puddle, double deepest);
+  void MeetLobule(const FatLobule& lobule);
+  void FindThickness(const render::Puddle& puddle, double deepest);
+  void AddBanks();
+  void AddVertices();
   void AddTriangles();
   std::size_t At(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(column);
@@ -47,6 +53,8 @@ class PoolSurface {
   int side_ = 0;                            // points
   std::vector<double> heights_;             // (points) of the ground above the level [m]
   std::vector<double> overhangs_;           // (points) lowest of what stands or hangs well above it [m]
+  std::vector<double> clearances_;          // (points) from lobules, on the level; below 0 in one [m]
+  std::vector<double> thickness_;           // (points) of the liquid [m]
   std::vector<std::int32_t> vertex_;        // of a point, -1 none
   geometry::TriangleMesh mesh_;
   std::vector<math::Vec3> rest_;

@@ -73,7 +73,7 @@ StrandField::StrandField(std::span<const scene::StrandInfo> strands, std::span<c
 }
 
 void StrandField::AddTo(render::Renderer& renderer, render::Frame& frame,
-                        const simulation::Snapshot& snapshot) {
+                        const simulation::Snapshot& snapshot, const Film& film) {
   const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
   for (std::size_t i = 0; i < strands_.size(); ++i) {
     if (i < intact.size() && intact[i] == 0) continue;
@@ -109,6 +109,7 @@ void StrandField::AddTo(render::Renderer& renderer, render::Frame& frame,
     }
   }
   AddFat(renderer, frame, snapshot);
+  WetFat(renderer, film);
 }
 
 void StrandField::FindRaw(const simulation::Snapshot& snapshot, std::vector<std::uint8_t>& rows) const {
@@ -137,6 +138,7 @@ void StrandField::AddFat(render::Renderer& renderer, render::Frame& frame,
   if (!is_same) {
     renderer.RemoveSurface(surface_);
     surface_ = {};
+    is_wet_ = false;
     fat_.Make(wanted_);
     const geometry::TriangleMesh& mesh = fat_.Mesh();
     if (!mesh.triangles.empty()) {
@@ -149,6 +151,15 @@ void StrandField::AddFat(render::Renderer& renderer, render::Frame& frame,
   }
   if (!fat_.Mesh().triangles.empty())
     frame.surfaces.push_back({surface_, {}, MakeLabel(LabelClass::kTriangleFat)});
+}
+
+void StrandField::WetFat(render::Renderer& renderer, const Film& film) {
+  const std::vector<math::Vec3>& positions = fat_.Mesh().positions;
+  if (positions.empty() || (!film.HasLiquid() && !is_wet_)) return;
+  is_wet_ = film.HasLiquid();
+  marks_.assign(positions.size(), {});
+  for (std::size_t v = 0; v < positions.size() && is_wet_; ++v) film.Wet(positions[v], marks_[v]);
+  renderer.UpdateMarks(surface_, marks_);
 }
 
 }  // namespace trocar::view

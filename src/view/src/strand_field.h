@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fat_body.h"
+#include "film.h"
 #include "trocar/render/renderer.h"
 #include "trocar/simulation/operation_snapshot.h"
 #include "trocar/simulation/snapshot.h"
@@ -22,8 +23,11 @@ class StrandField {
   StrandField(std::span<const scene::StrandInfo> strands, std::span<const math::Vec3> start);
 
   /// Adds the strands that still hold; all of them where the snapshot does not say. Their fat is one surface, made anew
-  /// when it has changed.
-  void AddTo(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot);
+  /// when it has changed, and wet where liquid lies or runs.
+  void AddTo(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot,
+             const Film& film);
+  /// The fat that was added last.
+  std::span<const FatLobule> Fat() const { return wanted_; }
 
   /// Marks the ends of the bed's strands that are divided.
   /// \param[out] rows  (rows of Snapshot::positions); empty where none is
@@ -36,6 +40,7 @@ class StrandField {
     double breadth;      // of its film: of a peritoneal strand, or of the web of the bed [m]
   };
   void AddFat(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot);
+  void WetFat(render::Renderer& renderer, const Film& film);
 
   std::vector<Strand> strands_;
   surgery::FatLobules lobules_;
@@ -43,6 +48,8 @@ class StrandField {
   std::vector<FatLobule> shown_, wanted_;  // of the surface that is uploaded; of this snapshot
   std::vector<math::Vec3> normals_;
   render::SurfaceId surface_;
+  std::vector<render::SurfaceMark> marks_;  // of the fat
+  bool is_wet_ = false;
 };
 
 }  // namespace trocar::view

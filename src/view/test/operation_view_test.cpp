@@ -344,6 +344,28 @@ TEST_F(OperationViewTest, BloodRunsDripsAndWetsBelowALeak) {
   EXPECT_EQ(Draw(), dry) << "dry again";
 }
 
+TEST_F(OperationViewTest, FatIsRedWhereBloodRunsOverIt) {
+  std::vector<scene::StrandInfo> strands;
+  math::Random random(1);
+  for (int i = 0; i < 25; ++i) {
+    const auto row = static_cast<std::uint32_t>(now_.positions.size());
+    now_.positions.push_back({random.Uniform(-0.01, 0.01), -0.034, -0.090});
+    now_.positions.push_back({random.Uniform(-0.01, 0.01), -0.045, -0.092});
+    strands.push_back({row, row + 1, scene::StrandInfo::Kind::kTriangle});
+  }
+  MakeView(strands);
+  const Image dry = Draw();
+  // below ball and duct: it wets nothing else; so slow that no more than two drops are seen at once
+  simulation::LeakSnapshot& leak = now_.operation.flow.leaks[0];
+  leak = {{0, -0.036, -0.088}, {0, 0, 1}, surgery::Fluid::kBlood, 2e-9};
+  now_.operation.flow.leak_count = 1;
+  const Change change = CountChanges(dry, Draw(), leak.position, 0.020);
+  EXPECT_GT(change.near, 120);
+  EXPECT_GT(change.mean[0], 1.3 * change.mean[1]);
+  leak.rate = 0;
+  EXPECT_EQ(Draw(), dry) << "dry again";
+}
+
 TEST_F(OperationViewTest, ThePoolGrowsWithWhatIsInIt) {
   MakeView();
   now_.gravity = {0, -5, -9};

@@ -76,6 +76,30 @@ TEST(PoolSurface, ItsShoreFollowsTheGround) {
   }
 }
 
+// It stands in deep liquid, so without it there is no shore for a long way round.
+TEST(PoolSurface, ThinsOutToNothingAtALobuleOfFat) {
+  const geometry::TriangleMesh bowl = MakeBowl();
+  const GroundShape shape{bowl.positions, bowl.triangles};
+  const FatLobule lobule{{0.004, 0, kLevel - 0.001}, {}, 0.005};
+  PoolSurface pool;
+  pool.Make(MakePuddle(), {0, 0, -0.1}, std::span(&shape, 1), std::span(&lobule, 1));
+  const double radius = std::sqrt(0.005 * 0.005 - 0.001 * 0.001);  // where it passes through the level
+  int at_shore = 0;
+  for (std::size_t v = 0; v < pool.Mesh().positions.size(); ++v) {
+    const Vec3& p = pool.Mesh().positions[v];
+    const double from = std::hypot(p.x - lobule.centre.x, p.y) - radius;
+    if (from < 0.0) {
+      EXPECT_EQ(pool.Shares()[v], 0.0);
+    } else if (from < 0.0004) {
+      EXPECT_LT(pool.Shares()[v], 0.4);
+      ++at_shore;
+    } else if (from > 0.0055 && std::hypot(p.x, p.y) < 0.010) {
+      EXPECT_GT(pool.Shares()[v], 0.9) << "as without it";
+    }
+  }
+  EXPECT_GT(at_shore, 4);
+}
+
 TEST(PoolSurface, ThickerHidesMore) {
   EXPECT_EQ(CalcPoolShare(-0.002), 0.0);
   EXPECT_LT(CalcPoolShare(-0.0005), CalcPoolShare(0.0002));

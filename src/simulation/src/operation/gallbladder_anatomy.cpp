@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/scene/triangle_fat.h"
 #include "trocar/simulation/ground.h"
@@ -194,14 +195,25 @@ training::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> surface
 training::TriangleSight MakeTriangleSight(const anatomy::Patient& patient,
                                           std::span<const SurfaceInfo> surfaces,
                                           std::span<const StrandInfo> strands, std::span<const Vec3> rest,
+                                          std::span<const double> exposable,
                                           const training::JudgementSettings& settings) {
   std::vector<std::uint32_t> cystic, hepatic;
   FindDucts(surfaces, rest, cystic, hepatic);
+  const std::vector<surgery::EnteringTube> entering = FindEnteringTubes(patient, surfaces, strands);
+  TROCAR_ASSERT(exposable.size() == entering.size());
   std::vector<training::TubeEntry> entries;
-  for (const surgery::EnteringTube& tube : FindEnteringTubes(patient, surfaces, strands))
-    entries.push_back(EntryOf(tube, rest));
-  return {std::move(cystic), std::move(hepatic), std::move(entries), scene::MakeTriangleFat(strands, rest),
-          settings.kept_fat};
+  double kept = 0;  // share of the cystic duct
+  for (std::size_t i = 0; i < entering.size(); ++i) {
+    entries.push_back(EntryOf(entering[i], rest));
+    if (cystic.empty() || entering[i].nodes.front() != cystic.back()) continue;
+    double length = 0;
+    for (std::size_t k = 1; k < cystic.size(); ++k)
+      length += math::Distance(rest[cystic[k - 1]], rest[cystic[k]]);
+    kept = std::clamp(1.0 - exposable[i] / length, 0.0, 1.0);
+  }
+  return {
+      std::move(cystic), std::move(hepatic), kept, std::move(entries), scene::MakeTriangleFat(strands, rest),
+      settings.kept_fat};
 }
 
 std::vector<double> CalcExposable(std::span<const surgery::EnteringTube> entering, std::span<const Vec3> rest,

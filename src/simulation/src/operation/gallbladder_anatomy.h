@@ -44,11 +44,12 @@ training::TriangleWindow MakeTriangleWindow(std::span<const scene::SurfaceInfo> 
                                             const training::JudgementSettings& settings);
 
 /// What an eye has to see of it, and the fat that hides it.
-/// \param rest  (nodes) [m]
+/// \param rest       (nodes) [m]
+/// \param exposable  (entering) of CalcExposable
 training::TriangleSight MakeTriangleSight(const anatomy::Patient& patient,
                                           std::span<const scene::SurfaceInfo> surfaces,
                                           std::span<const scene::StrandInfo> strands,
-                                          std::span<const math::Vec3> rest,
+                                          std::span<const math::Vec3> rest, std::span<const double> exposable,
                                           const training::JudgementSettings& settings);
 
 /// How much of each tube, from the gallbladder on, may be asked to lie bare: as far as main ducts and arteries, which keep

@@ -416,8 +416,8 @@ training::OperationJudge Operation::MakeJudge() const {
                                         facts_.main_arteries, settings);
   anatomy.exposable = CalcExposable(anatomy.entering, tissue.definition.rest, facts_.main_ducts,
                                     facts_.main_arteries, settings);
-  anatomy.sight =
-      MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest, settings);
+  anatomy.sight = MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest,
+                                    anatomy.exposable, settings);
   return {training::DissectionMonitor(std::move(anatomy), tissue.definition.rest), facts_.gallbladder >= 0,
           settings};
 }

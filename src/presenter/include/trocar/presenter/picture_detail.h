@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "trocar/render/frame.h"
@@ -29,12 +30,14 @@ class PictureDetail {
 
  private:
   void Go(std::size_t step);
+  double CalcFiner(double median) const;
 
   std::size_t finest_, step_;
-  std::vector<double> recent_;  // [s] of the pictures of this step, the last kJudged
-  std::size_t calm_ = 0;        // pictures since the last change
-  std::size_t calm_wanted_;     // before a finer step is tried
-  bool is_tried_ = false;       // the finer step was taken by trial, and has not stood the test yet
+  std::vector<double> recent_;     // [s] of the pictures of this step, the last kJudged
+  std::optional<double> coarser_;  // [s] what the next coarser step took, where this one was reached from it
+  std::size_t calm_ = 0;           // pictures since the last change
+  std::size_t calm_wanted_;        // before a finer step is tried
+  bool is_tried_ = false;          // the finer step was taken by trial, and has not stood the test yet
 };
 
 }  // namespace trocar::presenter

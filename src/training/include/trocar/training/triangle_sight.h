@@ -28,11 +28,13 @@ class TriangleSight {
  public:
   TriangleSight() = default;
   /// \param cystic_duct, hepatic_duct  nodes, from where they meet on; without one of them there is no triangle
+  /// \param kept_share  of the cystic duct, from where they meet on, that keeps its fat because a main duct or artery lies beside
+  ///                    it: nobody can be asked to see that part [-]
   /// \param entries   of what enters the gallbladder
   /// \param fat       of the triangle
   /// \param kept_fat  beside the hepatic duct, which is no part of the window: TriangleWindowSettings [m]
   TriangleSight(std::vector<std::uint32_t> cystic_duct, std::vector<std::uint32_t> hepatic_duct,
-                std::vector<TubeEntry> entries, surgery::FatLobules fat, double kept_fat);
+                double kept_share, std::vector<TubeEntry> entries, surgery::FatLobules fat, double kept_fat);
 
   bool HasTriangle() const noexcept { return !cystic_duct_.empty() && !hepatic_duct_.empty(); }
   /// \param is_intact   (strands) 0 for each that was divided
@@ -43,8 +45,8 @@ class TriangleSight {
     fat_.Update(is_intact);
     for (std::size_t i = 0; i < entries_.size(); ++i) enters_[i] = is_divided(entries_[i].tube) ? 0 : 1;
   }
-  /// What has to be seen: two places of the cystic duct, the middle of the window beside it, and where each tube that
-  /// was whole at the last Update enters the gallbladder [m].
+  /// What has to be seen: two places of the cystic duct, the middle of the window beside it, all beyond the part that keeps
+  /// its fat, and where each tube that was whole at the last Update enters the gallbladder [m].
   /// \param positions  (nodes) [m]
   /// \return valid until the next call
   /// \pre HasTriangle()
@@ -62,6 +64,7 @@ class TriangleSight {
 
  private:
   std::vector<std::uint32_t> cystic_duct_, hepatic_duct_;
+  double kept_share_ = 0;
   std::vector<TubeEntry> entries_;
   std::vector<std::uint8_t> enters_;  // (entries) at the last Update
   std::vector<math::Vec3> points_;    // room for all
