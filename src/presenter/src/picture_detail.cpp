@@ -20,8 +20,7 @@ constexpr std::size_t kJudged = 5;       // pictures whose median counts
 constexpr std::size_t kCalm = 150;       // pictures before a finer step is tried for the first time
 constexpr std::size_t kMostCalm = 9000;  // and at most
 constexpr double kHighCosts = 2;         // times of the lowest quality, at most: llvmpipe takes 1.1 to 1.3
-constexpr double kFixedShare =
-    0.2;  // of a picture's time, at least, that its size does not change: a trial costs little
+constexpr double kFixedShare = 0.2;      // of a picture's time, at least, that its size does not change
 
 double CalcArea(const PictureDetail::Step& step) {
   return step.resolution * step.resolution;

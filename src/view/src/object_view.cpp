@@ -182,7 +182,7 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const si
     const double r = region.radius;
     view::Append(mesh, MakeRod({-1.7 * r, -0.2 * r}, {1.5 * r, 1.5 * r}), {});
   }
-  if (region.mark == scene::RegionMark::kBall)
+  if (region.mark == scene::RegionMark::kBall && walls_ != render::SurfaceId{})
     still_shades_.push_back({region.centre, region.centre, region.radius});
   mark.idle = renderer.AddSurface(mesh, Material::kSleeve);
   mark.next = renderer.AddSurface(mesh, Material::kMark);

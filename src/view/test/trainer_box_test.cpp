@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../src/trainer_box.h"
+#include "trainer_box.h"
 
 #include <gtest/gtest.h>
 

@@ -35,11 +35,10 @@ struct MaterialLook {
   float glow = 0;             ///< light that comes through a thin wall at its rim [-]
   float grooves = 0;          ///< depth of fine grooves across the shaft (tools) [-]
   float wear = 0;             ///< scratches and rubbed places (tools) [-]
-  float line_tile =
-      0;  ///< between lines that are printed on it, along rest x, y, z (tools without grooves and wear) [m]; 0: none
-  float lines = 0;     ///< how dark these lines are [-]
-  float opacity = 1;   ///< below 1: light passes through, seen square on [-]
-  float emission = 0;  ///< light of its own [-]
+  float line_tile = 0;        ///< between printed lines, along rest x, y, z (even tools) [m]; 0: none
+  float lines = 0;            ///< how dark these lines are [-]
+  float opacity = 1;          ///< below 1: light passes through, seen square on [-]
+  float emission = 0;         ///< light of its own [-]
 };
 
 /// Colours of light and of what lies on tissue, linear.
