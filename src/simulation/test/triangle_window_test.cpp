@@ -141,6 +141,27 @@ TEST(ExposableOfTubes, EndsWhereMainDuctsKeepWhatLiesBesideThem) {
   EXPECT_LT(ExposableOf(*read, roles::TubeRole::kCysticDuct), 0.007);
 }
 
+// Where the main duct keeps more, a view is asked for less of the cystic duct: for nothing beyond what is exposable.
+TEST(SightOfTriangle, AsksForNoPlaceOfTheDuctThatKeepsItsFat) {
+  const auto farthest_asked = [](const Scene& scene) {
+    auto model = DescribeModel(scene);
+    EXPECT_TRUE(model.ok());
+    const std::int32_t gallbladder = scene::FindSurface(model->surfaces, roles::OrganRole::kGallbladder);
+    const auto& duct = model->surfaces[static_cast<std::size_t>(
+        scene::FindSurface(model->surfaces, roles::TubeRole::kCysticDuct))];
+    const std::uint32_t end =
+        duct.ends[0] == gallbladder ? duct.first_node : duct.first_node + duct.node_count - 1;
+    const auto points = model->sight.FindPoints(model->rest);
+    return std::max(math::Distance(points[0], model->rest[end]), math::Distance(points[1], model->rest[end]));
+  };
+  const Scene& whole = *OperationScene();
+  Scene wide = whole;
+  wide.operation->parameters.judgement.kept_fat = 0.020;
+  const double exposable = ExposableOf(wide, roles::TubeRole::kCysticDuct);
+  EXPECT_LE(farthest_asked(wide), exposable + 0.0025) << "a node of the duct more";
+  EXPECT_GT(farthest_asked(whole), exposable + 0.005);
+}
+
 // The fat that is drawn is the fat that hides: none of the triangle is seen before it is cleared.
 TEST_F(TriangleOfPatient, IsHiddenByItsFatFromAllSidesAndSeenOnceItAndTheEntriesAreCleared) {
   EXPECT_EQ(CountOpenViews(), 0);

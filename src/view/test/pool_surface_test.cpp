@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
@@ -74,6 +76,26 @@ TEST(PoolSurface, ItsShoreFollowsTheGround) {
       EXPECT_LT(pool.Shares()[v], 0.6) << "the island stands out";
     }
   }
+}
+
+// The ground rises 6 mm between two points of the lattice: a wall that holds no liquid.
+TEST(PoolSurface, EndsNowhereAsAWall) {
+  geometry::TriangleMesh cliff = MakeBowl();
+  for (Vec3& p : cliff.positions)
+    if (p.x > 0.004) p.z = kLevel + 0.0025;
+  const PoolSurface pool = MakePool(cliff);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const geometry::Triangle& t : pool.Mesh().triangles) {
+    for (std::size_t k = 0; k < 3; ++k) ++edges[std::minmax(t[k], t[(k + 1) % 3])];
+  }
+  int border = 0;
+  for (const auto& [edge, triangles] : edges) {
+    if (triangles != 1) continue;
+    ++border;
+    EXPECT_LT(std::max(pool.Shares()[edge.first], pool.Shares()[edge.second]), 0.05);
+  }
+  EXPECT_GT(border, 20);
+  EXPECT_GT(*std::max_element(pool.Shares().begin(), pool.Shares().end()), 0.95) << "there is a pool";
 }
 
 // It stands in deep liquid, so without it there is no shore for a long way round.
