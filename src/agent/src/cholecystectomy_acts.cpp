@@ -197,6 +197,12 @@ void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen)
       return GoOnDividing(seen);
     case Kind::kCheckClip:
       return CheckClip(act, seen);
+    case Kind::kCheckClosedClip:
+      // it may have gone round another, such as the stump of what is divided already
+      if (ClipsOn(seen, division_.tubes[act.tube]).size() <= static_cast<std::size_t>(act.count))
+        for (const double gaps : {-1.0, -0.5, 0.0, 0.5, 1.0})
+          division_.avoid[act.tube].push_back(act.share + gaps * kLeastGap);
+      return;
     case Kind::kCheckBlades:
       return CheckBlades(act, seen);
     case Kind::kCheckBeforeCut:

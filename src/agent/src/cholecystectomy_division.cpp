@@ -137,10 +137,9 @@ void CholecystectomySurgeon::CheckClip(const SurgeonAct& act, const Snapshot& se
   const double half = 0.5 * M_PI * lines[tube].RadiusAt(near.arc) + kFromTips;
   bool is_good = near.distance < kBetweenLegs && in.z > half && in.z < length - half;
   for (std::size_t other = 0; other < lines.size(); ++other) {
-    if (division_.care < 1.0 && IsDivided(seen, other)) continue;
-    if (other != tube &&
-        lines[other].FindNearest(legs).distance < near.distance + division_.care * kBetweenLegs)
-      is_good = false;
+    // a stump may come between, but not in the place of the vessel
+    const double room = division_.care < 1.0 && IsDivided(seen, other) ? 0.0 : division_.care * kBetweenLegs;
+    if (other != tube && lines[other].FindNearest(legs).distance < near.distance + room) is_good = false;
   }
   for (const double clip : ClipsOn(seen, tube))
     if (std::fabs(clip - near.arc) < kLeastGap) is_good = false;
@@ -148,16 +147,21 @@ void CholecystectomySurgeon::CheckClip(const SurgeonAct& act, const Snapshot& se
     SetJaw("close the clip", 0.0);
     // open enough to leave the clip, not so far that the next one comes
     Jaw(kRight, 0.4);
-  } else if (act.count > 0) {
-    const Vec3 middle = X * Vec3{0, 0, beyond_ * length};
-    const Vec3 off = offset_ + lines[tube].At(arc) - middle;
-    offset_ = math::Norm(off) > kMostOff ? kMostOff * math::Normalized(off) : off;
-    CloseWhenBetween(which, arc, act.count - 1);
+    Withdraw();
+    SurgeonAct& look = Decide(SurgeonAct::Kind::kCheckClosedClip, "look at the clip");
+    look.tube = which;
+    look.share = arc;
+    look.count = static_cast<int>(ClipsOn(seen, tube).size());
     return;
-  } else {
-    division_.avoid[which].push_back(arc);
   }
-  Withdraw();
+  if (act.count == 0) {
+    division_.avoid[which].push_back(arc);
+    return Withdraw();
+  }
+  const Vec3 middle = X * Vec3{0, 0, beyond_ * length};
+  const Vec3 off = offset_ + lines[tube].At(arc) - middle;
+  offset_ = math::Norm(off) > kMostOff ? kMostOff * math::Normalized(off) : off;
+  CloseWhenBetween(which, arc, act.count - 1);
 }
 
 void CholecystectomySurgeon::CutAt(std::size_t which, double arc) {

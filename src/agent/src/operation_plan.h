@@ -114,6 +114,7 @@ struct SurgeonAct {
     kDivide,
     kGoOnDividing,
     kCheckClip,
+    kCheckClosedClip,
     kCheckBlades,
     kCheckBeforeCut,
     kCheckDivision,

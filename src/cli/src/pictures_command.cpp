@@ -71,7 +71,7 @@ core::Status MakePictures(const PicturesArguments& arguments, Outcome& outcome) 
 
 void AddPicturesCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* command =
-      app.add_subcommand("pictures", "Draw twenty-two pictures of the operation and of the training tasks");
+      app.add_subcommand("pictures", "Draw twenty-three pictures of the operation and of the training tasks");
   auto arguments = std::make_shared<PicturesArguments>();
   command->add_option("-o,--output", arguments->output, "Folder to write")
       ->type_name("DIR")
@@ -97,7 +97,7 @@ void AddPicturesCommand(CLI::App& app, Outcome& outcome) {
       ->capture_default_str();
   command->add_flag("--list", arguments->is_list, "Say which there are, and do nothing");
   command->footer(
-      "Scripted surgeons operate three times and begin ten training tasks, which takes minutes. Needs OpenGL "
+      "Scripted surgeons operate four times and begin ten training tasks, which takes minutes. Needs OpenGL "
       "(in\n"
       "software will do) and no display. When anything fails, the folder stays as it was.\n"
       "Examples:\n"

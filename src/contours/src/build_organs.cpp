@@ -7,6 +7,7 @@
 #include "contoured_structure.h"
 #include "trocar/meshing/volume.h"
 #include "trocar/meshing/volume_mesher.h"
+#include "volume_opening.h"
 
 namespace trocar::contours {
 namespace {
@@ -14,7 +15,9 @@ namespace {
 using core::Error;
 
 constexpr double kCubicMmPerMl = 1000.0;
-constexpr double kThinnestMm = 7.0;  // tips thinner than this are cut off
+constexpr double kThinnestMm = 7.0;  // within a slice; tips thinner than this are cut off
+constexpr double kBallEdges =
+    1.54;  // across the ball that fits wherever an organ is kept, chosen from pictures
 
 Error GivenUp() {
   return {core::ErrorCode::kCancelled, "the organs were given up"};
@@ -122,6 +125,7 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points,
     report_progress("meshing " + structure.name, static_cast<double>(i) / count);
     meshing::MeshingSettings settings;
     settings.triangle_budget = structure.triangle_budget;
+    OpenVolume(volumes[i], kBallEdges / 2 * CalcEdgeLength(volumes[i], structure.triangle_budget));
     auto meshed = meshing::MeshVolume(std::move(volumes[i]), settings);
     if (!meshed.ok()) return Error{meshed.error().code, structure.name + ": " + meshed.error().message};
     OrganReport& organ = built.organs[i];

@@ -2,6 +2,7 @@
 #include "trocar/training/triangle_sight.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "trocar/core/assert.h"
@@ -14,6 +15,9 @@ namespace {
 /// What is seen may lie this near behind a surface [m]: sight ends at the skin of a duct, not at its axis.
 constexpr double kSkin = 0.004;
 constexpr std::size_t kDuctPoints = 3;
+/// So far may fat that is kept beside the hepatic duct reach beyond that [m]: a lobule is kept that touches it.
+constexpr double kReach = 0.003;
+constexpr int kSteps = 8;  // back to the cystic duct
 
 }  // namespace
 
@@ -34,13 +38,25 @@ std::span<const Vec3> TriangleSight::FindPoints(std::span<const Vec3> positions)
   const auto at = [&](const std::vector<std::uint32_t>& nodes, double share) {
     return positions[nodes[static_cast<std::size_t>(share * static_cast<double>(nodes.size() - 1))]];
   };
-  const auto on_duct = [&](double share) { return at(cystic_duct_, std::max(share, kept_share_)); };
+  const auto on_duct = [&](double share) {
+    if (share >= kept_share_) return at(cystic_duct_, share);
+    // the first node that is exposable
+    const auto last = static_cast<double>(cystic_duct_.size() - 1);
+    return positions[cystic_duct_[static_cast<std::size_t>(std::ceil(kept_share_ * last))]];
+  };
   const Vec3 beside = on_duct(0.5), across = at(hepatic_duct_, 0.5);
   const double apart = math::Distance(beside, across);
   const double window = apart > kept_fat_ ? 1.0 - kept_fat_ / apart : 0.0;  // of the way across
   points_[0] = on_duct(0.3);
   points_[1] = on_duct(0.7);
   points_[2] = math::Lerp(beside, across, 0.5 * window);
+  const auto may_be_hidden = [&](const Vec3& p) {
+    return std::any_of(hepatic_duct_.begin(), hepatic_duct_.end(), [&](std::uint32_t node) {
+      return math::Distance(positions[node], p) < kept_fat_ + kReach;
+    });
+  };
+  for (int step = kSteps - 1; step >= 0 && may_be_hidden(points_[2]); --step)
+    points_[2] = math::Lerp(beside, across, 0.5 * window * step / kSteps);
   std::size_t count = kDuctPoints;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const TubeEntry& entry = entries_[i];

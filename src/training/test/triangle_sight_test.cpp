@@ -80,6 +80,19 @@ TEST(TriangleSight, AsksForNothingThatKeepsItsFat) {
   const double window = math::Distance(beside, across) - 0.005;
   EXPECT_NEAR(math::Distance(points[2], beside), 0.5 * window, 1e-12)
       << "the middle of the window from there";
+  TriangleSight between = triangle.Sight(0.55);
+  EXPECT_NEAR(math::Distance(between.FindPoints(triangle.rest)[0], {0.012, 0, 0}), 0, 1e-12)
+      << "the next node that is exposable, not the last that is not";
+}
+
+// A lobule that touches what is kept stays as a whole.
+TEST(TriangleSight, AsksForNoMiddleThatKeptFatReachesOver) {
+  const Triangle triangle(0.0095);
+  TriangleSight sight = triangle.Sight();
+  const Vec3 middle = sight.FindPoints(triangle.rest)[2];
+  EXPECT_NEAR(middle.x, 0.010, 1e-12);
+  EXPECT_LE(middle.y, 0.0095 - kKept - 0.003);
+  EXPECT_GT(middle.y, 0.001) << "but for what fat is reached over, in the window";
 }
 
 TEST(TriangleSight, AsksForWhereEachWholeTubeEntersTheGallbladder) {

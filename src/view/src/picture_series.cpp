@@ -66,6 +66,13 @@ bool IsInBag(const Snapshot& now) {
 bool IsRinsing(const Snapshot& now) {
   return now.operation.is_rinsing[scene::kRight];
 }
+template <int kStones>
+bool HasSpilled(const Snapshot& now) {
+  const auto& stones = now.operation.stones;
+  return std::count_if(stones.begin(), stones.end(), [](const simulation::StoneSnapshot& stone) {
+           return stone.place == simulation::StonePlace::kSpilled;
+         }) >= kStones;
+}
 bool Bleeds(const Snapshot& now) {
   const auto leaks = std::span(now.operation.flow.leaks).first(now.operation.flow.leak_count);
   return std::any_of(leaks.begin(), leaks.end(), [](const simulation::LeakSnapshot& leak) {
@@ -184,7 +191,7 @@ std::vector<SeriesSitting> ListPictureSeries() {
   return {
       {"cholecystectomy",
        "expert",
-       {{"01-preparation", "the first look: the liver lies over the gallbladder", IsLaterThan<2>},
+       {{"01-preparation", "the first look: gallbladder, liver and omentum", IsLaterThan<0>, 0.4},
         {"02-traction", "the fundus is held up, a hand takes the infundibulum",
          IsIn<Phase::kCalotTriangleDissection>, 3},
         {"03-triangle", "the hook divides fat and strands of the hepatocystic triangle", BurnsInTriangle,
@@ -218,7 +225,11 @@ std::vector<SeriesSitting> ListPictureSeries() {
        {{"21-straight-camera-navigation", "camera navigation with a straight scope", IsLaterThan<6>}}},
       {"object_transport",
        "expert",
-       {{"22-object-transport", "transport of a thing from hand to hand", IsLaterThan<7>}}}};
+       {{"22-object-transport", "transport of a thing from hand to hand", IsLaterThan<7>}}},
+      {"cholecystectomy",
+       "leaves_stones",
+       {{"23-spilled-stones", "an accident: stones come out of the gallbladder with its bile",
+         HasSpilled<2>}}}};
 }
 
 core::Result<std::vector<SeriesPicture>> MakePictureSeries(const SeriesOptions& options) {

@@ -164,7 +164,7 @@ TEST_F(LabelsTest, AgreeWithRaysOnEveryVisibleOrganPixelOfTheBuiltInPatient) {
 
 // each pixel's surface point, carried back with its triangle and projected into the camera of then, lies where the flow says
 TEST_F(LabelsTest, FlowIsWhereSurfacePointsCameFrom) {
-  Show(Operation(), 360);
+  Show(Operation(), 24);
   ASSERT_TRUE(view_->DrawGeometryAndFlow(kWidth, kHeight, picture_).ok());
   EXPECT_TRUE(std::all_of(picture_.flow.begin(), picture_.flow.end(), [](float v) { return std::isnan(v); }))
       << "nothing is known of before";
@@ -194,7 +194,7 @@ TEST_F(LabelsTest, FlowIsWhereSurfacePointsCameFrom) {
     if (std::hypot(wanted[0], wanted[1]) > 0.5) ++moved;
   }
   ASSERT_GT(compared, picture_.labels.size() / 2);
-  EXPECT_GT(moved, 200U) << "a tool moves";
+  EXPECT_GT(moved, 200U) << "the laparoscope moves";
   EXPECT_GE(static_cast<double>(same) / static_cast<double>(compared), 0.998);
   // nothing moves any more
   ASSERT_TRUE(view_->DrawGeometryAndFlow(kWidth, kHeight, picture_).ok());
@@ -202,7 +202,7 @@ TEST_F(LabelsTest, FlowIsWhereSurfacePointsCameFrom) {
 }
 
 TEST_F(LabelsTest, NameOrgansAndScenery) {
-  Show(Operation(), 360);
+  Show(Operation(), 24);
   for (const LabelClass label : {LabelClass::kLiver, LabelClass::kGallbladder, LabelClass::kOmentum,
                                  LabelClass::kAbdominalWall, LabelClass::kTriangleFat})
     EXPECT_EQ(seen_.count(label), 1U) << NameOf(label);
