@@ -178,9 +178,6 @@ TEST_F(OpenHapticsHost, EveryFailureOfTheLibraryIsZeroAndALostDevice) {
   for (const auto& strike : strikes) {
     SCOPED_TRACE(&strike - strikes);
     motors_->fault = StandInFault::kNone;
-    const core::Status configured = driver.Configure();
-    ASSERT_TRUE(configured.ok()) << configured.error().Text();
-    ASSERT_TRUE(driver.Activate().ok());
     std::array<ForceSample, 2> samples;
     ReadStatus last = ReadStatus::kUnchanged;
     const auto tick = [&] {
@@ -189,8 +186,16 @@ TEST_F(OpenHapticsHost, EveryFailureOfTheLibraryIsZeroAndALostDevice) {
       last = driver.ReadForceSamples(samples);
       return last == ReadStatus::kLost;
     };
-    // half a second without a complaint: nobody ends a library that is well
-    ASSERT_FALSE(WaitFor(0.5, tick));
+    // half a second without a complaint: nobody ends a library that is well. Where no real-time priority is granted, other
+    // programs may hold its thread back for the 12 ms after which it is taken for one that stands; not six times in turn
+    bool is_well = false;
+    for (int attempt = 0; attempt < 6 && !is_well; ++attempt) {
+      const core::Status configured = driver.Configure();
+      ASSERT_TRUE(configured.ok()) << configured.error().Text();
+      ASSERT_TRUE(driver.Activate().ok());
+      is_well = !WaitFor(0.5, tick);
+    }
+    ASSERT_TRUE(is_well);
     ASSERT_TRUE(WaitFor(5, [&] { return tick(), IsPushing(); }));
     const pid_t before = motors_->process;
     motors_->fault_process = before;
