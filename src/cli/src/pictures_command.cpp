@@ -19,7 +19,7 @@ namespace {
 struct PicturesArguments {
   std::string output = "out/pictures", size = "1280x720", moments, only;
   int threads = 1, draws = 1;
-  bool is_list = false;
+  bool is_list = false, is_plain = false;
 };
 
 core::Status PrintPictures() {
@@ -43,6 +43,7 @@ core::Status MakePictures(const PicturesArguments& arguments, Outcome& outcome) 
   options.threads = arguments.threads;
   options.draws = arguments.draws;
   options.view.has_force_arrows = false;
+  if (arguments.is_plain) options.view.quality = render::Quality::kLow;
   PartFolder part(arguments.output);
   options.output = part.Path();
   ProgressBar progress("pictures", 1.0);
@@ -95,6 +96,8 @@ void AddPicturesCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 256))
       ->type_name("T")
       ->capture_default_str();
+  command->add_flag("--plain", arguments->is_plain,
+                    "In the lowest quality, which the window takes where no GPU draws");
   command->add_flag("--list", arguments->is_list, "Say which there are, and do nothing");
   command->footer(
       "Scripted surgeons operate four times and begin ten training tasks, which takes minutes. Needs OpenGL "

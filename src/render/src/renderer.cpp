@@ -72,7 +72,7 @@ struct Renderer::Content {
     if (const auto status = fine.Make(looks); !status) return status;
     if (const auto status = round.Make(); !status) return status;
     const auto add = [&](const geometry::TriangleMesh& mesh, Material material) {
-      return surfaces.Add(mesh.triangles, mesh.positions, material, {});
+      return surfaces.Add(mesh.triangles, mesh.positions, material, {}, {});
     };
     rod = add(MakeUnitRod(), Material::kForce);
     cone = add(MakeUnitCone(), Material::kForce);
@@ -236,8 +236,9 @@ core::Result<Renderer> Renderer::Make(const Looks& looks) {
 }
 
 SurfaceId Renderer::AddSurface(std::span<const Triangle> triangles, std::span<const Vec3> rest,
-                               Material material, std::span<const double> ambient_occlusion) {
-  return content_->surfaces.Add(triangles, rest, material, ambient_occlusion);
+                               Material material, std::span<const double> ambient_occlusion,
+                               std::span<const Triangle> coarse) {
+  return content_->surfaces.Add(triangles, rest, material, ambient_occlusion, coarse);
 }
 
 SurfaceId Renderer::AddSurface(const geometry::TriangleMesh& mesh, Material material,
@@ -261,7 +262,7 @@ void Renderer::UpdateMarks(SurfaceId id, std::span<const SurfaceMark> marks) {
 void Renderer::UpdateTriangles(SurfaceId id, std::span<const Triangle> triangles) {
   Surface* surface = content_->surfaces.Find(id);
   TROCAR_ASSERT(surface != nullptr);
-  if (surface != nullptr) SurfaceStore::UploadTriangles(*surface, triangles);
+  if (surface != nullptr) SurfaceStore::UploadTriangles(*surface, triangles, {});
 }
 
 void Renderer::RemoveSurface(SurfaceId id) {
@@ -313,7 +314,7 @@ void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, in
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   const Pose X_camera_world = math::Inverse(frame.camera.X_world_camera);
   c.SetUniforms(frame, X_camera_world, exposure, width, height);
-  c.surface_drawer.Begin(frame.quality, frame.tool_wear);
+  c.surface_drawer.Begin(frame.quality, frame.tool_wear, height <= kCoarseHeight);
   c.DrawScene(frame, {X_camera_world, CalcFocalLength(frame.camera, height), 0.5 * width, 0.5 * height});
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   SurfaceDrawer::End();

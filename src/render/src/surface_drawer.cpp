@@ -72,11 +72,12 @@ core::Status SurfaceDrawer::Make(const Looks& looks) {
   return {};
 }
 
-void SurfaceDrawer::Begin(Quality quality, double tool_wear) {
+void SurfaceDrawer::Begin(Quality quality, double tool_wear, bool is_coarse) {
   glVertexAttrib4f(3, 0, 0, 0, 0);  // of surfaces without marks
   glVertexAttrib1f(5, 0);
   noise_.Bind();
   is_fine_ = quality == Quality::kHigh;
+  is_coarse_ = is_coarse;
   tool_wear_ = ToFloat(tool_wear);
   for (const Program& program : {Tissue(), tool_, plain_, clear_}) {
     glUseProgram(program.name);
@@ -105,7 +106,10 @@ void SurfaceDrawer::Draw(const Surface& surface, const math::Pose& X_camera_surf
   if (!look.is_tissue && look.opacity >= 1.0f)
     program.Set("u_axis", ToFloat(math::Rotate(X_camera_surface.rotation, {0, 0, 1})));
   glBindVertexArray(surface.array);
-  glDrawElements(GL_TRIANGLES, surface.index_count, GL_UNSIGNED_INT, nullptr);
+  const bool is_coarse = is_coarse_ && surface.coarse_count > 0;
+  const std::size_t first = is_coarse ? static_cast<std::size_t>(surface.index_count) : 0;
+  glDrawElements(GL_TRIANGLES, is_coarse ? surface.coarse_count : surface.index_count, GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(first * sizeof(GLuint)));
 }
 
 }  // namespace trocar::render

@@ -27,7 +27,8 @@ class SurfaceDrawer {
 
   /// Before the first surface of a frame, after those uniforms; and after the last.
   /// \param tool_wear  of Frame
-  void Begin(Quality quality, double tool_wear);
+  /// \param is_coarse  coarse triangles where a surface has them
+  void Begin(Quality quality, double tool_wear, bool is_coarse);
   static void End();
 
   /// \param scale  along the surface's own axes, before its pose [-]
@@ -41,7 +42,7 @@ class SurfaceDrawer {
 
   std::array<Program, 2> tissue_;  // plain, fine
   Program tool_, plain_, clear_;
-  bool is_fine_ = false;
+  bool is_fine_ = false, is_coarse_ = false;
   float tool_wear_ = 1;
   NoiseTextures noise_;
 };

@@ -40,7 +40,8 @@ SurfaceStore::~SurfaceStore() {
 }
 
 SurfaceId SurfaceStore::Add(std::span<const Triangle> triangles, std::span<const Vec3> rest,
-                            Material material, std::span<const double> ambient_occlusion) {
+                            Material material, std::span<const double> ambient_occlusion,
+                            std::span<const Triangle> coarse) {
   TROCAR_ASSERT(ambient_occlusion.empty() || ambient_occlusion.size() == rest.size());
   auto free_place = std::find_if_not(surfaces_.begin(), surfaces_.end(), IsInUse);
   if (free_place == surfaces_.end()) free_place = surfaces_.insert(surfaces_.end(), Surface{});
@@ -67,7 +68,7 @@ SurfaceId SurfaceStore::Add(std::span<const Triangle> triangles, std::span<const
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest_vertices.size() * sizeof(RestVertex)),
                rest_vertices.data(), GL_STATIC_DRAW);
   glBindVertexArray(0);
-  UploadTriangles(surface, triangles);
+  UploadTriangles(surface, triangles, coarse);
 
   std::vector<Vec3> normals(rest.size());
   geometry::CalcVertexNormals(rest, triangles, normals);
@@ -117,15 +118,21 @@ void SurfaceStore::UploadMarks(Surface& surface, std::span<const SurfaceMark> ma
   glBindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
-void SurfaceStore::UploadTriangles(Surface& surface, std::span<const Triangle> triangles) {
-  for (const Triangle& t : triangles) {
-    TROCAR_ASSERT(t[0] < surface.vertex_count && t[1] < surface.vertex_count && t[2] < surface.vertex_count);
+void SurfaceStore::UploadTriangles(Surface& surface, std::span<const Triangle> triangles,
+                                   std::span<const Triangle> coarse) {
+  for (const auto all : {triangles, coarse}) {
+    for ([[maybe_unused]] const Triangle& t : all)
+      TROCAR_ASSERT(std::max({t[0], t[1], t[2]}) < surface.vertex_count);
   }
   surface.index_count = static_cast<GLsizei>(3 * triangles.size());
+  surface.coarse_count = static_cast<GLsizei>(3 * coarse.size());
+  const auto bytes = static_cast<GLsizeiptr>(triangles.size_bytes()),
+             coarse_bytes = static_cast<GLsizeiptr>(coarse.size_bytes());
   glBindVertexArray(surface.array);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, surface.indices);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
-               GL_STATIC_DRAW);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, bytes + coarse_bytes, nullptr, GL_STATIC_DRAW);
+  glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, 0, bytes, triangles.data());
+  glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, bytes, coarse_bytes, coarse.data());
   glBindVertexArray(0);
 }
 

@@ -24,6 +24,7 @@ struct Surface {
   GLuint earlier = 0;      ///< positions when Remember was called; 0: it was not
   bool has_moved = false;  ///< since then
   GLsizei index_count = 0;
+  GLsizei coarse_count = 0;  ///< indices behind those, of the coarse triangles
   std::size_t vertex_count = 0;
   geometry::Box box;  ///< around its vertices, in its own frame [m]
 };
@@ -40,7 +41,8 @@ class SurfaceStore {
 
   /// What the renderer's members of the same names say.
   SurfaceId Add(std::span<const geometry::Triangle> triangles, std::span<const math::Vec3> rest,
-                Material material, std::span<const double> ambient_occlusion);
+                Material material, std::span<const double> ambient_occlusion,
+                std::span<const geometry::Triangle> coarse);
   void Remove(SurfaceId id);
 
   /// \return nullptr for what was removed or never there
@@ -52,7 +54,8 @@ class SurfaceStore {
   /// \param marks  (nv)
   static void UploadMarks(Surface& surface, std::span<const SurfaceMark> marks);
   /// \pre indices below nv (TROCAR_ASSERT)
-  static void UploadTriangles(Surface& surface, std::span<const geometry::Triangle> triangles);
+  static void UploadTriangles(Surface& surface, std::span<const geometry::Triangle> triangles,
+                              std::span<const geometry::Triangle> coarse);
   /// Keeps where the vertices are now as their earlier positions.
   static void Remember(Surface& surface);
   /// Back from the graphics card, as it moves now.

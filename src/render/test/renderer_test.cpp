@@ -249,6 +249,34 @@ TEST_F(RendererTest, UpdatedTrianglesReplaceTheOldOnes) {
   EXPECT_EQ(FindBlob(Draw(frame)).count, 0);
 }
 
+// A square of two triangles, of which the coarse surface has one: half of it is gone where a picture is small.
+TEST_F(RendererTest, SmallPicturesShowTheCoarseTriangles) {
+  const std::vector<Vec3> corners = {
+      {-0.02, -0.02, -0.1}, {0.02, -0.02, -0.1}, {0.02, 0.02, -0.1}, {-0.02, 0.02, -0.1}};
+  const std::vector<geometry::Triangle> both = {{0, 1, 2}, {0, 2, 3}};
+  Frame frame = PlainFrame();
+  const auto find_share = [&](SurfaceId surface, int height) {
+    frame.surfaces = {{surface, {}}};
+    const int width = 16 * height / 9;
+    auto target = OffscreenTarget::Make(width, height);
+    EXPECT_TRUE(target.ok());
+    target->Bind();
+    renderer_->Draw(frame, width, height);
+    Image image;
+    target->Read(image);
+    return FindBlob(image).count / static_cast<double>(width * height);
+  };
+  const SurfaceId plain = renderer_->AddSurface(both, corners, Material::kForce);
+  const double whole = find_share(plain, kCoarseHeight);
+  ASSERT_GT(whole, 0.03);
+  const SurfaceId refined =
+      renderer_->AddSurface(both, corners, Material::kForce, {}, std::span(both).first(1));
+  EXPECT_NEAR(find_share(refined, kCoarseHeight), 0.5 * whole, 0.02 * whole);
+  EXPECT_NEAR(find_share(refined, kCoarseHeight + 1), whole, 0.02 * whole);
+  renderer_->UpdateTriangles(refined, both);
+  EXPECT_NEAR(find_share(refined, kCoarseHeight), whole, 0.02 * whole);
+}
+
 TEST_F(RendererTest, RemovedSurfaceIsGoneAndItsIdNamesNothingNew) {
   const SurfaceId old_id = AddBall();
   Frame frame = PlainFrame();

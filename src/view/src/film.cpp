@@ -44,18 +44,20 @@ Film::Film(const simulation::Snapshot& snapshot) : down_(math::Normalized(snapsh
 void Film::Wet(const Vec3& p_world, render::SurfaceMark& mark) const {
   for (const Run& run : runs_) {
     const Vec3 from = p_world - run.start;
-    const double drop = math::Dot(from, down_), side = math::Norm(from - drop * down_);
+    const double drop = math::Dot(from, down_);
     // round above the leak, a tongue below it
     const double past = drop < 0.0 ? -drop : std::max(0.0, drop - run.length);
-    const double far = std::hypot(side, past) / run.width;
+    const double far = (math::SquaredNorm(from - drop * down_) + past * past) / (run.width * run.width);
     if (far >= 1.0) continue;
-    const auto wet = static_cast<std::uint8_t>(255.0 * run.strength * (1.0 - far * far));
+    const auto wet = static_cast<std::uint8_t>(255.0 * run.strength * (1.0 - far));
     std::uint8_t& film = run.is_blood ? mark.blood : mark.bile;
     film = std::max(film, wet);
   }
   for (const render::Puddle& pool : pools_) {
     const Vec3 from = p_world - pool.centre;
-    const double above = math::Dot(from, pool.up), side = math::Norm(from - above * pool.up);
+    const double above = math::Dot(from, pool.up);
+    if (above >= kShore) continue;
+    const double side = math::Norm(from - above * pool.up);
     const double share = std::clamp((kShore - above) / (2.0 * kShore), 0.0, 1.0) *
                          std::clamp(4.0 * (kShoreWidth - side / pool.radius), 0.0, 1.0);
     const double all = pool.blood + pool.bile + pool.rinse;

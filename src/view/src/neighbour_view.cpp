@@ -52,7 +52,7 @@ void NeighbourView::Add(render::Renderer& renderer, std::span<const double> ambi
   std::vector<double> fine(ambient_occlusion.begin(), ambient_occlusion.end());
   for (const auto& edge : refiner_.Edges())
     fine.push_back(0.5 * (ambient_occlusion[edge[0]] + ambient_occlusion[edge[1]]));
-  surface_ = renderer.AddSurface(refiner_.Triangles(), fine_positions_, material_, fine);
+  surface_ = renderer.AddSurface(refiner_.Triangles(), fine_positions_, material_, fine, mesh_.triangles);
 }
 
 void NeighbourView::Update(render::Renderer& renderer, const simulation::Snapshot& snapshot) {

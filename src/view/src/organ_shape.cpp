@@ -167,7 +167,7 @@ void OrganShape::AddSurface(render::Renderer& renderer, const RowMemory& memory)
   for (std::size_t i = 0; i < edges.size(); ++i)
     ambient_occlusion[rows_.size() + i] =
         0.5 * (ambient_occlusion[edges[i][0]] + ambient_occlusion[edges[i][1]]);
-  surface_ = renderer.AddSurface(refiner_->Triangles(), fine_rest, material_, ambient_occlusion);
+  surface_ = renderer.AddSurface(refiner_->Triangles(), fine_rest, material_, ambient_occlusion, triangles_);
 }
 
 void OrganShape::Add(render::Renderer& renderer, std::span<const double> ambient_occlusion,

@@ -31,6 +31,11 @@ constexpr double kShoreSlope = 0.6;  // of an end where there is no ground
 
 constexpr double kUnknown = -std::numeric_limits<double>::infinity();
 
+/// std::hypot without its care for lengths that no lattice has, which takes most of its time.
+double CalcLength(double x, double y) {
+  return std::sqrt(x * x + y * y);
+}
+
 }  // namespace
 
 double CalcPoolShare(double depth) noexcept {
@@ -65,22 +70,29 @@ void PoolSurface::Make(const render::Puddle& puddle, const Vec3& lowest, std::sp
 
 /// The highest ground at each point that does not hang over the level.
 void PoolSurface::MeetGround(const GroundShape& shape) {
+  lattice_.resize(shape.positions.size());
+  for (std::size_t v = 0; v < lattice_.size(); ++v) {
+    const Vec3 from = shape.positions[v] - corner_;
+    lattice_[v] = {math::Dot(from, right_) / kSpacing, math::Dot(from, ahead_) / kSpacing,
+                   math::Dot(from, up_)};
+  }
+  const double last = side_ - 1;
   for (const auto& [ia, ib, ic] : shape.triangles) {
     TROCAR_ASSERT(std::max({ia, ib, ic}) < shape.positions.size());
-    const std::array<Vec3, 3> corners = {shape.positions[ia] - corner_, shape.positions[ib] - corner_,
-                                         shape.positions[ic] - corner_};
-    std::array<double, 3> x{}, y{}, z{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      x[k] = math::Dot(corners[k], right_) / kSpacing;
-      y[k] = math::Dot(corners[k], ahead_) / kSpacing;
-      z[k] = math::Dot(corners[k], up_);
-    }
-    const int from_x = std::max(0, static_cast<int>(std::ceil(*std::min_element(x.begin(), x.end()))));
-    const int to_x = std::min(side_ - 1, static_cast<int>(std::floor(*std::max_element(x.begin(), x.end()))));
-    const int from_y = std::max(0, static_cast<int>(std::ceil(*std::min_element(y.begin(), y.end()))));
-    const int to_y = std::min(side_ - 1, static_cast<int>(std::floor(*std::max_element(y.begin(), y.end()))));
+    const std::array<double, 3> x = {lattice_[ia].x, lattice_[ib].x, lattice_[ic].x};
+    const auto [least_x, most_x] = std::minmax({x[0], x[1], x[2]});
+    if (most_x < 0.0 || least_x > last) continue;  // nearly all of them
+    const std::array<double, 3> y = {lattice_[ia].y, lattice_[ib].y, lattice_[ic].y};
+    const auto [least_y, most_y] = std::minmax({y[0], y[1], y[2]});
+    if (most_y < 0.0 || least_y > last) continue;
+    const int from_x = std::max(0, static_cast<int>(std::ceil(least_x)));
+    const int to_x = std::min(side_ - 1, static_cast<int>(std::floor(most_x)));
+    const int from_y = std::max(0, static_cast<int>(std::ceil(least_y)));
+    const int to_y = std::min(side_ - 1, static_cast<int>(std::floor(most_y)));
     if (from_x > to_x || from_y > to_y) continue;
-    const Vec3 normal = math::Cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const std::array<double, 3> z = {lattice_[ia].z, lattice_[ib].z, lattice_[ic].z};
+    const Vec3& a = shape.positions[ia];
+    const Vec3 normal = math::Cross(shape.positions[ib] - a, shape.positions[ic] - a);
     if (math::Dot(normal, up_) < kLeastSlope * math::Norm(normal)) continue;
     const double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
     if (!(area > 0.0)) continue;
@@ -117,7 +129,7 @@ void PoolSurface::MeetLobule(const FatLobule& lobule) {
   for (int row = from_y; row <= to_y; ++row) {
     for (int column = from_x; column <= to_x; ++column) {
       double& clearance = clearances_[At(column, row)];
-      clearance = std::min(clearance, std::hypot(column * kSpacing - x, row * kSpacing - y) - radius);
+      clearance = std::min(clearance, CalcLength(column * kSpacing - x, row * kSpacing - y) - radius);
     }
   }
 }
@@ -128,7 +140,7 @@ void PoolSurface::FindThickness(const render::Puddle& puddle, double deepest) {
   for (int row = 0; row < side_; ++row) {
     for (int column = 0; column < side_; ++column) {
       const std::size_t at = At(column, row);
-      const double side = kSpacing * std::hypot(column - half, row - half) / puddle.radius;
+      const double side = kSpacing * CalcLength(column - half, row - half) / puddle.radius;
       // what stands above the level with nothing under it is ground, too: an island
       double height = heights_[at];
       if (height == kUnknown && overhangs_[at] < kTallest) height = overhangs_[at];

@@ -51,11 +51,12 @@ class PoolSurface {
 
   math::Vec3 corner_, right_, ahead_, up_;  // of the lattice, on the level
   int side_ = 0;                            // points
-  std::vector<double> heights_;             // (points) of the ground above the level [m]
-  std::vector<double> overhangs_;           // (points) lowest of what stands or hangs well above it [m]
-  std::vector<double> clearances_;          // (points) from lobules, on the level; below 0 in one [m]
-  std::vector<double> thickness_;           // (points) of the liquid [m]
-  std::vector<std::int32_t> vertex_;        // of a point, -1 none
+  std::vector<math::Vec3> lattice_;   // (vertices of a ground) column, row [-], height above the level [m]
+  std::vector<double> heights_;       // (points) of the ground above the level [m]
+  std::vector<double> overhangs_;     // (points) lowest of what stands or hangs well above it [m]
+  std::vector<double> clearances_;    // (points) from lobules, on the level; below 0 in one [m]
+  std::vector<double> thickness_;     // (points) of the liquid [m]
+  std::vector<std::int32_t> vertex_;  // of a point, -1 none
   geometry::TriangleMesh mesh_;
   std::vector<math::Vec3> rest_;
   std::vector<double> shares_, depths_;

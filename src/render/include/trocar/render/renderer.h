@@ -25,6 +25,10 @@ struct alignas(4) SurfaceMark {
   friend bool operator==(const SurfaceMark&, const SurfaceMark&) = default;
 };
 
+/// Height of a picture in which a refined surface looks no different: its triangles are smaller than what a processor shades
+/// at once [pixels].
+inline constexpr int kCoarseHeight = 300;
+
 /// Surfaces, shaders and textures in one OpenGL context, which must be current whenever a member is called
 /// and when the renderer is destroyed. It knows no window: it draws into the framebuffer that is bound.
 class Renderer {
@@ -42,9 +46,12 @@ class Renderer {
   /// \param triangles  (nt) counter-clockwise seen from where it is drawn
   /// \param rest       (nv) where the patterns of its material stick to it [m]
   /// \param ambient_occlusion   (nv) of ambient_occlusion.h, or empty for 1 everywhere [-]
+  /// \param coarse     fewer triangles over the same vertices, drawn in their place where a picture is at most
+  ///                   kCoarseHeight high; empty: none
   /// \pre indices below nv; ambient_occlusion empty or (nv) (TROCAR_ASSERT)
   SurfaceId AddSurface(std::span<const geometry::Triangle> triangles, std::span<const math::Vec3> rest,
-                       Material material, std::span<const double> ambient_occlusion = {});
+                       Material material, std::span<const double> ambient_occlusion = {},
+                       std::span<const geometry::Triangle> coarse = {});
   SurfaceId AddSurface(const geometry::TriangleMesh& mesh, Material material,
                        std::span<const double> ambient_occlusion = {});
 
@@ -55,7 +62,7 @@ class Renderer {
   /// What surgery has left on a surface; nothing until the first call.
   /// \param marks  (nv) as added; tools show none
   void UpdateMarks(SurfaceId surface, std::span<const SurfaceMark> marks);
-  /// New connectivity, for example after a cut; vertices stay as they are.
+  /// New connectivity, for example after a cut; vertices stay as they are, coarse triangles are gone.
   void UpdateTriangles(SurfaceId surface, std::span<const geometry::Triangle> triangles);
   /// Frees a surface; its id names nothing from now on.
   void RemoveSurface(SurfaceId surface);
