@@ -38,7 +38,8 @@ constexpr std::size_t kFurther = 8;   // environments whose memory is measured t
 constexpr double kPageBytes = 4096;   // of /proc/self/statm
 constexpr int kStepsThatRepeat = 10;  // for which two environments must agree
 constexpr int kPictureSide = 84;      // pixels
-constexpr int kPoolActions = 150;     // of each environment
+constexpr int kPoolActions = 300;     // of a thread, or of a process that has a core for itself
+constexpr int kManyPerThread = 4;     // environments, in the larger of two pools
 constexpr const char* kPoolTask = "peg_transfer";
 constexpr const char* kOperation = "cholecystectomy";
 
@@ -126,9 +127,18 @@ core::Result<Work> TimeActions(const std::shared_ptr<EnvironmentModel>& model, s
 /// How a pool is used: all environments wait for the slowest before each action, or each gets its next as soon as it is done.
 enum class PoolUse { kTogether, kEachAtOnce };
 
+/// Environments, which share out the threads of a pool, or the processes among as many cores.
+struct Crowd {
+  int count = 1, threads = 1;
+
+  int ActionsEach() const { return kPoolActions * threads / count; }
+};
+
 /// All threads of a pool together. Environment i does what process i does.
-core::Result<Work> MeasurePool(const std::shared_ptr<EnvironmentModel>& model, int count, PoolUse use) {
-  auto made = Pool::Make(model, {.count = count, .threads = count});
+core::Result<Work> MeasurePool(const std::shared_ptr<EnvironmentModel>& model, const Crowd& crowd,
+                               PoolUse use) {
+  const int count = crowd.count;
+  auto made = Pool::Make(model, {.count = count, .threads = crowd.threads});
   if (!made) return made.error();
   Pool& pool = **made;
   std::vector<std::int32_t> ids;
@@ -136,7 +146,7 @@ core::Result<Work> MeasurePool(const std::shared_ptr<EnvironmentModel>& model, i
   if (const auto begun = pool.Receive(static_cast<std::size_t>(count), ids); !begun) return begun.error();
   std::vector<math::Random> hands;
   for (int i = 0; i < count; ++i) hands.emplace_back(1 + static_cast<std::uint64_t>(i));
-  std::vector<int> left(hands.size(), kPoolActions);
+  std::vector<int> left(hands.size(), crowd.ActionsEach());
   const WorkStopwatch stopwatch(1);
   while (true) {
     std::vector<std::int32_t> ready;
@@ -169,9 +179,9 @@ struct Told {
 };
 
 /// As many processes at a time, each with an environment of its own.
-core::Result<Work> MeasureProcesses(const std::string& task, int count) {
+core::Result<Work> MeasureProcesses(const std::string& task, const Crowd& crowd) {
   std::vector<std::pair<pid_t, int>> children;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < crowd.count; ++i) {
     std::array<int, 2> ends{};
     if (pipe(ends.data()) != 0) return WrongAnswer("processes", "no pipe can be made");
     const pid_t child = fork();
@@ -179,7 +189,7 @@ core::Result<Work> MeasureProcesses(const std::string& task, int count) {
       const auto model = MakeModel(task);
       Told told;
       if (model.ok()) {
-        const auto measured = TimeActions(*model, 1 + static_cast<std::uint64_t>(i), kPoolActions);
+        const auto measured = TimeActions(*model, 1 + static_cast<std::uint64_t>(i), crowd.ActionsEach());
         if (measured.ok()) told = {measured->seconds, measured->states.front()};
       }
       const bool is_told = write(ends[1], &told, sizeof told) == sizeof told;
@@ -202,35 +212,44 @@ core::Result<Work> MeasureProcesses(const std::string& task, int count) {
   return work;
 }
 
-/// A pool, used in both ways, beside as many processes, by turns: the quickest of each counts. All must come to the same states.
-core::Status ComparePool(int count, int repeats, BenchmarkResult& result) {
+/// A pool, used in both ways, beside as many processes, by turns, in which each is once the first: the quickest of each counts.
+/// All must come to the same states.
+core::Status ComparePool(const Crowd& crowd, int repeats, BenchmarkResult& result) {
   constexpr std::array kUses = {PoolUse::kTogether, PoolUse::kEachAtOnce};
   std::array<double, kUses.size()> pools;
   pools.fill(std::numeric_limits<double>::infinity());
   double alone = std::numeric_limits<double>::infinity();
+  std::vector<std::uint64_t> states;
+  const auto add = [&](const core::Result<Work>& work, double& quickest) -> core::Status {
+    if (!work) return work.error();
+    if (states.empty()) states = work->states;
+    if (work->states != states) return WrongAnswer("pool", "it comes to other states than as many processes");
+    quickest = std::min(quickest, work->seconds);
+    return {};
+  };
   for (int turn = 0; turn < std::max(1, repeats); ++turn) {
-    // before this process has a model and threads of its own
-    const auto processes = MeasureProcesses(kPoolTask, count);
-    if (!processes) return processes.error();
-    alone = std::min(alone, processes->seconds);
-    const auto model = MakeModel(kPoolTask);
-    if (!model) return model.error();
-    for (std::size_t i = 0; i < kUses.size(); ++i) {
-      const auto pool = MeasurePool(*model, count, kUses[i]);
-      if (!pool) return pool.error();
-      if (pool->states != processes->states)
-        return WrongAnswer("pool", "it comes to other states than as many processes");
-      pools[i] = std::min(pools[i], pool->seconds);
+    for (std::size_t k = 0; k <= kUses.size(); ++k) {
+      const std::size_t use = (k + static_cast<std::size_t>(turn)) % (kUses.size() + 1);
+      if (use == kUses.size()) {
+        // while this process has no model and threads of its own
+        if (const auto added = add(MeasureProcesses(kPoolTask, crowd), alone); !added) return added;
+        continue;
+      }
+      const auto model = MakeModel(kPoolTask);
+      if (!model) return model.error();
+      if (const auto added = add(MeasurePool(*model, crowd, kUses[use]), pools[use]); !added) return added;
     }
   }
   const auto model = MakeModel(kPoolTask);
   if (!model) return model.error();
-  const double ticks = static_cast<double>(count) * kPoolActions * (*model)->TicksPerAction();
-  result.cases.push_back({"pool/rate", ticks / pools[0], "ticks/s"});
-  result.cases.push_back({"pool_at_once/rate", ticks / pools[1], "ticks/s"});
-  result.cases.push_back({"processes/rate", ticks / alone, "ticks/s"});
-  result.ratios.push_back({"pool/processes", alone / pools[0]});
-  result.ratios.push_back({"pool_at_once/processes", alone / pools[1]});
+  const double ticks = static_cast<double>(crowd.count) * crowd.ActionsEach() * (*model)->TicksPerAction();
+  const std::string of = "_of_" + std::to_string(crowd.count), pool = "pool" + of,
+                    at_once = "pool_at_once" + of, processes = "processes" + of;
+  result.cases.push_back({pool + "/rate", ticks / pools[0], "ticks/s"});
+  result.cases.push_back({at_once + "/rate", ticks / pools[1], "ticks/s"});
+  result.cases.push_back({processes + "/rate", ticks / alone, "ticks/s"});
+  result.ratios.push_back({pool + "/" + processes, alone / pools[0]});
+  result.ratios.push_back({at_once + "/" + processes, alone / pools[1]});
   return {};
 }
 
@@ -364,14 +383,18 @@ core::Result<std::vector<std::string>> ListEnvironments() {
 }  // namespace
 
 core::Result<BenchmarkResult> RunEnvironmentBenchmark(const BenchmarkOptions& options) {
-  const int count = std::max(1, options.threads);
+  const int threads = std::max(1, options.threads);
   BenchmarkResult result;
   result.notes.push_back(
-      "seconds are of processor time; random motions of both tips, 10 actions a second; the pool (all "
-      "together, and each at once) and the processes with " +
-      std::to_string(count) + " (--threads), the quickest of " +
+      "seconds are of processor time; random motions of both tips, 10 actions a second; pools (all "
+      "together, and each at once) on " +
+      std::to_string(threads) +
+      " threads (--threads), and as many processes as environments, the quickest of " +
       std::to_string(std::max(1, options.repeats)) + " turns (--repeats)");
-  if (const auto compared = ComparePool(count, options.repeats, result); !compared) return compared.error();
+  for (const int each : {1, kManyPerThread}) {
+    const auto compared = ComparePool({each * threads, threads}, options.repeats, result);
+    if (!compared) return compared.error();
+  }
   const auto tasks = ListEnvironments();
   if (!tasks) return tasks.error();
   for (const std::string& task : *tasks) {

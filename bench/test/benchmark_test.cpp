@@ -42,9 +42,10 @@ TEST(EnvironmentBenchmarkSlow, MeasuresEveryEnvironmentAndItsPictures) {
   };
   for (const char* name :
        {"peg_transfer/rate", "cholecystectomy/rate", "cholecystectomy/memory_each", "peg_transfer/pictures",
-        "cholecystectomy/pictures", "pool/rate", "pool_at_once/rate", "processes/rate"})
+        "cholecystectomy/pictures", "pool_of_2/rate", "pool_at_once_of_8/rate", "processes_of_8/rate"})
     EXPECT_GT(value_of(name), 0) << name;
-  EXPECT_EQ(result->ratios.front().name, "pool/processes");
+  EXPECT_EQ(result->ratios.front().name, "pool_of_2/processes_of_2");
+  EXPECT_EQ(result->ratios.size(), 4U);
 }
 
 TEST(SoakBenchmark, TakesActionsInEveryEnvironment) {
