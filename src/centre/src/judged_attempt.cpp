@@ -7,6 +7,7 @@
 
 #include "trocar/assessment/course.h"
 #include "trocar/assessment/judge_recording.h"
+#include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/translate.h"
 #include "trocar/record/replay.h"
@@ -28,8 +29,8 @@ constexpr const char* kDemonstration = "the demonstration";  // as session::Runn
 /// Keeps in the outcome for which step the attempt was made: the store's attempts know no courses.
 void SetStepName(store::Attempt& attempt, const StepName& step) {
   if (!step.IsSet()) return;
-  json outcome = json::parse(attempt.outcome, nullptr, false);
-  if (!outcome.is_object()) outcome = json::object();
+  auto parsed = core::ParseJson<json>(attempt.outcome, "the outcome", core::kSmallJson);
+  json outcome = parsed.ok() && parsed->is_object() ? std::move(*parsed) : json::object();
   outcome["course"] = {{"course", step.course}, {"step", step.step}};
   attempt.outcome = outcome.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -197,9 +198,11 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
 }
 
 StepName FindStepName(const store::Attempt& attempt) {
-  const json outcome = json::parse(attempt.outcome, nullptr, false);
-  if (!outcome.is_object() || !outcome.contains("course") || !outcome["course"].is_object()) return {};
-  const json& course = outcome["course"];
+  const auto outcome = core::ParseJson<json>(attempt.outcome, "the outcome", core::kSmallJson);
+  if (!outcome.ok() || !outcome->is_object() || !outcome->contains("course") ||
+      !(*outcome)["course"].is_object())
+    return {};
+  const json& course = (*outcome)["course"];
   const auto text = [&course](const char* key) {
     return course.contains(key) && course[key].is_string() ? course[key].get<std::string>() : std::string();
   };

@@ -12,6 +12,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "trocar/core/json.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/replay.h"
@@ -63,7 +64,13 @@ ordered_json InfoJson(const Recording& recording) {
   for (const record::TextMark& mark : recording.marks)
     json["marks"].push_back(
         {{"time_s", static_cast<double>(mark.tick) * d.tick_seconds}, {"text", mark.text}});
-  if (recording.ending) json["outcome"] = ordered_json::parse(recording.ending->outcome, nullptr, false);
+  if (!recording.ending) return json;
+  auto outcome = core::ParseJson<ordered_json>(recording.ending->outcome, "outcome", core::kSmallJson);
+  if (outcome.ok()) {
+    json["outcome"] = std::move(*outcome);
+  } else {
+    json["outcome_unreadable"] = outcome.error().Text();
+  }
   return json;
 }
 

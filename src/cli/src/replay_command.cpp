@@ -15,6 +15,7 @@
 #include "attempt_recording.h"
 #include "command.h"
 #include "console.h"
+#include "own_json.h"
 #include "picture_size.h"
 #include "replay_video.h"
 #include "trocar/agent/taking_over.h"
@@ -73,7 +74,7 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
         {"same_outcome", verified->is_outcome_same},
         {"hash", core::HashText(replay.GetSimulation().Hash())},
         {"replay_seconds", watch.Seconds()},
-        {"outcome", ordered_json::parse(verified->outcome, nullptr, false)}};
+        {"outcome", ParseOwnJson(verified->outcome)}};
     if (verified->divergence) json["diverged_at_s"] = static_cast<double>(verified->divergence->tick) * tick;
     std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
     return {};
@@ -206,7 +207,7 @@ core::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
   ordered_json json = {{"at_s", arguments.at},
                        {"surgeon", arguments.surgeon},
                        {"hash", core::HashText(simulation.Hash())},
-                       {"outcome", ordered_json::parse(record::CalcOutcome(simulation), nullptr, false)}};
+                       {"outcome", ParseOwnJson(record::CalcOutcome(simulation))}};
   std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
   return {};
 }

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/user_folder.h"
 
@@ -196,9 +197,21 @@ std::vector<fs::path> ListFiles(const fs::path& folder) {
 std::optional<XapiStatement> ReadStatement(const fs::path& path) {
   auto text = core::ReadFile(path, kMostBytes);
   if (!text.ok()) return std::nullopt;
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
-  if (!json.is_object() || !json.contains("id") || json["id"] != path.stem().string()) return std::nullopt;
+  const auto json = core::ParseJson<nlohmann::json>(*text, path.string(), core::kSmallJson);
+  if (!json.ok() || !json->is_object() || !json->contains("id") || (*json)["id"] != path.stem().string())
+    return std::nullopt;
   return XapiStatement{path.stem().string(), std::move(*text)};
+}
+
+/// The pseudonym that a statement is about; empty where it names none.
+std::string FindAccountName(std::string_view statement) {
+  const auto json = core::ParseJson<nlohmann::json>(statement, "", core::kSmallJson);
+  const nlohmann::json* at = json.ok() ? &*json : nullptr;
+  for (const char* key : {"actor", "account", "name"}) {
+    if (at == nullptr || !at->is_object() || !at->contains(key)) return {};
+    at = &at->at(key);
+  }
+  return at->is_string() ? at->get<std::string>() : std::string();
 }
 
 }  // namespace
@@ -289,11 +302,7 @@ core::Result<std::size_t> XapiQueue::Erase(const std::string& pseudonym) {
     for (const fs::path& path : ListFiles(folder)) {
       const auto text = core::ReadFile(path, kMostBytes);
       if (!text.ok()) return text.error();
-      const auto json = nlohmann::json::parse(*text, nullptr, false);
-      const auto name = !json.is_object() ? nlohmann::json()
-                                          : json.value(nlohmann::json::json_pointer("/actor/account/name"),
-                                                       nlohmann::json());
-      if (name != pseudonym) continue;
+      if (FindAccountName(*text) != pseudonym) continue;
       fs::remove(path, failure);
       if (failure) return Unwritable(path);
       fs::remove(fs::path(path).replace_extension(".txt"), failure);

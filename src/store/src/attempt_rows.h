@@ -2,6 +2,7 @@
 // Rows of attempts that more than one source needs.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "database.h"
@@ -12,6 +13,9 @@ namespace trocar::store {
 
 /// What AddAttempt refuses. \return kStoreInvalid
 core::Status CheckAttempt(const Attempt& attempt);
+/// What no reader of the store would take: nested too deep, or too long. A text that is no JSON is kept as it is.
+/// \return kStoreInvalid
+core::Status CheckOutcome(std::string_view outcome);
 /// The metrics in the order of their key, with the score and the length.
 std::vector<training::MetricValue> ListMetrics(const Attempt& attempt);
 

@@ -5,11 +5,13 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "attempt_rows.h"
 #include "database.h"
 #include "sql.h"
+#include "trocar/core/json.h"
 #include "trocar/store/courses.h"
 
 namespace trocar::store {
@@ -146,6 +148,12 @@ bool IsRatingItem(const Rating& rating) {
 
 }  // namespace
 
+core::Status CheckOutcome(std::string_view outcome) {
+  const auto read = core::ParseJson<nlohmann::json>(outcome, "the outcome of an attempt", core::kSmallJson);
+  if (read.ok() || read.error().code != core::ErrorCode::kFileTooLarge) return {};
+  return Invalid(read.error().message);
+}
+
 core::Status CheckAttempt(const Attempt& attempt) {
   if (attempt.recording_id.empty() || attempt.started.empty() || attempt.task.empty())
     return Invalid("an attempt needs its recording's id, when it started, and its task");
@@ -161,7 +169,7 @@ core::Status CheckAttempt(const Attempt& attempt) {
   }
   if (!is_finite)
     return Invalid("a number of the attempt is not finite; a metric that is undefined is left out");
-  return {};
+  return CheckOutcome(attempt.outcome);
 }
 
 std::vector<training::MetricValue> ListMetrics(const Attempt& attempt) {

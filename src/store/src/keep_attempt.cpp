@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "trocar/core/json.h"
 #include "trocar/core/state_hash.h"
 
 namespace trocar::store {
@@ -33,11 +34,13 @@ core::Result<Attempt> DescribeAttempt(const record::Recording& recording, const 
                        path.string() + ": it does not say when it started; record it again"};
   // without an ending the program was stopped: the attempt is kept, as not completed
   if (!recording.ending) return attempt;
-  const auto outcome = nlohmann::json::parse(recording.ending->outcome, nullptr, false);
-  if (!outcome.is_object())
+  const auto parsed =
+      core::ParseJson<nlohmann::json>(recording.ending->outcome, "the outcome", core::kSmallJson);
+  if (!parsed.ok() || !parsed->is_object())
     return core::Error{
         core::ErrorCode::kRecordingInvalid,
         path.string() + ": its outcome cannot be read; trocar replay --verify computes it again"};
+  const nlohmann::json& outcome = *parsed;
   attempt.outcome = recording.ending->outcome;
   if (const auto task = outcome.find("task"); task != outcome.end() && task->is_object()) {
     const auto phase = task->find("phase");

@@ -14,6 +14,7 @@
 #include "database.h"
 #include "private_file.h"
 #include "sql.h"
+#include "trocar/core/json.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/store/courses.h"
 #include "trocar/store/maintenance.h"
@@ -100,8 +101,9 @@ core::Result<ordered_json> DescribeOne(Store& store, const StoredAttempt& listed
                        {"program", TextJson(a.program)},
                        {"recording", recording.empty() ? ordered_json() : ordered_json(recording)},
                        {"recording_id", TextJson(a.recording_id)}};
-  auto outcome = ordered_json::parse(a.outcome, nullptr, false);
-  json["outcome"] = outcome.is_discarded() ? TextJson(a.outcome) : std::move(outcome);
+  // one that cannot be read, or is nested too deep, is theirs as well: as a text
+  auto outcome = core::ParseJson<ordered_json>(a.outcome, "the outcome", core::kSmallJson);
+  json["outcome"] = outcome.ok() ? std::move(*outcome) : TextJson(a.outcome);
   json["metrics"] = ordered_json::array();
   for (const training::MetricValue& m : a.metrics)
     json["metrics"].push_back({{"metric", TextJson(m.metric)},

@@ -25,6 +25,9 @@ namespace fs = std::filesystem;
 using core::ErrorCode;
 using nlohmann::ordered_json;
 
+/// The outcome is a text of it, with escapes; that of a measured attempt has some thousand metrics.
+constexpr core::JsonLimits kLimits{8u << 20, 8, 500'000, 100, 4u << 20};
+
 std::uint32_t CalcChecksum(std::string_view text) {
   return static_cast<std::uint32_t>(
       ::crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
@@ -109,7 +112,9 @@ core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& 
   const core::Error damaged{
       ErrorCode::kStoreDamaged,
       source + ": this waiting attempt is damaged; it is kept in the folder \"damaged\""};
-  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  const auto parsed = core::ParseJson<ordered_json>(text, source, kLimits);
+  if (!parsed.ok()) return damaged;
+  const ordered_json& json = *parsed;
   for (const char* key : {"format", "version", "crc32", "attempt"}) {
     if (!json.is_object() || !json.contains(key)) return damaged;
   }
@@ -121,7 +126,7 @@ core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& 
                        source + ": this attempt is of a later program; use that one"};
   if (json["crc32"].get<std::uint32_t>() != CalcChecksum(json["attempt"].dump())) return damaged;
   // what carries its checksum is as it was written; the fields are still checked, since anybody can write such a file
-  const auto document = core::JsonDocument::Parse(json["attempt"].dump(), source);
+  const auto document = core::JsonDocument::Parse(json["attempt"].dump(), source, kLimits);
   if (!document.ok()) return document.error();
   const core::JsonView view = document->Root();
   const auto text_of = [&](const char* key) { return DecodeText(view.Text(key)); };

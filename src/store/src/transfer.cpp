@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <unordered_map>
@@ -15,6 +16,7 @@
 #include "schema.h"
 #include "sql.h"
 #include "tables.h"
+#include "trocar/core/json.h"
 #include "trocar/store/maintenance.h"
 #include "trocar/store/people.h"
 
@@ -24,6 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 using core::ErrorCode;
 using nlohmann::ordered_json;
+
+/// Any number of rows; a course, a certificate or a remark may be long, with an escape for each of its letters.
+constexpr core::JsonLimits kExportLimits{0, 4, std::numeric_limits<std::size_t>::max(), 100, 16u << 20};
 
 ordered_json JsonOf(const Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return *whole;
@@ -49,6 +54,9 @@ class RowImporter {
       const Column& column = table.columns[c];
       Value value = row[c];
       if (auto sound = CheckKind(table, column, value); !sound.ok()) return sound;
+      if (column.name == "outcome") {
+        if (auto sound = CheckOutcome(std::get<std::string>(value)); !sound.ok()) return sound;
+      }
       if (column.name == "id") {
         old_id = std::get<std::int64_t>(value);
         continue;
@@ -222,10 +230,8 @@ class ExportReader final : public nlohmann::json_sax<nlohmann::json> {
     }
     return Fail("a table that is not known or out of turn");
   }
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception&) override {
-    failure_ = {ErrorCode::kJsonSyntax,
-                "the export is no JSON at byte " + std::to_string(position) + "; export it again"};
-    return false;
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;  // core says it
   }
 
  private:
@@ -386,7 +392,9 @@ core::Result<ImportReport> Import(Store& store, const Viewer& viewer, const fs::
       if (auto taken = ImportSqlite(file, importer); !taken.ok()) return taken.error();
     } else {
       ExportReader reader(importer);
-      nlohmann::json::sax_parse(stream, &reader);
+      const auto read = core::ParseJsonEvents<nlohmann::json_sax<nlohmann::json>>(stream, file.string(),
+                                                                                  reader, kExportLimits);
+      if (!read.ok()) return read.error();
       if (auto taken = reader.Result(file.string()); !taken.ok()) return taken.error();
     }
     if (auto counted = importer.Finish(); !counted.ok()) return counted.error();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "metric_definitions_text.h"
+#include "trocar/core/json.h"
 
 namespace trocar::training {
 namespace {
@@ -57,7 +58,7 @@ MetricDefinition ReadDefinition(const json& entry) {
 }
 
 const json& DefinitionsDocument() {
-  static const json document = json::parse(kMetricDefinitionsText);
+  static const json document = core::ParseJson<json>(kMetricDefinitionsText, "the metrics").value();
   return document;
 }
 

@@ -17,6 +17,8 @@ using nlohmann::ordered_json;
 constexpr const char* kFormat = "trocar-trace";
 constexpr int kVersion = 1;
 constexpr const char* kHandNames[] = {"left", "right"};
+/// Two hours at some 500 Hz; the same as text of columns may be longer.
+constexpr core::JsonLimits kLimits{std::size_t{2} << 30, 16, 100'000'000, 1000, 1u << 20};
 constexpr core::NumberRange kNotNegative{0.0, 1e300};
 constexpr core::NumberRange kLength{1e-9, 1e300};
 
@@ -337,7 +339,7 @@ std::string FormatTraceJson(const AttemptTrace& trace) {
 }
 
 core::Result<AttemptTrace> ParseTraceJson(std::string_view text, const std::string& name) {
-  auto document = core::JsonDocument::Parse(text, name);
+  auto document = core::JsonDocument::Parse(text, name, kLimits);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   AttemptTrace trace;
