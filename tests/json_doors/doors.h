@@ -21,6 +21,7 @@ struct Door {
   std::string sample = {};      ///< a file of the repository that this door takes, or its text; empty: none
   bool takes_any_text = false;  ///< what is no JSON is kept as a text
   std::size_t most_mutations = 150;
+  std::size_t memory_bytes = std::size_t{256} << 20;  ///< that it may need
 };
 
 const std::vector<Door>& Doors();

@@ -46,7 +46,8 @@ void AddLarge(List& list) {
   for (int i = 0; i < 100'000; ++i) one += "\"a\":0,";
   list.Add("a million fields", many + "\"x\":0}");
   list.Add("one field a hundred thousand times", one + "\"x\":0}");
-  list.Add("twenty-one million numbers", "[" + Repeat("0,", 21'000'000) + "0]");
+  list.Add("nine million numbers", "[" + Repeat("0,", 9'000'000) + "0]");
+  list.Add("a million small objects", "[" + Repeat(R"({"a":0},)", 1'000'000) + "0]");
   list.Add("a name of two megabytes", "{\"" + std::string(2u << 20, 'n') + "\":0}");
   list.Add("a text of five megabytes", "{\"name\":\"" + std::string(5u << 20, 't') + "\"}");
   list.Add("a text of escapes", "[\"" + Repeat("\\u00e9", 3'000'000) + "\"]");
@@ -197,7 +198,8 @@ std::vector<HostileDocument> MutateSample(std::string_view sample, std::size_t m
                                     deep,
                                     std::string(2000, 'x')};
   std::vector<std::string> places;
-  for (const auto& [place, value] : good.flatten().items()) {
+  const json flat = good.flatten();
+  for (const auto& [place, value] : flat.items()) {
     // the value itself, and each list or object around it, once
     for (std::string at = place; !at.empty(); at.resize(at.rfind('/'))) {
       if (std::find(places.begin(), places.end(), at) == places.end()) places.push_back(at);

@@ -23,7 +23,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 const std::filesystem::path kRepository = TROCAR_SOURCE_DIR;
-constexpr double kMostSeconds = 1;  // of the processor, for one document
+// of the processor, for one document: a slow machine's, and not more than in proportion to its length
+constexpr double kMostSeconds = 1, kMostSecondsPerMegabyte = 0.1;
 
 /// The reader itself, and what reads back only what this program has just written.
 const std::map<std::string, std::string> kNoDoors = {
@@ -97,10 +98,13 @@ std::string ReadSample(const Door& door) {
 ChildReport FeedAll(const Door& door, const std::vector<HostileDocument>& documents) {
   const test::TemporaryFolder folder;
   Feed feed;
-  return RunInChild(documents.size(), [&](std::size_t i) {
+  ChildLimits limits;
+  limits.memory_bytes = door.memory_bytes;
+  const auto hand_in = [&](std::size_t i) {
     if (!feed) feed = door.open(folder.Path());
     return feed(documents[i].text);
-  });
+  };
+  return RunInChild(documents.size(), hand_in, limits);
 }
 
 /// What is wrong with a report of documents.
@@ -114,7 +118,9 @@ std::string FindFault(const Door& door, const std::vector<HostileDocument>& docu
       faults += at + report.death + "\n";
       break;
     }
-    if (piece.cpu_seconds > kMostSeconds) faults += at + std::to_string(piece.cpu_seconds) + " s\n";
+    const double most_seconds =
+        kMostSeconds + kMostSecondsPerMegabyte * 1e-6 * static_cast<double>(documents[i].text.size());
+    if (piece.cpu_seconds > most_seconds) faults += at + std::to_string(piece.cpu_seconds) + " s\n";
     if (!documents[i].is_json && !piece.is_refused && !door.takes_any_text) faults += at + "was taken\n";
     if (core::Printable(piece.message, 1000) != piece.message)
       faults += at + "its message is not fit to print: " + core::Printable(piece.message) + "\n";

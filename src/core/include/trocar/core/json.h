@@ -34,7 +34,7 @@ struct JsonLimits {
 /// Of what is small by nature, and read many times or unasked: outcomes, settings, messages.
 inline constexpr JsonLimits kSmallJson{1u << 20, 32, 50'000, 10'000, 1u << 18};
 /// Of what measures a whole person or attempt: outlines on each slice, traces.
-inline constexpr JsonLimits kLargeJson{std::size_t{256} << 20, 64, 20'000'000, 100'000, 1u << 20};
+inline constexpr JsonLimits kLargeJson{std::size_t{64} << 20, 64, 8'000'000, 100'000, 1u << 20};
 
 /// A text as a value of the JSON library, for whoever passes on or changes fields that it does not know.
 ///
