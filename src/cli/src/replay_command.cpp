@@ -20,6 +20,7 @@
 #include "replay_video.h"
 #include "trocar/agent/taking_over.h"
 #include "trocar/core/clock.h"
+#include "trocar/core/printable.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/translate.h"
 #include "trocar/core/version.h"
@@ -84,8 +85,10 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
         ShownFixed(static_cast<double>(verified->divergence->tick) * tick, 2),
         core::HashText(verified->divergence->computed), core::HashText(verified->divergence->recorded));
   } else if (!verified->is_outcome_same) {
-    Say("DIVERGED in the outcome: computed {1}, recorded was {2}\n", verified->outcome,
-        recording.ending->outcome);
+    constexpr std::size_t kMostShown = 2000;  // a recording of a stranger may hold megabytes
+    Say("DIVERGED in the outcome: computed {1}, recorded was {2}\n",
+        core::Printable(verified->outcome, kMostShown),
+        core::Printable(recording.ending->outcome, kMostShown));
   } else {
     Say(recording.ending
             ? "VERIFIED: {1} ticks, {2} hashes and the outcome are those that were recorded\n"
