@@ -204,6 +204,27 @@ store::Attempt MakeAttempt() {
   return attempt;
 }
 
+assessment::Attempt MakeExpertsAttempt() {
+  assessment::Attempt attempt;
+  attempt.task = "peg_transfer";
+  attempt.score = 12;
+  attempt.result.metrics.values.push_back({"time", "", "", 12.5, ""});
+  return attempt;
+}
+
+training::AttemptTrace MakeTrace() {
+  training::AttemptTrace trace;
+  trace.dt = 0.01;
+  trace.tool_names = {"grasper"};
+  trace.organ_names = {"liver"};
+  for (auto& hand : trace.hands) {
+    hand.resize(3);
+    for (training::ToolSample& sample : hand) sample.tip = {0.1, 0.2, 0.3}, sample.spin = 1;
+  }
+  trace.goals = {{"goal", 1.5, 10}};
+  return trace;
+}
+
 store::Place MakePlace(const fs::path& folder) {
   store::Place place;
   place.url = (folder / "store.sqlite").string();
@@ -312,9 +333,9 @@ Feed OpenValidityStudy(const fs::path& folder) {
     options.people = 0;
     fs::remove(folder / "study.json");
     Write(folder / "attempts.jsonl", text);
-    const auto before = bench::RunStudy(options, {});
-    if (!before.ok()) return before.error().Text();
-    return before->empty() ? kNothing : std::string();
+    const auto before =
+        bench::RunStudy(options, {});  // without a task that asks for them, they are read for nothing
+    return before.ok() ? kNothing : before.error().Text();
   };
 }
 
@@ -350,7 +371,7 @@ std::vector<Door> MakeDoors() {
       {"attempts of experts",
        {"src/assessment/src/attempt.cpp ReadAttempts"},
        OfFile(assessment::ReadAttempts),
-       assessment::FormatAttempts({assessment::Attempt{}})},
+       assessment::FormatAttempts({MakeExpertsAttempt()})},
       {"certificate", {"src/assessment/src/certificate.cpp ReadCertificate"}, OfText([](const string& text) {
          return assessment::ReadCertificate(text, "given", "");
        })},
@@ -380,7 +401,8 @@ std::vector<Door> MakeDoors() {
            return MessageOf(centre::DescribeRecording(path, "somebody", {"course", "step"}));
          };
        },
-       R"({"seconds": 12.5, "task": {"phase": "completed", "score": 80.5}, "operation": {"completed": true}})"},
+       R"({"seconds": 12.5, "task": {"phase": "completed", "score": 80.5}, "operation": {"completed": true}})",
+       true},
       {"step of an attempt",
        {"src/centre/src/judged_attempt.cpp FindStepName"},
        OfTaking([](const string& text) {
@@ -555,7 +577,11 @@ std::vector<Door> MakeDoors() {
         "src/study/src/study_folder.cpp StudyFolder::FindFailure"},
        OpenStudyFolder,
        R"({"key": "ab0123456789", "outcome": "completed", "state_hash": "0", "numbers": {"a": 1},
-                            "plan_sha256": "0", "why": "none"})"},
+                            "plan_sha256": "0", "why": "none"})",
+       false,
+       20,
+       std::size_t{256} << 20,
+       10},
       {"rules of the coach",
        {"src/training/src/coach.cpp ParseCoachRules"},
        OfText([](const string& text) { return training::ParseCoachRules(text, "given"); }),
@@ -563,7 +589,7 @@ std::vector<Door> MakeDoors() {
       {"trace",
        {"src/training/src/trace_file.cpp ParseTraceJson"},
        OfText([](const string& text) { return training::ParseTraceJson(text, "given"); }),
-       training::FormatTraceJson({}),
+       training::FormatTraceJson(MakeTrace()),
        false,
        150,
        std::size_t{640} << 20},
@@ -575,7 +601,11 @@ std::vector<Door> MakeDoors() {
        {"bench/src/validity_study.cpp FromJson"},
        OpenValidityStudy,
        R"({"task": "a", "group": "b", "person": 1, "repeat": 0, "seed": 1, "patient": 0, "phase": "completed",
-           "completed": true, "caught": false, "seconds": 1.5, "values": [["m", "left", 0.5]]})"},
+           "completed": true, "caught": false, "seconds": 1.5, "values": [["m", "left", 0.5]]})",
+       false,
+       150,
+       std::size_t{256} << 20,
+       true},
   };
 }
 

@@ -22,6 +22,8 @@ struct Door {
   bool takes_any_text = false;  ///< what is no JSON is kept as a text
   std::size_t most_mutations = 150;
   std::size_t memory_bytes = std::size_t{256} << 20;  ///< that it may need
+  bool is_silent = false;                             ///< nothing shows whether a text was taken
+  double most_seconds = 1;                            ///< of the processor, for a short text
 };
 
 const std::vector<Door>& Doors();

@@ -187,6 +187,7 @@ std::vector<HostileDocument> MutateSample(std::string_view sample, std::size_t m
                                     true,
                                     "",
                                     "../../../etc/passwd",
+                                    1000000,
                                     -1,
                                     1e308,
                                     1e-300,

@@ -2,6 +2,7 @@
 #include "study_folder.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
@@ -31,18 +32,22 @@ std::string TextOf(const ordered_json& json, const char* key) {
 }  // namespace
 
 core::Status StudyFolder::Begin(const std::filesystem::path& plan_file) const {
+  const std::filesystem::path head = folder_ / "study.json";
+  std::optional<ordered_json> theirs;
+  std::error_code ignored;
+  if (std::filesystem::exists(head, ignored)) {
+    const auto text = core::ReadFile(head);
+    if (!text) return text.error();
+    auto read = core::ParseJson<ordered_json>(*text, head.string(), core::kSmallJson);
+    if (!read.ok()) return read.error();
+    theirs = std::move(*read);
+  }
   const auto program = FingerprintFile("/proc/self/exe");
   if (!program) return program.error();
   const auto plan = FingerprintFile(plan_file);
   if (!plan) return plan.error();
-  const std::filesystem::path head = folder_ / "study.json";
   const ordered_json mine = DescribeStudy(*plan, *program);
-  std::error_code ignored;
-  if (!std::filesystem::exists(head, ignored)) return core::WriteFile(head, mine.dump(2) + "\n");
-  const auto text = core::ReadFile(head);
-  if (!text) return text.error();
-  const auto theirs = core::ParseJson<ordered_json>(*text, head.string(), core::kSmallJson);
-  if (!theirs.ok()) return theirs.error();
+  if (!theirs) return core::WriteFile(head, mine.dump(2) + "\n");
   if (*theirs == mine) return {};
   const bool is_program = TextOf(*theirs, "plan_sha256") == *plan;
   return core::Error{

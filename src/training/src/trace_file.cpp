@@ -351,6 +351,10 @@ core::Result<AttemptTrace> ParseTraceJson(std::string_view text, const std::stri
   trace.dt = root.Number("dt", {1e-6, 10.0});
   // two hours at 1 kHz
   const auto ticks = static_cast<std::size_t>(root.Integer("ticks", {0, 7.2e6}));
+  // samples are made before their columns are read: a short text must not ask for gigabytes of them
+  constexpr std::size_t kFewTicks = 10'000, kLeastBytes = 2;  // of a value in a column
+  if (ticks > kFewTicks && ticks > text.size() / kLeastBytes)
+    root.Complain("there are " + std::to_string(ticks) + " ticks, but no column is that long");
   trace.tool_names = ReadNames(root, "tool_names");
   trace.organ_names = ReadNames(root, "organ_names");
   const JsonView hands = root.Object("hands");
