@@ -581,6 +581,7 @@ std::vector<Door> MakeDoors() {
        false,
        20,
        std::size_t{256} << 20,
+       false,
        10},
       {"rules of the coach",
        {"src/training/src/coach.cpp ParseCoachRules"},
