@@ -28,7 +28,7 @@ using core::ErrorCode;
 using nlohmann::ordered_json;
 
 /// Any number of rows; a course, a certificate or a remark may be long, with an escape for each of its letters.
-constexpr core::JsonLimits kExportLimits{0, 4, std::numeric_limits<std::size_t>::max(), 100, 16u << 20};
+constexpr core::JsonLimits kExportLimits{0, 6, std::numeric_limits<std::size_t>::max(), 100, 16u << 20};
 
 ordered_json JsonOf(const Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return *whole;
