@@ -21,7 +21,9 @@ struct StandInState {
   std::atomic<unsigned int> pending_error{0};
   std::atomic<int> devices{0};  ///< open
   std::atomic<int> misuses{0};
-  std::atomic<int> process{0};  ///< that has the library
+  std::atomic<int> process{0};  ///< that has the devices; they open for one at a time
+  /// When the scheduler last called, and the longest time between two calls since a test set it to 0 [ns].
+  std::atomic<long long> last_call{0}, longest_gap{0};
   std::atomic<int> is_led{0};   ///< 1: styluses in the middle of their reach, buttons as below
   std::array<std::atomic<int>, 2> buttons{};
   /// What the devices say of themselves: largest force [N], continuous force [N], stiffness [N/mm].

@@ -19,6 +19,7 @@
 
 #include "child_processes.h"
 #include "force_wire.h"
+#include "machine_watch.h"
 #include "supervisor_protocol.h"
 #include "trocar/core/clock.h"
 #include "trocar/device/companion.h"
@@ -53,7 +54,7 @@ class Victim {
       ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
       ::dup2(ends[0], STDIN_FILENO);
       ::fcntl(wire.Host(), F_SETFD, 0);
-      ::execl(TROCAR_HAPTIC_VICTIM, TROCAR_HAPTIC_VICTIM, file.c_str(), supervisor, nullptr);
+      ::execl(TROCAR_HAPTIC_VICTIM, TROCAR_HAPTIC_VICTIM, supervisor, "simulated", file.c_str(), nullptr);
       ::_exit(9);
     }
     ::close(ends[0]);
@@ -108,18 +109,29 @@ class Supervisor : public testing::TestWithParam<WireKind> {
     const sched_param ordinary{};
     ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
   }
-  /// A signal to the process, and the first zero after it.
+  /// A signal to the process, and the first zero after it. A process stops only when its first thread, which has no priority, has
+  /// been given a processor: until then its loop is well and sends forces, so a stop counts from the last of them.
   void Strike(Victim& victim, int signal) {
+    machine_.Forget();
     const std::int64_t struck = victim.Kill(signal);
-    Got got = Got::kForce;
-    while (got == Got::kForce) got = victim.wire.Next(5.0);
+    std::int64_t last_force = struck;
+    Got got = victim.wire.Next(5.0);
+    for (; got == Got::kForce; got = victim.wire.Next(5.0)) last_force = victim.wire.Arrived();
     ASSERT_EQ(got, Got::kZero);
-    times_.Add(1e-9 * static_cast<double>(victim.wire.Arrived() - struck), victim.wire.LongestAbsence());
+    const auto since = [&](std::int64_t time) {
+      return 1e-9 * static_cast<double>(victim.wire.Arrived() - time);
+    };
+    times_.Add(since(signal == SIGSTOP ? last_force : struck),
+               std::max(victim.wire.LongestAbsence(), machine_.LongestAbsence()));
+    longest_from_signal_ = std::max(longest_from_signal_, since(struck));
   }
   void Report(const char* what) {
     times_.ReportAndJudge(std::string(what) + ", " + WireName(GetParam()), kLongest);
+    std::printf("%s: %.2f ms the longest from the signal on\n", what, 1e3 * longest_from_signal_);
   }
+  MachineWatch machine_;
   ZeroTimes times_;
+  double longest_from_signal_ = 0;
 };
 
 TEST_P(Supervisor, SendsZeroWhenTheSimulatorIsKilled) {
