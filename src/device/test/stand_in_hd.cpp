@@ -268,6 +268,7 @@ STAND_IN void hdSetDoublev(unsigned int what, const double* values) {
   const bool is_rising = std::sqrt(size) > std::sqrt(SquaredSize(force)) && rise > 0.5001 * 0.5001;
   if (!(std::sqrt(size) <= state.limits[0] * 1.0001) || is_rising) ++state.bad_forces;
   for (std::size_t i = 0; i < 3; ++i) force[i] = values[i];
+  if (std::sqrt(size) > state.largest) state.largest = std::sqrt(size);
 }
 STAND_IN unsigned int hdCheckCalibration() {
   return 0x5000;

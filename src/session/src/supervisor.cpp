@@ -65,8 +65,7 @@ struct Supervisor {
       } else if (files.size() == 1) {
         TakeWire(files[0], std::span(bytes).first(static_cast<std::size_t>(got.size)));
       } else {
-        if (files.size() % 2 == 0)
-          library.Take({bytes.data(), static_cast<std::size_t>(got.size)}, files);
+        if (files.size() % 2 == 0) library.Take({bytes.data(), static_cast<std::size_t>(got.size)}, files);
         device::CloseFiles(files);
       }
     }

@@ -37,10 +37,14 @@
 namespace trocar::session {
 namespace {
 
-/// Another one where tools/mutate-safety changes it.
+/// Other ones where tools/mutate-safety changes them.
 const char* FindSupervisor() {
   const char* other = std::getenv("TROCAR_TEST_SUPERVISOR");
   return other != nullptr ? other : TROCAR_SUPERVISOR;
+}
+const char* FindVictim() {
+  const char* other = std::getenv("TROCAR_TEST_VICTIM");
+  return other != nullptr ? other : TROCAR_HAPTIC_VICTIM;
 }
 
 enum class Fate { kRuns, kKilled, kStopped, kHangs, kStarves };
@@ -217,7 +221,7 @@ class Processes {
     simulator = ::fork();
     if (simulator == 0) {
       ::dup2(pipe[0], STDIN_FILENO);
-      ::execl(TROCAR_HAPTIC_VICTIM, TROCAR_HAPTIC_VICTIM, FindSupervisor(), kind.c_str(), word.c_str(), nullptr);
+      ::execl(FindVictim(), FindVictim(), FindSupervisor(), kind.c_str(), word.c_str(), nullptr);
       ::_exit(9);
     }
     ::close(pipe[0]);
@@ -276,7 +280,8 @@ class Processes {
       std::ifstream file(task.path() / "stat");
       const std::string line((std::istreambuf_iterator<char>(file)), {});
       const std::size_t at = line.rfind(')');
-      if (at != std::string::npos && at + 2 < line.size() && std::string("TtZX").find(line[at + 2]) == std::string::npos)
+      if (at != std::string::npos && at + 2 < line.size() &&
+          std::string("TtZX").find(line[at + 2]) == std::string::npos)
         return false;
     }
     return true;
@@ -295,7 +300,9 @@ struct Combination {
   Fate simulator = Fate::kRuns, supervisor = Fate::kRuns, host = Fate::kRuns, spare = Fate::kRuns;
 
   bool HasHost() const { return kind == "openhaptics"; }
-  bool IsAllWell() const { return simulator == Fate::kRuns && supervisor == Fate::kRuns && host == Fate::kRuns; }
+  bool IsAllWell() const {
+    return simulator == Fate::kRuns && supervisor == Fate::kRuns && host == Fate::kRuns;
+  }
   /// Without a spare the supervisor forks, and without both the simulator starts a new process [s].
   double CalcPromised() const {
     return spare == Fate::kRuns ? 0.030 : supervisor == Fate::kRuns ? 0.050 : 0.100;
@@ -309,8 +316,9 @@ struct Combination {
 
 std::string NameOf(const Combination& c) {
   std::string name = c.kind + "_simulator" + FateName(c.simulator) + "_supervisor" + FateName(c.supervisor);
-  if (c.HasHost()) name += std::string("_library") + FateName(c.host) + (c.spare != Fate::kRuns ? "_spare" : "") +
-                           (c.spare != Fate::kRuns ? FateName(c.spare) : "");
+  if (c.HasHost())
+    name += std::string("_library") + FateName(c.host) + (c.spare != Fate::kRuns ? "_spare" : "") +
+            (c.spare != Fate::kRuns ? FateName(c.spare) : "");
   return name;
 }
 
@@ -338,7 +346,8 @@ class ForceEnds : public testing::TestWithParam<Combination> {
 
   void Measure(const Combination& c, ZeroTimes& times) {
     Processes processes(c.kind);
-    ASSERT_NE(processes.end, nullptr) << "a kind of device that this test does not know: give it an end in MakeEnd()";
+    ASSERT_NE(processes.end, nullptr)
+        << "a kind of device that this test does not know: give it an end in MakeEnd()";
     ASSERT_TRUE(processes.WaitForForce());
     ForceWire::ReadInRealTime();
     const std::int64_t begin = core::NowNanoseconds();
@@ -362,7 +371,8 @@ class ForceEnds : public testing::TestWithParam<Combination> {
       if (struck == 0) {
         bool stand = true;
         for (const auto& [process, fate] : all)
-          stand = stand && ((fate != Fate::kKilled && fate != Fate::kStopped) || process == 0 || Processes::Stands(process));
+          stand = stand && ((fate != Fate::kKilled && fate != Fate::kStopped) || process == 0 ||
+                            Processes::Stands(process));
         if (stand) struck = now;
       }
       if (struck != 0 && ended == 0 && seconds_since(struck) > kLookOn) break;
@@ -425,10 +435,13 @@ std::vector<Combination> WithoutSpare(bool is_slow) {
   for (const Fate simulator : kThree) {
     for (const Fate supervisor : kThree) {
       for (const Fate host : {Fate::kKilled, Fate::kStopped}) {
-        const bool is_first = host == Fate::kStopped && (simulator == Fate::kRuns) != (supervisor == Fate::kRuns) &&
+        const bool is_first = host == Fate::kStopped &&
+                              (simulator == Fate::kRuns) != (supervisor == Fate::kRuns) &&
                               simulator != Fate::kStopped && supervisor != Fate::kKilled;
-        const bool is_control = simulator == Fate::kStopped && supervisor == Fate::kStopped && host == Fate::kStopped;
-        if (is_slow != (is_first || is_control)) all.push_back({"openhaptics", simulator, supervisor, host, Fate::kStopped});
+        const bool is_control =
+            simulator == Fate::kStopped && supervisor == Fate::kStopped && host == Fate::kStopped;
+        if (is_slow != (is_first || is_control))
+          all.push_back({"openhaptics", simulator, supervisor, host, Fate::kStopped});
       }
     }
   }

@@ -80,6 +80,7 @@ class ForceWire {
         float force[3];
         std::memcpy(force, bytes_.data() + 8, sizeof force);
         bytes_.erase(bytes_.begin(), bytes_.begin() + device::SimulatedForceFrame::kBytes);
+        size_ = math::Norm(math::Vec3{force[0], force[1], force[2]});
         return force[0] == 0.0F && force[1] == 0.0F && force[2] == 0.0F ? Got::kZero : Got::kForce;
       }
       if (watch.Seconds() > seconds) return Got::kNothing;
@@ -95,6 +96,8 @@ class ForceWire {
       if (size < 0 || is_at_end) return Got::kClosed;
     }
   }
+  /// Of the last force [N].
+  double Size() const { return size_; }
   /// Time at which the last force arrived [ns].
   std::int64_t Arrived() const { return arrived_; }
   /// How long the reader itself, which wakes every millisecond, was not let run since ForgetAbsence() [s]: the machine's own
@@ -117,6 +120,7 @@ class ForceWire {
  private:
   int device_ = -1, host_ = -1;
   std::vector<char> bytes_;
+  double size_ = 0;
   std::int64_t arrived_ = 0, longest_absence_ = 0;
 };
 

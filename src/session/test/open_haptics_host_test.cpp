@@ -205,7 +205,8 @@ TEST_F(OpenHapticsHost, EveryFailureOfTheLibraryIsZeroAndALostDevice) {
       ASSERT_TRUE(configured.ok()) << configured.error().Text();
       ASSERT_TRUE(driver.Activate().ok());
       is_well = !WaitFor(0.5, tick);
-      const long long gap = std::max<long long>(motors_->longest_gap, core::NowNanoseconds() - motors_->last_call);
+      const long long gap =
+          std::max<long long>(motors_->longest_gap, core::NowNanoseconds() - motors_->last_call);
       // without real-time priority its guard may have been held back in place of it, and nobody has seen that
       if (!is_well && IsRealTimePermitted()) {
         ASSERT_GT(gap, device::kLongestCallSilence) << "ended although it called in time";

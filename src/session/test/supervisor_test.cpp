@@ -35,10 +35,14 @@ using Got = ForceWire::Got;
 /// Force must be gone so soon after the process [s].
 constexpr double kLongest = 0.015;
 
-/// Another one where tools/mutate-safety changes it.
+/// Other ones where tools/mutate-safety changes them.
 const char* FindSupervisor() {
   const char* other = std::getenv("TROCAR_TEST_SUPERVISOR");
   return other != nullptr ? other : TROCAR_SUPERVISOR;
+}
+const char* FindVictim() {
+  const char* other = std::getenv("TROCAR_TEST_VICTIM");
+  return other != nullptr ? other : TROCAR_HAPTIC_VICTIM;
 }
 
 /// A process that puts force on a wire, and the device's end of it.
@@ -54,7 +58,7 @@ class Victim {
       ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
       ::dup2(ends[0], STDIN_FILENO);
       ::fcntl(wire.Host(), F_SETFD, 0);
-      ::execl(TROCAR_HAPTIC_VICTIM, TROCAR_HAPTIC_VICTIM, supervisor, "simulated", file.c_str(), nullptr);
+      ::execl(FindVictim(), FindVictim(), supervisor, "simulated", file.c_str(), nullptr);
       ::_exit(9);
     }
     ::close(ends[0]);

@@ -124,8 +124,7 @@ class Host {
     return Answer(done);
   }
   core::Status Act(std::string_view request, std::span<const int> files) {
-    if (request == hd_host::kStart)
-      return limits_.empty() ? HostError("nothing is open") : devices_.Start();
+    if (request == hd_host::kStart) return limits_.empty() ? HostError("nothing is open") : devices_.Start();
     if (request == hd_host::kStop) {
       devices_.Stop();
       return {};

@@ -73,7 +73,8 @@ core::Result<Companion> Companion::Start(const std::filesystem::path& program, c
     return fail("cannot start " + name + " (" + std::strerror(failed) + ")");
   }
   companion.handle_ = ::pidfd_open(companion.process_, 0);
-  if (companion.handle_ < 0) return fail("no handle of a process (" + std::string(std::strerror(errno)) + ")");
+  if (companion.handle_ < 0)
+    return fail("no handle of a process (" + std::string(std::strerror(errno)) + ")");
   return companion;
 }
 

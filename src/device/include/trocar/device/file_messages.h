@@ -19,7 +19,7 @@ inline constexpr std::size_t kMostFilesOfMessage = 4;
 bool SendFiles(int socket, std::string_view bytes, std::span<const int> files) noexcept;
 
 struct FileMessage {
-  ssize_t size = -1;           ///< of its bytes; 0: the other end has closed; -1: nothing came, errno says why
+  ssize_t size = -1;  ///< of its bytes; 0: the other end has closed; -1: nothing came, errno says why
   std::size_t file_count = 0;  ///< files[0] to files[file_count - 1] are the caller's from now on
   int files[kMostFilesOfMessage] = {-1, -1, -1, -1};
 };

@@ -95,8 +95,9 @@ struct SupervisedWire {
 /// Processes that hold devices through a library of their maker, for another process that ends the force when they, or ours,
 /// cannot any more.
 struct SupervisedLibrary {
-  std::string request;     ///< how the devices are opened
-  std::vector<int> files;  ///< page and pidfd of the process that holds them, and of its spare where there is one; they stay the driver's
+  std::string request;  ///< how the devices are opened
+  std::vector<int>
+      files;  ///< page and pidfd of the process that holds them, and of its spare where there is one; they stay the driver's
 };
 
 /// A device with force output. One thread, the haptic loop, calls everything but the life cycle; the life cycle is
