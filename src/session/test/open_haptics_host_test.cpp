@@ -443,12 +443,13 @@ TEST_F(LibrarySpare, LetsOneThatClosesGo) {
 
 // what nobody answers for is told: the supervisor goes on where a spare could do nothing
 TEST_F(LibrarySpare, SaysThatItCouldNotTakeOver) {
-  ASSERT_TRUE(HolderPushes());
   process_->Kill();
   StartProcess();
   const int files[] = {holder_->PageFile(), holder_->Handle()};
   ASSERT_TRUE(device::SendFiles(process_->Socket(), "watch\nlibHD_that_nobody_has.so\nLeft\n", files));
   ASSERT_EQ(TakeReply(10'000).code, 0);
+  // one that is still on the way when the process stops
+  ASSERT_TRUE(HolderPushes());
   ::kill(holder_->Process(), SIGKILL);
   EXPECT_EQ(TakeReply(10'000).code, static_cast<int>(core::ErrorCode::kDeviceUnsupported));
   ::shutdown(process_->Socket(), SHUT_RDWR);
