@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 namespace trocar::session {
@@ -19,7 +18,8 @@ inline pid_t FindChild(const std::string& option, pid_t parent = 0, pid_t not_th
     std::ifstream children(task.path() / "children");
     for (pid_t child = 0; children >> child;) {
       std::ifstream line("/proc/" + std::to_string(child) + "/cmdline");
-      const std::string words((std::istreambuf_iterator<char>(line)), {});
+      std::string words;
+      std::getline(line, words);  // empty where it has gone meanwhile
       if (child != not_this && words.find(option) != std::string::npos) return child;
     }
   }

@@ -200,12 +200,17 @@ class Hog {
   std::thread thread_;
 };
 
-bool IsRealTimePermitted() {
-  const bool is_permitted = ForceWire::ReadInRealTime();
-  const sched_param ordinary{};
-  ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
-  return is_permitted;
-}
+/// As long as it lives the calling thread goes before everybody else, where that is permitted; children would inherit it.
+struct InRealTime {
+  InRealTime() : is_permitted(ForceWire::ReadInRealTime()) {}
+  ~InRealTime() {
+    const sched_param ordinary{};
+    ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  }
+  InRealTime(const InRealTime&) = delete;
+  InRealTime& operator=(const InRealTime&) = delete;
+  const bool is_permitted;
+};
 
 /// A simulator with force out, its supervisor, and the processes of the library.
 class Processes {
@@ -276,9 +281,11 @@ class Processes {
   static bool Stands(pid_t process) {
     const std::string tasks = "/proc/" + std::to_string(process) + "/task";
     std::error_code gone;
-    for (const auto& task : std::filesystem::directory_iterator(tasks, gone)) {
-      std::ifstream file(task.path() / "stat");
-      const std::string line((std::istreambuf_iterator<char>(file)), {});
+    using Folder = std::filesystem::directory_iterator;
+    for (Folder task(tasks, gone); !gone && task != Folder(); task.increment(gone)) {
+      std::ifstream file(task->path() / "stat");
+      std::string line;
+      std::getline(file, line);  // empty where it has gone meanwhile
       const std::size_t at = line.rfind(')');
       if (at != std::string::npos && at + 2 < line.size() &&
           std::string("TtZX").find(line[at + 2]) == std::string::npos)
@@ -328,7 +335,7 @@ class ForceEnds : public testing::TestWithParam<Combination> {
     const Combination c = GetParam();
     const bool has_starved =
         c.simulator == Fate::kStarves || c.supervisor == Fate::kStarves || c.host == Fate::kStarves;
-    if (has_starved && !IsRealTimePermitted()) GTEST_SKIP() << "starving needs SCHED_FIFO";
+    if (has_starved && !InRealTime().is_permitted) GTEST_SKIP() << "starving needs SCHED_FIFO";
     const char* const wanted = std::getenv("TROCAR_REPEATS");
     const int repeats = wanted != nullptr ? std::max(1, std::atoi(wanted)) : 1;
     ZeroTimes times;
@@ -349,7 +356,7 @@ class ForceEnds : public testing::TestWithParam<Combination> {
     ASSERT_NE(processes.end, nullptr)
         << "a kind of device that this test does not know: give it an end in MakeEnd()";
     ASSERT_TRUE(processes.WaitForForce());
-    ForceWire::ReadInRealTime();
+    const InRealTime first;
     const std::int64_t begin = core::NowNanoseconds();
     const std::pair<pid_t, Fate> all[] = {{processes.host, c.host},
                                           {processes.spare, c.spare},
@@ -382,8 +389,6 @@ class ForceEnds : public testing::TestWithParam<Combination> {
       absence = std::max(absence, 1e-9 * static_cast<double>(now - last) - 2e-4);
       last = now;
     }
-    const sched_param ordinary{};
-    ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
     if (c.IsAllWell() || c.IsBeyondUs()) {
       EXPECT_EQ(ended, 0) << (c.IsAllWell() ? "nothing was wrong" : "who did that?");
       return;
