@@ -263,7 +263,9 @@ class Processes {
       supervisor = FindChild("--watch", simulator);
       host = end->Host();
       spare = host != 0 ? FindChild("--openhaptics", simulator, host) : 0;
-      return supervisor > 0 && (host == 0 || spare > 0);
+      EXPECT_GT(supervisor, 0);
+      EXPECT_TRUE(host == 0 || spare > 0) << "no spare";
+      return !testing::Test::HasFailure();
     }
     return false;
   }

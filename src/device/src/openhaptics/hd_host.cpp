@@ -26,7 +26,7 @@ using hd_host::kStop;
 using hd_host::kWatch;
 using hd_host::Reply;
 
-constexpr int kOpenTime = 15'000;   // for the library to open its devices [ms]
+constexpr int kOpenTime = 15'000;   // for a program to start and the library to open its devices [ms]
 constexpr int kAnswerTime = 2'000;  // for the rest [ms]
 constexpr std::int64_t kMillisecond = 1'000'000;
 
@@ -136,7 +136,7 @@ void HdHost::StartSpare(const OpenHapticsSettings& settings) {
   if (!started) return;
   const int files[] = {active_->PageFile(), active_->Handle()};
   const bool has_gone = SendFiles(started->Socket(), std::string(kWatch) + request_, files);
-  if (has_gone && TakeReply(started->Socket(), kAnswerTime)) {
+  if (has_gone && TakeReply(started->Socket(), kOpenTime)) {
     spare_.emplace(std::move(*started));
   } else {
     started->Kill();
