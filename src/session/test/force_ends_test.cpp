@@ -16,11 +16,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -365,8 +364,15 @@ class ForceEnds : public testing::TestWithParam<Combination> {
                                           {processes.supervisor, c.supervisor},
                                           {processes.simulator, c.simulator}};
     for (const auto& [process, fate] : all) processes.Strike(process, fate);
-    // from when the last of them stands; the force may be gone before
+    // counts from when the one that stands nearest to the device, and held the force up, stands itself
+    const std::pair<pid_t, Fate> near[] = {all[0], all[3], all[2]};
+    const auto is_struck = [](const std::pair<pid_t, Fate>& one) {
+      return one.first != 0 && (one.second == Fate::kKilled || one.second == Fate::kStopped);
+    };
+    const bool is_at_once = all[0].second == Fate::kHangs || all[0].second == Fate::kStarves;
+    const auto nearest = std::find_if(std::begin(near), std::end(near), is_struck);
     std::int64_t now = core::NowNanoseconds(), struck = 0, ended = 0, last = now;
+    std::int64_t counted = is_at_once || nearest == std::end(near) ? now : 0;
     double absence = 0;
     const auto seconds_since = [&](std::int64_t time) { return 1e-9 * static_cast<double>(now - time); };
     while (seconds_since(begin) < 2.0 && (ended == 0 || seconds_since(ended) < kLookOn)) {
@@ -377,6 +383,7 @@ class ForceEnds : public testing::TestWithParam<Combination> {
         ASSERT_TRUE(struck == 0) << "it came back after " << seconds_since(ended);
         ended = 0;
       }
+      if (counted == 0 && Processes::Stands(nearest->first)) counted = now;
       if (struck == 0) {
         bool stand = true;
         for (const auto& [process, fate] : all)
@@ -397,7 +404,7 @@ class ForceEnds : public testing::TestWithParam<Combination> {
     }
     ASSERT_NE(ended, 0) << "the force stays";
     // a process that was stopped late was well until then
-    const std::int64_t from = struck != 0 ? std::min(struck, ended) : begin;
+    const std::int64_t from = counted != 0 ? std::min(counted, ended) : begin;
     times.Add(1e-9 * static_cast<double>(ended - from), absence);
     longest_from_signal_ = std::max(longest_from_signal_, 1e-9 * static_cast<double>(ended - begin));
   }
