@@ -338,11 +338,12 @@ py::list DescribeSurfaces(const Running& running) {
   return out;
 }
 
-/// So many ticks without the GIL; Ctrl-C ends them between two.
+/// So many ticks, without the GIL; Ctrl-C ends them between two.
 /// \param step  false ends them, too \return how many there were
 template <typename Step>
 int RunTicks(int ticks, const Step& step) {
   constexpr int kTicksBetweenLooks = 60;
+  const py::gil_scoped_release release;
   for (int done = 0; done < ticks; ++done) {
     if (!step()) return done;
     if (done % kTicksBetweenLooks != kTicksBetweenLooks - 1) continue;
@@ -353,7 +354,9 @@ int RunTicks(int ticks, const Step& step) {
 }
 
 void BindRunning(py::module_& module) {
-  py::class_<Running>(module, "Simulation", "One running surgery. Not for two threads at a time.")
+  py::class_<Running>(
+      module, "Simulation",
+      "One running surgery. A call that finds another one in the middle of its work fails with E-ENV-002.")
       .def(py::init(&MakeRunning), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
            py::arg("seed") = 1, py::arg("patient") = "", py::arg("threads") = 1, py::arg("metrics") = false,
            py::arg("folder") = "",
@@ -393,8 +396,7 @@ void BindRunning(py::module_& module) {
               return true;
             });
           },
-          py::arg("input"), py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
-          "Goes on by `ticks` ticks with the same input.")
+          py::arg("input"), py::arg("ticks") = 1, "Goes on by `ticks` ticks with the same input.")
       .def(
           "step_script",
           [](Running& r, int ticks) {
@@ -403,15 +405,15 @@ void BindRunning(py::module_& module) {
               return true;
             });
           },
-          py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
-          "Goes on as the scene's own script says.")
+          py::arg("ticks") = 1, "Goes on as the scene's own script says.")
       .def(
           "reset",
           [](Running& r) {
+            const py::gil_scoped_release release;
             r.simulation.Reset();
             r.BeginAttempt();
           },
-          py::call_guard<py::gil_scoped_release>(), "Back to the first tick.")
+          "Back to the first tick.")
       .def("snapshot", &DescribeSnapshot, "What the last tick published, copied: SI units, world frame.")
       .def(
           "positions",
@@ -471,7 +473,7 @@ void BindRunning(py::module_& module) {
               return true;
             });
           },
-          py::arg("surgeon"), py::arg("ticks"), py::call_guard<py::gil_scoped_release>(),
+          py::arg("surgeon"), py::arg("ticks"),
           "Lets a scripted surgeon go on for at most `ticks` ticks; returns how many it took.");
 }
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _trocar
 from .errors import Error, closed
+from .objects import one_at_a_time
 from .spaces import Box, Dict, action_space, batch_space
 
 try:
@@ -73,6 +74,7 @@ class _Observation:
         return seen(self.parts[0]) if self.is_one else {part: seen(part) for part in self.parts}
 
 
+@one_at_a_time
 class Environment(_Env):
     """One environment. ``reset`` and ``step`` follow Gymnasium; see docs/python.md for actions, states and rewards.
 
@@ -103,8 +105,7 @@ class Environment(_Env):
         self._seen = _Observation(observation, self.model, picture_size)
         self.observation_space = self._seen.space
         self._size, self._camera = tuple(picture_size), None
-        self._environment: Optional[_trocar.Environment] = _trocar.Environment(self.model)
-        self._attempt = _trocar.Attempt(self._environment) if metrics else None
+        self._environment: Optional[_trocar.Environment] = _trocar.Environment(self.model, metrics)
         self._np_random = None
 
     @property
@@ -175,17 +176,14 @@ class Environment(_Env):
 
     def metrics(self) -> list[dict[str, Any]]:
         """What the episode came to so far, as ``Simulation.metrics``; of an environment made with ``metrics=True``."""
-        self._open()
-        if self._attempt is None:
-            raise Error("E-ENV-002", "the metrics are not collected; make the environment with metrics=True")
-        return self._attempt.metrics()
+        return self._open().metrics()
 
     def hash(self) -> str:
         """Fingerprint of the simulation's state, as the commands print it."""
         return self._open().hash()
 
     def close(self) -> None:
-        self._environment = self._camera = self._attempt = None
+        self._environment = self._camera = None
 
     def __enter__(self):
         return self
@@ -198,6 +196,7 @@ class Environment(_Env):
         return f"<trocar.Environment {self.task}>"
 
 
+@one_at_a_time
 class VectorEnvironment(_VectorEnv):
     """A pool: many environments of one model, stepped by C++ threads, all states in one array.
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from .environments import Environment, Scene
 from .errors import Error
+from .objects import one_at_a_time
 from .spaces import action_space
 
 try:
@@ -16,6 +17,7 @@ except ImportError:
     _ParallelEnv = object
 
 
+@one_at_a_time
 class ParallelEnvironment(_ParallelEnv):
     """Every agent sees the whole state and gets the same reward; each moves only its part. Settings as of ``trocar.make``."""
 
