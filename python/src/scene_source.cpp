@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_source.h"
 
+#include <unistd.h>
+
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
@@ -8,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "forks.h"
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/safe_file.h"
@@ -38,9 +41,10 @@ std::shared_ptr<const fs::path> MakeFolder() {
   std::string name = (fs::temp_directory_path() / "trocar-patient-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
     throw Failure({core::ErrorCode::kFileUnwritable, name + ": a folder for the patient cannot be made"});
-  return {new fs::path(name), [](const fs::path* folder) {
+  // not by children of fork: it is still the parent's
+  return {new fs::path(name), [process = ::getpid()](const fs::path* folder) {
             std::error_code ignored;
-            fs::remove_all(*folder, ignored);
+            if (::getpid() == process) fs::remove_all(*folder, ignored);
             delete folder;
           }};
 }
@@ -89,6 +93,7 @@ PatientSource::PatientSource(const py::object& patient) {
                    "\" is something else"));
     }
   }
+  ExpectThreadsOfLibraries();
   made_ = MakeFolder();
   folder_ = *made_;
   const py::gil_scoped_release release;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "binding.h"
+#include "forks.h"
 #include "running.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/state_hash.h"
@@ -34,6 +35,7 @@ std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& 
                                      const std::string& folder) {
   if (threads < 1 || threads > 256)
     throw Failure({core::ErrorCode::kUsage, "a simulation has 1 to 256 threads"});
+  if (threads > 1) ExpectThreadsOfLibraries();
   const SceneSource source = ReadSceneSource(task, folder);
   PatientSource given(patient);
   const py::gil_scoped_release release;

@@ -22,4 +22,4 @@ class Error(Exception):
 
 def closed(what: str) -> Error:
     return Error("E-ENV-002", f"this {what} is closed; make another one",
-                 "an environment or pool was called out of turn, or is closed")
+                 "a simulation, environment, pool or camera was called out of turn or in a fork, or is closed")

@@ -57,6 +57,7 @@ struct Pool::Content {
   core::Status DoStep(std::int32_t id);
   std::optional<std::int32_t> TakeJob(std::size_t thread);
   void Serve(std::size_t thread);
+  core::Status CheckProcess() const;
   core::Result<std::vector<std::int32_t>> Choose(std::span<const std::int32_t> ids) const;
   void HandOver(std::span<const std::int32_t> ids);
 };
@@ -146,14 +147,16 @@ void Pool::Content::Serve(std::size_t thread) {
   }
 }
 
+/// Before `mutex` is taken: in a fork a thread that did not come along may hold it for ever.
+core::Status Pool::Content::CheckProcess() const {
+  if (::getpid() == process) return {};
+  return WrongState(
+      "this pool was made by another process: its threads do not live on after a fork; make the pool in the "
+      "process that uses it");
+}
+
 /// All of them where none is named. With `mutex` held.
 core::Result<std::vector<std::int32_t>> Pool::Content::Choose(std::span<const std::int32_t> ids) const {
-  if (::getpid() != process) {
-    return WrongState(
-        "this pool was made by another process: its threads do not live on after a fork; make the pool in "
-        "the process that "
-        "uses it");
-  }
   std::vector<std::int32_t> chosen(ids.begin(), ids.end());
   if (chosen.empty()) {
     for (int id = 0; id < settings.count; ++id) chosen.push_back(id);
@@ -248,6 +251,7 @@ const PoolRows& Pool::Rows() const {
 
 core::Status Pool::Reset(std::span<const std::int32_t> ids, std::optional<std::uint64_t> seed) {
   Content& now = *content_;
+  if (const auto checked = now.CheckProcess(); !checked) return checked;
   const std::lock_guard lock(now.mutex);
   const auto chosen = now.Choose(ids);
   if (!chosen) return chosen.error();
@@ -265,6 +269,7 @@ core::Status Pool::Reset(std::span<const std::int32_t> ids, std::optional<std::u
 
 core::Status Pool::Send(std::span<const double> actions, std::span<const std::int32_t> ids) {
   Content& now = *content_;
+  if (const auto checked = now.CheckProcess(); !checked) return checked;
   const std::size_t size = now.model->ActionSize();
   const std::lock_guard lock(now.mutex);
   const auto chosen = now.Choose(ids);
@@ -300,8 +305,9 @@ core::Status Pool::Send(std::span<const double> actions, std::span<const std::in
 core::Status Pool::Receive(std::size_t count, std::vector<std::int32_t>& ids) {
   Content& now = *content_;
   ids.clear();
+  if (const auto checked = now.CheckProcess(); !checked) return checked;
   std::unique_lock lock(now.mutex);
-  if (::getpid() != now.process || count == 0 || count > now.at_work) {
+  if (count == 0 || count > now.at_work) {
     return WrongState(std::to_string(now.at_work) + " environments are at work, and results of " +
                       std::to_string(count) + " were asked for; send actions first");
   }
@@ -321,6 +327,7 @@ core::Status Pool::Receive(std::size_t count, std::vector<std::int32_t>& ids) {
 }
 
 std::size_t Pool::AtWork() const {
+  if (!content_->CheckProcess()) return 0;
   const std::lock_guard lock(content_->mutex);
   return content_->at_work;
 }
