@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
-#include <map>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,9 +38,10 @@ std::span<const std::int32_t> View(const Ids& ids) {
 }
 
 /// Weights by name over the usual ones.
-environment::Features ReadWeights(const std::map<std::string, double>& named) {
+environment::Features ReadWeights(const py::dict& named) {
   environment::Features weights = environment::DefaultWeights();
-  for (const auto& [name, weight] : named) {
+  for (const auto& [key, weight] : ToPlain(named, "weights")) {
+    const std::string name = py::str(key);
     std::size_t i = 0;
     while (i < kFeatureCount && environment::NameOf(static_cast<Feature>(i)) != name) ++i;
     if (i == kFeatureCount) {
@@ -49,7 +51,11 @@ environment::Features ReadWeights(const std::map<std::string, double>& named) {
       throw Failure(
           {core::ErrorCode::kUnknownName, "a reward has no feature \"" + name + "\"; there are " + known});
     }
-    weights[i] = weight;
+    if (!py::isinstance<py::float_>(weight) && !py::isinstance<py::int_>(weight)) {
+      throw Failure({core::ErrorCode::kUsage,
+                     "weights." + name + " is " + std::string(py::repr(weight)) + "; a weight is a number"});
+    }
+    weights[i] = weight.cast<double>();
   }
   return weights;
 }
@@ -57,9 +63,8 @@ environment::Features ReadWeights(const std::map<std::string, double>& named) {
 std::shared_ptr<EnvironmentModel> MakeModel(const py::object& task, const std::string& level,
                                             const py::object& patient, std::uint64_t seed, int layouts,
                                             const std::string& actions, double actions_per_second,
-                                            double most_seconds, bool moves_camera,
-                                            const std::map<std::string, double>& weights,
-                                            const std::string& folder) {
+                                            double most_seconds, bool moves_camera, const py::dict& weights,
+                                            const std::filesystem::path& folder) {
   const auto kind = environment::FindActionKind(actions);
   if (!kind) {
     throw Failure({core::ErrorCode::kUnknownName,
@@ -67,10 +72,11 @@ std::shared_ptr<EnvironmentModel> MakeModel(const py::object& task, const std::s
   }
   const SceneSource source = ReadSceneSource(task, folder);
   PatientSource given(patient);
+  const environment::Features features = ReadWeights(weights);
   const py::gil_scoped_release release;
   auto model = Take(
       EnvironmentModel::Make({source.name, level, given.Folder(), seed, layouts, *kind, actions_per_second,
-                              most_seconds, moves_camera, ReadWeights(weights), source.document}));
+                              most_seconds, moves_camera, features, source.document}));
   // layouts are read when they are asked for, from the patient's folder
   EnvironmentModel* made = model.get();
   return {made, [held = std::move(model), given = std::move(given)](EnvironmentModel*) {}};
@@ -206,6 +212,7 @@ py::dict ViewPool(const DrawnPool& drawn) {
   out["truncated"] = ViewRows(rows.truncated, {count}, self);
   out["success"] = ViewRows(rows.success, {count}, self);
   out["was_reset"] = ViewRows(rows.was_reset, {count}, self);
+  out["layout"] = ViewRows(rows.layout, {count}, self);
   if (drawn.pictures) ViewPictures(*drawn.pictures, count, self, out);
   return out;
 }
@@ -220,10 +227,10 @@ void BindPool(py::module_& module) {
       .def_property_readonly("at_work", [](const DrawnPool& p) { return p.pool->AtWork(); })
       .def(
           "reset",
-          [](DrawnPool& p, const Ids& ids, std::optional<std::uint64_t> seed) {
-            Check(p.pool->Reset(View(ids), seed));
+          [](DrawnPool& p, const Ids& ids, const std::vector<std::optional<std::uint64_t>>& seeds) {
+            Check(p.pool->ResetEach(View(ids), seeds));
           },
-          py::arg("ids"), py::arg("seed"))
+          py::arg("ids"), py::arg("seeds"))
       .def(
           "send",
           [](DrawnPool& p, const Row& actions, const Ids& ids) {
@@ -328,8 +335,7 @@ void BindEnvironment(py::module_& module) {
       .def(py::init(&MakeModel), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
            py::arg("patient") = "", py::arg("seed") = 1, py::arg("layouts") = 1,
            py::arg("actions") = "joints", py::arg("actions_per_second") = 10.0, py::arg("most_seconds") = 0.0,
-           py::arg("moves_camera") = false, py::arg("weights") = std::map<std::string, double>(),
-           py::arg("folder") = "")
+           py::arg("moves_camera") = false, py::arg("weights") = py::dict(), py::arg("folder") = "")
       .def_property_readonly("action_fields",
                              [](const EnvironmentModel& m) { return DescribeFields(m.ActionFields()); })
       .def_property_readonly("state_fields",

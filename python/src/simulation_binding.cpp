@@ -15,6 +15,7 @@
 #include "running.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/record/input_codec.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/state_file.h"
 
@@ -32,7 +33,7 @@ constexpr std::array<const char*, 4> kCommandNames = {"wait", "retract", "relax"
 
 std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& level, std::uint64_t seed,
                                      const py::object& patient, int threads, bool has_metrics,
-                                     const std::string& folder) {
+                                     const std::filesystem::path& folder) {
   if (threads < 1 || threads > 256)
     throw Failure({core::ErrorCode::kUsage, "a simulation has 1 to 256 threads"});
   if (threads > 1) ExpectThreadsOfLibraries();
@@ -140,7 +141,22 @@ void BindInput(py::module_& module) {
           "The automatic holder moves the laparoscope.")
       .def(
           "copy", [](const Input& input) { return input; }, "Another one with the same values.")
-      .def("__eq__", [](const Input& a, const Input& b) { return a == b; });
+      .def("__eq__", [](const Input& a, const Input& b) { return a == b; })
+      .def(py::pickle(
+          [](const Input& input) {
+            std::vector<std::byte> bytes;
+            record::InputEncoder().Encode(input, bytes);
+            return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+          },
+          [](const py::bytes& encoded) {
+            const std::string_view view = encoded;
+            std::span bytes = std::as_bytes(std::span(view.data(), view.size()));
+            Input input;
+            if (!record::InputDecoder().Decode(bytes, input) || !bytes.empty())
+              throw Failure(
+                  {core::ErrorCode::kRecordingInvalid, "these bytes are no Input; pickle it again"});
+            return input;
+          }));
   BindPedal<&scene::HandControls::cut>(type, "cut", "(2) yellow pedal of each hand.");
   BindPedal<&scene::HandControls::coagulate>(type, "coagulate", "(2) blue pedal of each hand.");
   BindPedal<&scene::HandControls::rinse>(type, "rinse", "(2) irrigation of each hand.");
@@ -452,13 +468,13 @@ void BindRunning(py::module_& module) {
           py::arg("state"), "Takes up a saved state of the same model.")
       .def(
           "save_file",
-          [](const Running& r, const std::string& path) {
+          [](const Running& r, const std::filesystem::path& path) {
             Check(simulation::WriteStateFile(path, r.simulation));
           },
           py::arg("path"), "As `trocar simulate --save`.")
       .def(
           "restore_file",
-          [](Running& r, const std::string& path) {
+          [](Running& r, const std::filesystem::path& path) {
             (void)Take(simulation::ReadStateFile(path, r.simulation));
             r.BeginAttempt();
           },

@@ -72,6 +72,7 @@ core::Status Pool::Content::DoReset(std::int32_t id, std::optional<std::uint64_t
   const auto row = static_cast<std::size_t>(id);
   Slot& slot = slots[row];
   if (const auto reset = slot.environment->Reset(seed); !reset) return reset;
+  rows.layout[row] = slot.environment->Layout();
   return Observe(id, rows.state, false);
 }
 
@@ -226,6 +227,7 @@ core::Result<std::unique_ptr<Pool>> Pool::Make(std::shared_ptr<EnvironmentModel>
   made.rows.state.resize(count * made.model->StateSize());
   made.rows.final_state.resize(made.rows.state.size());
   made.rows.reward.resize(count);
+  made.rows.layout.resize(count);
   made.rows.features.resize(count * kFeatureCount);
   for (auto* flags : {&made.rows.terminated, &made.rows.truncated, &made.rows.success, &made.rows.was_reset})
     flags->resize(count);
@@ -250,17 +252,31 @@ const PoolRows& Pool::Rows() const {
 }
 
 core::Status Pool::Reset(std::span<const std::int32_t> ids, std::optional<std::uint64_t> seed) {
+  std::vector<std::optional<std::uint64_t>> seeds(ids.empty() ? static_cast<std::size_t>(Count())
+                                                              : ids.size());
+  for (std::size_t i = 0; seed && i < seeds.size(); ++i)
+    seeds[i] = *seed + (ids.empty() ? i : static_cast<std::uint64_t>(ids[i]));
+  return ResetEach(ids, seeds);
+}
+
+core::Status Pool::ResetEach(std::span<const std::int32_t> ids,
+                             std::span<const std::optional<std::uint64_t>> seeds) {
   Content& now = *content_;
   if (const auto checked = now.CheckProcess(); !checked) return checked;
   const std::lock_guard lock(now.mutex);
   const auto chosen = now.Choose(ids);
   if (!chosen) return chosen.error();
-  for (const std::int32_t id : *chosen) {
+  if (seeds.size() != chosen->size()) {
+    return core::Error{core::ErrorCode::kUsage, std::to_string(chosen->size()) +
+                                                    " environments are reset with as many seeds, not " +
+                                                    std::to_string(seeds.size())};
+  }
+  for (std::size_t i = 0; i < chosen->size(); ++i) {
+    const std::int32_t id = (*chosen)[i];
     Content::Slot& slot = now.slots[static_cast<std::size_t>(id)];
     slot.work = Content::Work::kReset;
-    slot.seed.reset();
-    if (seed || !slot.has_begun)
-      slot.seed = seed.value_or(now.settings.seed) + static_cast<std::uint64_t>(id);
+    slot.seed = seeds[i];
+    if (!slot.seed && !slot.has_begun) slot.seed = now.settings.seed + static_cast<std::uint64_t>(id);
     slot.has_begun = true;
   }
   now.HandOver(*chosen);
