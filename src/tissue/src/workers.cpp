@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workers.h"
 
-#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <optional>
 #include <thread>
 
 #include "trocar/core/assert.h"
@@ -34,52 +29,30 @@ void Pause(int& spins) noexcept {
 #endif
 }
 
-/// Whether this process is the first one, here or among its parents, that has workers.
-bool MayHaveWorkers() noexcept {
-  static std::atomic<::pid_t> first{0};
-  ::pid_t none = 0;
-  return first.compare_exchange_strong(none, ::getpid()) || none == ::getpid();
-}
-
 }  // namespace
 
-struct Workers::Crew {
-  std::optional<tbb::global_control> more_workers;  // when more threads are asked for than there are cores
-  tbb::task_arena arena;
-  tbb::task_group group;
-
-  explicit Crew(int threads) {
-    if (threads > tbb::info::default_concurrency())
-      more_workers.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    arena.initialize(threads);
-  }
-};
-
-Workers::Workers(int threads)
-    : threads_(threads), process_(::getpid()), slots_(static_cast<std::size_t>(std::max(threads, 1))) {
+Workers::Workers(int threads) : threads_(threads), slots_(static_cast<std::size_t>(std::max(threads, 1))) {
   TROCAR_ASSERT(threads >= 1);
-  if (threads > 1 && MayHaveWorkers()) crew_ = std::make_unique<Crew>(threads);
+  if (threads > tbb::info::default_concurrency()) {
+    more_workers_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  }
+  if (threads > 1) arena_.initialize(threads);
 }
 
-Workers::~Workers() {
-  if (::getpid() != process_) static_cast<void>(crew_.release());  // the other process's; its memory is left
-}
-
-Workers::Session::Session(Workers& workers) noexcept
-    : workers_(workers), has_workers_(workers.crew_ != nullptr && ::getpid() == workers.process_) {
-  if (!has_workers_) return;
+Workers::Session::Session(Workers& workers) noexcept : workers_(workers) {
+  if (workers_.threads_ == 1) return;
   workers_.is_open_.store(true);
-  workers_.crew_->arena.execute([this] {
+  workers_.arena_.execute([this] {
     for (int slot = 1; slot < workers_.threads_; ++slot) {
-      workers_.crew_->group.run([this, slot] { workers_.Serve(slot); });
+      workers_.workers_.run([this, slot] { workers_.Serve(slot); });
     }
   });
 }
 
 Workers::Session::~Session() {
-  if (!has_workers_) return;
+  if (workers_.threads_ == 1) return;
   workers_.is_open_.store(false);
-  workers_.crew_->arena.execute([this] { workers_.crew_->group.wait(); });
+  workers_.arena_.execute([this] { workers_.workers_.wait(); });
 }
 
 void Workers::Serve(int slot) noexcept {

@@ -2,12 +2,14 @@
 /// \file workers.h  Threads that share the chunks of short loops within one solve.
 #pragma once
 
-#include <sys/types.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
 
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <vector>
 
 namespace trocar::tissue {
@@ -16,14 +18,10 @@ namespace trocar::tissue {
 /// awake for the length of a solve (Session), spin between loops, and take chunks as they come. The calling thread waits
 /// only for chunks that have been begun: a worker that never gets a processor delays nobody. What a chunk computes must not
 /// depend on who runs it or when; then results do not depend on the threads.
-///
-/// Threads do not come along into a child of fork(), and the scheduler's locks may be held there by one that did not. A child of
-/// a process that had workers has none: the caller does everything.
 class Workers {
  public:
   /// \param threads  >= 1, with the caller
   explicit Workers(int threads);
-  ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
@@ -39,7 +37,6 @@ class Workers {
 
    private:
     Workers& workers_;
-    bool has_workers_;
   };
 
   /// Most chunks of one loop.
@@ -90,9 +87,9 @@ class Workers {
   void Serve(int slot) noexcept;
 
   int threads_;
-  struct Crew;                  // the scheduler's part
-  std::unique_ptr<Crew> crew_;  // none where the caller is alone
-  ::pid_t process_;
+  std::optional<tbb::global_control> more_workers_;  // when more threads are asked for than there are cores
+  tbb::task_arena arena_;
+  tbb::task_group workers_;
 
   alignas(kLine) std::atomic<bool> is_open_ = false;
   std::atomic<std::uint64_t> loop_ = 0;  // the present one, see Loop

@@ -2,10 +2,7 @@
 #include "workers.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -48,34 +45,6 @@ TEST(Workers, TheCallerDoesWhatNobodyHasBegun) {
       EXPECT_EQ(times, std::vector<int>(count, 1)) << threads << " threads";
     }
   }
-}
-
-/// Whether each chunk of a loop in a session is done once.
-bool DoesEachChunkOnce(Workers& workers) {
-  const Workers::Session session(workers);
-  std::array<std::atomic<int>, 64> times{};
-  workers.Run(times.size(), [&](std::uint32_t chunk) { ++times[chunk]; });
-  return std::all_of(times.begin(), times.end(), [](const auto& t) { return t == 1; });
-}
-
-// The workers are the parent's threads, and the scheduler that would make new ones may be locked by one of them.
-TEST(Workers, AChildOfForkDoesEverythingItself) {
-  Workers workers(3);
-  ASSERT_TRUE(DoesEachChunkOnce(workers));
-  const ::pid_t child = ::fork();
-  if (child == 0) {
-    ::alarm(30);
-    bool does = DoesEachChunkOnce(workers);
-    {
-      Workers fresh(3);
-      does = does && DoesEachChunkOnce(fresh);
-    }
-    ::_exit(does ? 0 : 1);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_TRUE(DoesEachChunkOnce(workers));
 }
 
 }  // namespace
