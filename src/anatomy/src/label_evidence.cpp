@@ -25,7 +25,7 @@ constexpr VolumeRange kVolumes[] = {
     {kAdrenalLeft, 0, 60},    {kAdrenals, 0, 120},    {kVenaCava, 5, 400},     {kAorta, 5, 2200},
     {kPortalVein, 0, 250},    {kEsophagus, 1, 250},   {kLungRight, 20, 5000},  {kLungLeft, 20, 5000},
     {kLungs, 20, 10000},      {kHeart, 20, 3000},     {kBladder, 5, 3000},     {kRibsRight, 0, 120},
-    {kRibsLeft, 0, 120},      {kVertebra, 5, 250},    {kVertebraL3, 5, 250},   {kVertebraL4, 5, 250},
+    {kRibsLeft, 0, 120},      {kVertebra, 5, 1500},    {kVertebraL3, 5, 250},   {kVertebraL4, 5, 250},
     {kUpperVertebra, 0, 200}, {kBileDuct, 0, 150},    {kArtery, 0, 150},       {kLiverVessel, 0, 600}};
 /// Less is a speck that a program puts anywhere, and is not judged.
 constexpr double kSpeckMl = 1.5;
