@@ -25,7 +25,7 @@ constexpr VolumeRange kVolumes[] = {
     {kAdrenalLeft, 0, 60},    {kAdrenals, 0, 120},    {kVenaCava, 5, 400},     {kAorta, 5, 2200},
     {kPortalVein, 0, 250},    {kEsophagus, 1, 250},   {kLungRight, 20, 5000},  {kLungLeft, 20, 5000},
     {kLungs, 20, 10000},      {kHeart, 20, 3000},     {kBladder, 5, 3000},     {kRibsRight, 0, 120},
-    {kRibsLeft, 0, 120},      {kVertebra, 5, 1500},    {kVertebraL3, 5, 250},   {kVertebraL4, 5, 250},
+    {kRibsLeft, 0, 120},      {kVertebra, 5, 1500},   {kVertebraL3, 5, 250},   {kVertebraL4, 5, 250},
     {kUpperVertebra, 0, 200}, {kBileDuct, 0, 150},    {kArtery, 0, 150},       {kLiverVessel, 0, 600}};
 /// Less is a speck that a program puts anywhere, and is not judged.
 constexpr double kSpeckMl = 1.5;
@@ -221,6 +221,7 @@ class Court {
   std::vector<std::string> Judge() {
     const int liver = LabelOf(meanings_, kLiver), gallbladder = LabelOf(meanings_, kGallbladder);
     JudgeVolumes();
+    JudgeLongVessels();
     if (liver != 0) JudgeLiver(liver);
     if (liver != 0 && gallbladder != 0) JudgeGallbladder(liver, gallbladder);
     if (liver != 0) JudgeLesions(liver);
@@ -249,6 +250,17 @@ class Court {
         if ((ml >= range.least_ml || may_be_cut) && ml <= range.most_ml) continue;
         against_.push_back(Would(label) + "has " + Ml(ml) + " mL; " + Ml(range.least_ml) + " to " +
                            Ml(range.most_ml) + " mL are possible");
+      }
+    }
+  }
+
+  /// They run along the spine, whatever the map cuts off them.
+  void JudgeLongVessels() {
+    for (const Structure structure : {kAorta, kVenaCava, kEsophagus}) {
+      for (const int label : labels_[structure]) {
+        const Vec3 length = Sight(label).max - Sight(label).min;
+        if (length.y < length.x && !Sight(label).is_at_border)
+          against_.push_back(Would(label) + "does not run up and down");
       }
     }
   }
