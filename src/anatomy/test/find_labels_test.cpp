@@ -412,14 +412,13 @@ images::LabelVolume WithTumour(std::vector<std::array<double, 4>> balls) {
 }
 
 TEST(FindLabels, ATumourIsNoGallbladder) {
-  for (const auto& volume : {WithTumour({{60, 10, -20, 20}}),  // inside
-                             WithTumour({{42, 40, -45, 16}}),  // at the gallbladder's place
+  for (const auto& volume : {WithTumour({{60, 10, -20, 20}}),
                              WithTumour({{60, 10, -20, 18}, {80, -20, 20, 14}, {20, 20, 20, 12}})}) {
-    const std::string said = ErrorOf(volume);
-    EXPECT_THAT(said,
-                AllOf(HasSubstr("no gallbladder"), HasSubstr("label 2 lies inside the liver, as a tumour")))
-        << said;
+    EXPECT_THAT(ErrorOf(volume),
+                AllOf(HasSubstr("no gallbladder"), HasSubstr("label 2 lies inside the liver, as a tumour")));
   }
+  // at the liver's lower face, where a gallbladder may lie, too
+  EXPECT_THAT(ErrorOf(WithTumour({{42, 40, -45, 16}})), AllOf(HasSubstr("LiTS"), HasSubstr("--names")));
   // the same numbers with a gallbladder
   EXPECT_EQ(ErrorOf(Numbered({{Structure::kLiver, 1}, {Structure::kGallbladder, 2}})),
             "liver 1, gallbladder 2");
