@@ -155,7 +155,9 @@ TEST_F(IgtlServerTest, LetsGoOfViewersThatTakeNothing) {
         }
       }
       EXPECT_EQ(server_->ViewerCount(), 1u) << "organs " << has_organs << ", buffer " << buffer;
-      EXPECT_LE(seconds, 15) << "organs " << has_organs << ", buffer " << buffer;
+      // a system announces a part of its buffer late, so that as much unread passes for read: 586 bytes, 30 times a second
+      const int hidden = has_organs ? 0 : 2 * buffer / 17'580;
+      EXPECT_LE(seconds, 16 + hidden) << "organs " << has_organs << ", buffer " << buffer;
       Tick(kSecond);
       EXPECT_EQ(server_->ViewerCount(), 1u);
       EXPECT_GT(got, static_cast<std::size_t>(seconds) * 30 * 500) << "the other still gets everything";
@@ -202,13 +204,13 @@ TEST_F(IgtlServerTest, JudgesAViewerByWhatItsProgramTakes) {
 
 // ten seconds are real ones: a slow machine does not make them longer, a pause does not count
 TEST_F(IgtlServerTest, CountsRealSecondsWithoutPauses) {
-  Serve({});
   slowness_ = 4;
   auto sleeper = Connect();
-  for (int i = 0; i < 15; ++i) {
+  for (int i = 0; i < 20; ++i) {
     Tick(kSecond / 4);
     AwaitAcknowledgements();
   }
+  EXPECT_LT(snapshot_.time, 6.0);
   EXPECT_EQ(server_->ViewerCount(), 0u);
   slowness_ = 1;
   sleeper = Connect();
