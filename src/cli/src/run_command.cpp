@@ -14,6 +14,7 @@
 #include "command.h"
 #include "help_language.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/core/translate.h"
 #include "trocar/core/version.h"
 
@@ -47,9 +48,12 @@ constexpr const char* kExamples =
 
 int Fail(const core::Error& error, int exit_status) {
   std::fflush(stdout);
-  const std::string text = core::ShownText(error), meaning = core::TranslatedMeaning(error.code);
+  // one error is one line, whatever the names in it
+  const std::string text = core::PrintableLine(core::ShownText(error)),
+                    meaning = core::TranslatedMeaning(error.code);
   // the catalogue has the messages that a window can show; of others it says at least what the code means
-  if (!meaning.empty() && text == error.Text()) std::fprintf(stderr, "trocar: %s\n", meaning.c_str());
+  if (!meaning.empty() && core::ShownText(error) == error.Text())
+    std::fprintf(stderr, "trocar: %s\n", meaning.c_str());
   std::fprintf(stderr, "trocar: %s\n", text.c_str());
   return exit_status;
 }
@@ -157,6 +161,7 @@ void ListHelpTexts(const TextVisitor& visit) {
 }
 
 int RunCommand(int argc, char** argv) {
+  const core::PrintableOutput fence;
   core::RemovePartialPathsOnSignals();
   std::set_terminate(OnTerminate);
   core::UseLanguage(core::FindLocaleFolder());
