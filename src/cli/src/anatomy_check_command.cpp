@@ -45,7 +45,8 @@ void PrintForPerson(const anatomy::LintReport& report) {
   PrintTable(rows);
   std::printf("\n");
   for (const anatomy::LintFinding& finding : report.findings) {
-    Print(finding.code + "  " + finding.where + "\n    " + TranslateComposed(finding.text) + "\n");
+    Print(finding.code + "  " + core::PrintableLine(finding.where) + "\n    " +
+          core::PrintableLine(TranslateComposed(finding.text)) + "\n");
   }
   if (report.findings.empty()) {
     Say("No findings.\n");

@@ -81,7 +81,7 @@ void List(bool is_json) {
   }
   Say("Found:\n");
   for (const device::FoundDevice& one : found)
-    Print("  " + one.spec + "   " + TranslateComposed(one.description) + "\n");
+    Print(core::PrintableLine("  " + one.spec + "   " + TranslateComposed(one.description)) + "\n");
   if (found.empty()) Say("  nothing but mouse and keyboard\n");
   Say("\nKinds of device (write KIND:ADDRESS):\n");
   std::vector<std::vector<std::string>> rows;

@@ -113,11 +113,14 @@ void PrintInfo(const Recording& recording) {
   std::size_t shown = 0;
   for (const record::EventMark& event : recording.events) {
     if (!event.is_error || ++shown > kShownErrors) continue;
-    Print(At(event.tick, d) + Translate(event.kind) +
-          (event.about.empty() ? "" : ": " + TranslateComposed(event.about)) + "\n");
+    Print(At(event.tick, d) +
+          core::PrintableLine(Translate(event.kind) +
+                              (event.about.empty() ? "" : ": " + TranslateComposed(event.about))) +
+          "\n");
   }
   if (shown > kShownErrors) Say("  and {1} more (--json)\n", shown - kShownErrors);
-  for (const record::TextMark& mark : recording.marks) Print(At(mark.tick, d) + "\"" + mark.text + "\"\n");
+  for (const record::TextMark& mark : recording.marks)
+    Print(At(mark.tick, d) + "\"" + core::PrintableLine(mark.text) + "\"\n");
 }
 
 void AddInfo(CLI::App& record, Outcome& outcome) {
@@ -156,7 +159,7 @@ void AddVerify(CLI::App& record, Outcome& outcome) {
         return;
       }
     }
-    Print(*path + ": " + HowItEnded(*recording) + "\n");
+    Print(core::PrintableLine(*path + ": " + HowItEnded(*recording)) + "\n");
     outcome.has_finding = !recording->damage.empty();
   });
 }

@@ -94,7 +94,7 @@ core::Status Report(ReportArguments arguments) {
     written = WriteReport(trainee, arguments.output);
   }
   if (!written.ok()) return written;
-  if (reports.size() == 1) Print(TranslateComposed(reports[0].outcome) + "\n");
+  if (reports.size() == 1) Print(core::PrintableLine(TranslateComposed(reports[0].outcome)) + "\n");
   Say("Wrote {1}\n", arguments.output);
   return {};
 }
