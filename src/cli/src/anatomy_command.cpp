@@ -156,7 +156,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
           "window that trocar anatomy images suggests)")
       ->type_name("CENTRE,WIDTH");
   build->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 100000))
+      ->check(CLI::Range(1, 999999999))
       ->type_name("N");
   build->add_option("-o,--output", arguments->output, "Patient folder to write")
       ->required()

@@ -12,6 +12,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/images/image_stack.h"
 #include "trocar/images/png_file.h"
+#include "trocar_test/made_images.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
@@ -110,6 +111,37 @@ TEST_F(ImagesCommand, DamagedFilesAreOneLineAndNoPreview) {
   ExpectRefused(gap, "E-IMG-007");
   EXPECT_THAT(gap.err, HasSubstr("missing: 5;"));
   ExpectRefused(Run({"/dev/zero"}), "E-IMG-013");
+}
+
+TEST_F(ImagesCommand, ListsThePhasesOfADicomSeriesAndSaysWhatItPassedOver) {
+  for (int slice = 1; slice <= 4; ++slice) {
+    for (const int acquisition : {1, 2}) {
+      test::DicomFields fields;
+      fields.instance = slice + 10 * acquisition;
+      fields.acquisition = std::to_string(acquisition);
+      fields.position = "0\\0\\" + std::to_string(5 * slice);
+      ASSERT_TRUE(core::WriteFile(folder_.Path() / "ct" / ("IM" + std::to_string(fields.instance)),
+                                  test::MakeDicom(fields))
+                      .ok());
+    }
+  }
+  test::DicomFields report;
+  report.sop_class = "1.2.840.10008.5.1.4.1.1.88.22";
+  ASSERT_TRUE(core::WriteFile(folder_.Path() / "ct" / "report", test::MakeDicom(report)).ok());
+  const Printed asked = Run({Path("ct")});
+  ExpectRefused(asked, "E-IMG-006");
+  EXPECT_THAT(asked.err, HasSubstr("2 (CT, acquisition 2: 4 slices)"));
+  const Printed printed = Run({Path("ct"), "--series", "2"});
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_THAT(printed.out, HasSubstr("4, number 21 to 24"));
+  EXPECT_THAT(printed.out, HasSubstr("passed over: reports (SR) (1)"));
+  const auto json = nlohmann::json::parse(Run({Path("ct"), "--series", "2", "--json"}).out);
+  EXPECT_EQ(json["series"], 2);
+  EXPECT_EQ(json["notes"].size(), 1u);
+  // the id chooses the same, whatever else comes into the folder
+  const auto same = nlohmann::json::parse(
+      Run({Path("ct"), "--series", std::to_string(json["series_id"].get<int>()), "--json"}).out);
+  EXPECT_EQ(same["slice_numbers"], json["slice_numbers"]);
 }
 
 }  // namespace

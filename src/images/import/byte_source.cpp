@@ -142,7 +142,8 @@ bool IsGzip(const InputFile& file) {
 
 FileKind FindKind(const InputFile& file) {
   constexpr std::size_t kEnough = 544;
-  if (!IsGzip(file)) return SniffKind(ReadBegin(file, kEnough));
+  const FileKind plain = SniffKind(ReadBegin(file, kEnough));
+  if (plain == FileKind::kDicom || !IsGzip(file)) return plain;
   std::string begin(kEnough, '\0');
   begin.resize(DeflatedSource(file, 0).Read(begin.data(), begin.size()));
   const FileKind kind = SniffKind(begin);

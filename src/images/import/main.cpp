@@ -113,7 +113,10 @@ InputFile Measure(const Descriptor& descriptor) {
 }
 
 void Read(const Job& job, ImportReply& reply) {
-  switch (FindKind(job.file)) {
+  const FileKind kind = FindKind(job.file);
+  if (job.request.operation == ImportOperation::kProbeFrames && kind != FileKind::kDicom)
+    throw Failure{ErrorCode::kImageChanged, "it is no longer a DICOM file"};
+  switch (kind) {
     case FileKind::kJpeg:
       return ReadPicture(job, FileKind::kJpeg, reply);
     case FileKind::kPng:
@@ -141,10 +144,11 @@ void Answer(const ImportRequest& request, std::span<const Descriptor> descriptor
   job.file = Measure(descriptors[0]);
   if (request.has_data_file != 0) job.data_file = Measure(descriptors[1]);
   std::optional<SampleMemory> memory;
-  if (request.operation == ImportOperation::kDecode) {
+  if (request.operation != ImportOperation::kProbe) {
     memory.emplace(descriptors[request.has_data_file != 0 ? 2 : 1].Get(), request.offset, request.capacity);
     job.samples = memory->Samples();
-    job.request.most_bytes = std::min(request.most_bytes, request.capacity);
+    if (request.operation == ImportOperation::kDecode)
+      job.request.most_bytes = std::min(request.most_bytes, request.capacity);
   }
   Read(job, reply);
 }

@@ -33,7 +33,8 @@ struct Job {
   InputFile file;
   std::optional<InputFile> data_file;
   ImportRequest request;
-  std::byte* samples = nullptr;  ///< where to put them; null: read the header only
+  std::byte* samples =
+      nullptr;  ///< where to put them; null: read the header only. Of kProbeFrames, the headers
 };
 
 /// \throw Failure kImageTooLarge when the product of the numbers exceeds 2^64

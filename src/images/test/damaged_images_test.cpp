@@ -360,7 +360,7 @@ std::vector<Case> MakeDicomCases() {
       {"Dicom64Bits", ErrorCode::kImageUnsupported, "a.dcm", Dicom([](DicomFields& f) { f.allocated = 64; })},
       {"DicomPalette", ErrorCode::kImageUnsupported, "a.dcm",
        Dicom([](DicomFields& f) { f.shown = "PALETTE COLOR"; })},
-      {"DicomManyFrames", ErrorCode::kImageUnsupported, "a.dcm", Dicom([](DicomFields& f) {
+      {"DicomManyFrames", ErrorCode::kImageTooLarge, "a.dcm", Dicom([](DicomFields& f) {
          f.dimensions = Element(0x28, 8, "IS", "1000000") +
                         Element(0x28, 0x10, "US", Bytes<std::uint16_t>(6)) +
                         Element(0x28, 0x11, "US", Bytes<std::uint16_t>(8));
@@ -404,10 +404,20 @@ std::vector<Case> MakeDicomCases() {
          rle.resize(64, '\0');
          f.pixel_element = Fragments({rle + std::string(16, '\x7f')});
        })},
-      {"DicomUnknownTransferSyntax", ErrorCode::kImageUndecodable, "a.dcm",
+      {"DicomUnknownTransferSyntax", ErrorCode::kImageUnsupported, "a.dcm",
        Dicom([](DicomFields& f) { f.transfer_syntax = "1.2.840.10008.1.2.4.999"; })},
-      {"DicomWithThePreambleOfAPng", ErrorCode::kImageUndecodable, "a.dcm",
-       [] { return MakeDicom({}).replace(0, 8, "\x89PNG\r\n\x1a\n"); }},
+      {"DicomCutBehindItsPreamble", ErrorCode::kImageTruncated, "a.dcm",
+       [] { return Cut(MakeDicom({}), 132); }},
+      {"DicomCutBehindThePreambleOfAPng", ErrorCode::kImageTruncated, "a.dcm",
+       [] { return Cut(MakeDicom({}).replace(0, 8, "\x89PNG\r\n\x1a\n"), 600); }},
+      {"DicomFramesMissing", ErrorCode::kImageTruncated, "a.dcm", Dicom([](DicomFields& f) {
+         f.dimensions = Element(0x28, 8, "IS", "3") + Element(0x28, 0x10, "US", Bytes<std::uint16_t>(6)) +
+                        Element(0x28, 0x11, "US", Bytes<std::uint16_t>(8));
+       })},
+      {"DicomSegmentation", ErrorCode::kImageSliceMissing, "a.dcm", Dicom([](DicomFields& f) {
+         f.sop_class = "1.2.840.10008.5.1.4.1.1.66.4";
+         f.modality = "SEG";
+       })},
   };
 }
 
