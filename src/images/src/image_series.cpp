@@ -25,9 +25,13 @@ core::Status OpenVolume(const fs::path& path, const ImageSeriesOptions& options,
   auto decoded = DecodeFile(path, Links::kFollow, *content.pool);
   if (!decoded) return decoded.error();
   if (decoded->header.is_layered != 0) {
-    return Error{ErrorCode::kImageUnsupported,
-                 core::Printable(path.string()) +
-                     ": it holds segments in layers, no image; it is read as a label map"};
+    const std::string printed = core::Printable(path.string());
+    if (!decoded->names.empty())
+      return Error{ErrorCode::kImageUnsupported,
+                   printed + ": it holds segments in layers, no image; it is read as a label map"};
+    return Error{ErrorCode::kImageUnsupported, printed + ": it holds a list of " +
+                                                   std::to_string(decoded->header.channels) +
+                                                   " values a voxel, no image; extract one of them"};
   }
   const ImageHeader& header = decoded->header;
   ImageSeriesInfo& info = content.info;

@@ -50,10 +50,9 @@ bool IsSane(const ImageHeader& header, const ImportLimits& limits) {
       IsFinite(std::array{header.slope, header.intercept, header.window_centre, header.window_width});
   for (const auto& axis : header.direction) is_finite = is_finite && IsFinite(axis);
   const std::string_view data_file(header.data_file, ::strnlen(header.data_file, sizeof(header.data_file)));
-  const bool is_plain =
-      data_file.find('/') == std::string_view::npos && data_file != "." && data_file != "..";
-  return bytes <= limits.most_bytes && is_finite && is_plain && header.segments <= kMostSegments &&
-         IsTerminated(header.data_file, sizeof(header.data_file)) &&
+  const bool is_below = data_file.empty() || IsPathBelow(data_file);
+  return bytes <= limits.most_bytes && is_finite && is_below && header.is_data_beside <= 1 &&
+         header.segments <= kMostSegments && IsTerminated(header.data_file, sizeof(header.data_file)) &&
          IsTerminated(header.description, sizeof(header.description)) &&
          std::all_of(std::begin(header.spacing), std::end(header.spacing),
                      [](double spacing) { return spacing >= 0 && spacing <= 200; });

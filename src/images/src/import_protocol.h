@@ -14,7 +14,7 @@
 
 namespace trocar::images {
 
-inline constexpr std::uint32_t kImportVersion = 4;
+inline constexpr std::uint32_t kImportVersion = 5;
 inline constexpr int kImportSocket = 3;             // descriptor in the reader
 inline constexpr int kExitOutOfMemory = 40;         // exit status of the reader
 inline constexpr std::size_t kMostDescriptors = 3;  // of one request
@@ -79,7 +79,9 @@ struct ImageHeader {
   std::uint32_t has_position = 0;  ///< of a single slice: position and orientation were given
   std::uint32_t segments = 0;
   char description[80] = {};  ///< DICOM: kind of images and what the scanner calls the series
-  char data_file[256] = {};   ///< name of the file with the samples; empty: they follow the header
+  /// Path of the file with the samples, from the header's folder on (IsPathBelow); empty: they follow the header.
+  char data_file[256] = {};
+  std::uint32_t is_data_beside = 0;  ///< 1: they are in the file of the same name that ends in .img (NIfTI)
 
   std::uint64_t SampleCount() const {
     return std::uint64_t{width} * height * depth * channels;  // checked to fit by both sides
@@ -103,6 +105,29 @@ struct ImportReply {
 
 static_assert(std::is_trivially_copyable_v<ImportRequest> && std::is_trivially_copyable_v<ImportReply>);
 
+/// Whether a relative path can only lead to a file in its folder or in folders of that.
+inline bool IsPathBelow(std::string_view path) {
+  for (;;) {
+    const auto end = path.find('/');
+    const std::string_view part = path.substr(0, end);
+    if (part.empty() || part == "." || part == ".." || part.find('\0') != std::string_view::npos)
+      return false;
+    if (end == std::string_view::npos) return true;
+    path.remove_prefix(end + 1);
+  }
+}
+
+/// MetaImage has no mark: its lines are "name = value" (or "name : value"), NDims among them.
+inline bool BeginsLikeMetaImage(std::string_view begin) {
+  if (begin.find('\0') < begin.find("NDims")) return false;
+  for (const std::string_view name : {"ObjectType", "NDims"}) {
+    if (begin.starts_with(name)) return true;
+  }
+  const std::string_view line = begin.substr(0, begin.find('\n'));
+  return line.find_first_of("=:") != std::string_view::npos &&
+         begin.find("\nNDims") != std::string_view::npos;
+}
+
 /// The kind of file that begins like this (at least 348 bytes where the file has them; unpacked if gzip).
 inline FileKind SniffKind(std::string_view begin) {
   const auto has = [&](std::size_t at, std::string_view text) {
@@ -113,11 +138,12 @@ inline FileKind SniffKind(std::string_view begin) {
   if (has(0, std::string_view("II*\0", 4)) || has(0, std::string_view("MM\0*", 4))) return FileKind::kTiff;
   if (has(0, std::string_view("II+\0", 4)) || has(0, std::string_view("MM\0+", 4))) return FileKind::kTiff;
   if (has(128, "DICM")) return FileKind::kDicom;
-  if (has(0, "NRRD000")) return FileKind::kNrrd;
-  if (has(344, std::string_view("n+1\0", 4)) || has(344, std::string_view("ni1\0", 4)) || has(4, "n+2")) {
+  if (has(0, "NRRD00")) return FileKind::kNrrd;
+  if (has(344, std::string_view("n+1\0", 4)) || has(344, std::string_view("ni1\0", 4)) || has(4, "n+2") ||
+      has(4, "ni2")) {
     return FileKind::kNifti;
   }
-  if (has(0, "ObjectType") || has(0, "NDims") || has(0, "Comment =")) return FileKind::kMetaImage;
+  if (BeginsLikeMetaImage(begin)) return FileKind::kMetaImage;
   // DICOM without its preamble begins with an element of group 8 or 2
   if (has(0, std::string_view("\x08\0", 2)) || has(0, std::string_view("\x02\0\0\0UL", 6)))
     return FileKind::kDicom;

@@ -57,17 +57,40 @@ core::Status SetGeometry(const SaidGeometry& said, const ImageHeader& header,
   if (!pixel_mm) return pixel_mm.error();
   const auto slice_mm = Agree("--slice-mm", said.slice_mm, options.slice_mm);
   if (!slice_mm) return slice_mm.error();
-  std::string missing;
-  const auto ask = [&](bool is_known, const char* option) {
-    if (!is_known) missing += (missing.empty() ? "" : ", ") + std::string(option);
-  };
-  ask(*pixel_mm > 0, "--pixel-mm MM (side of a pixel)");
-  ask(*slice_mm > 0, "--slice-mm MM (from one slice number to the next)");
-  ask(said.has_direction || options.axes,
-      "--axes COLUMN,ROW,SLICE (where they grow to in the patient, for example left,posterior,superior)");
-  if (!missing.empty())
+  const bool has_sizes = *pixel_mm > 0 && *slice_mm > 0, has_axes = said.has_direction || options.axes;
+  if (!has_sizes || !has_axes) {
+    std::string missing;
+    const auto ask = [&](bool is_known, const char* option) {
+      if (!is_known) missing += (missing.empty() ? "" : ", ") + std::string(option);
+    };
+    ask(*pixel_mm > 0, "--pixel-mm MM (side of a pixel)");
+    ask(*slice_mm > 0, "--slice-mm MM (from one slice number to the next)");
+    ask(has_axes,
+        "--axes COLUMN,ROW,SLICE (where they grow to in the patient, for example left,posterior,superior)");
+    if (has_sizes) {
+      return Error{ErrorCode::kImageSpacingUnknown,
+                   "the files do not say how the patient lies; give " + missing};
+    }
+    if (header.kind <= FileKind::kTiff && !has_axes) {
+      return Error{
+          ErrorCode::kImageSpacingUnknown,
+          "pictures do not say how large the patient is and how it lies (a resolution in them is for "
+          "printers and is not used); give " +
+              missing};
+    }
+    if (header.kind <= FileKind::kTiff) {
+      return Error{
+          ErrorCode::kImageSpacingUnknown,
+          "pictures do not say how large the patient is (a resolution in them is for printers and is "
+          "not used); give " +
+              missing};
+    }
+    if (has_axes)
+      return Error{ErrorCode::kImageSpacingUnknown,
+                   "the files do not say how large the patient is; give " + missing};
     return Error{ErrorCode::kImageSpacingUnknown,
-                 "the files do not say how large the patient is or lies; give " + missing};
+                 "the files do not say how large the patient is and how it lies; give " + missing};
+  }
   info.pixel_mm = *pixel_mm;
   info.slice_mm = *slice_mm;
   if (!(info.pixel_mm >= 0.01 && info.pixel_mm <= 20.0) ||
