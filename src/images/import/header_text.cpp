@@ -124,8 +124,8 @@ std::optional<double> ParseUnitMm(std::string_view unit) {
   const auto* known = std::find_if(std::begin(kUnitsMm), std::end(kUnitsMm),
                                    [&](const auto& entry) { return entry.first == name; });
   if (known == std::end(kUnitsMm)) {
-    throw Failure{ErrorCode::kImageUnsupported, "its unit of length " + Shown(Trimmed(unit)) +
-                                                    " is none of mm, cm, dm, m, um, nm and inch"};
+    throw Failure{ErrorCode::kImageGeometryInvalid, "its unit of length " + Shown(Trimmed(unit)) +
+                                                        " is none of mm, cm, dm, m, um, nm and inch"};
   }
   return known->second;
 }

@@ -32,7 +32,7 @@ std::vector<double> ParseNumbers(std::string_view text, const char* field);
 /// Length of a unit that a header names: mm, cm, dm, m, um, nm, inch and their long forms.
 ///
 /// \return [mm]; nothing where the header leaves it open ("" and question marks)
-/// \throw Failure kImageUnsupported naming a unit that is none of them
+/// \throw Failure kImageGeometryInvalid naming a unit that is none of them: programs that pass over units would convert it wrongly
 std::optional<double> ParseUnitMm(std::string_view unit);
 
 /// Sets the sides. \throw Failure kImageUndecodable or kImageTooLarge

@@ -143,7 +143,7 @@ void Read(const Job& job, ImportReply& reply) {
     if (begin.size() < kAnalyzeBytes)
       throw Failure{ErrorCode::kImageUndecodable, "it begins like NIfTI and ends within its header"};
     throw Failure{
-        ErrorCode::kImageUnsupported,
+        ErrorCode::kImageGeometryInvalid,
         "its header has no NIfTI mark, as those of ANALYZE 7.5, which leave open which side is left"};
   }
   if (IsGzip(job.file))

@@ -224,11 +224,11 @@ void ReadMetaImage(const Job& job, ImportReply& reply) {
     stored.packing = Packing::kText;
   else if (fields.IsTrue("CompressedData"))
     stored.packing = Packing::kDeflated;
-  // MetaIO keeps these and ITK passes over them, so that programs show different grey values
+  // MetaIO keeps these and ITK passes over them, so that programs show different grey values and convert them so
   const auto slope = FindNumbers(fields, {"ElementToIntensityFunctionSlope"}, 1),
              offset = FindNumbers(fields, {"ElementToIntensityFunctionOffset"}, 1);
   if ((!slope.empty() && slope[0] != 1) || (!offset.empty() && offset[0] != 0)) {
-    throw Failure{ErrorCode::kImageUnsupported,
+    throw Failure{ErrorCode::kImageGeometryInvalid,
                   "its ElementToIntensityFunction is applied by some programs and not by others"};
   }
   ReadFrame(fields, static_cast<std::size_t>(dimensions), header);

@@ -160,9 +160,9 @@ double ReadUnitMm(int code) {
     case 3:
       return 0.001;
     default:
-      throw Failure{ErrorCode::kImageUnsupported, "its unit of length has the code " +
-                                                      std::to_string(code & 7) +
-                                                      ", which NIfTI does not know (1 to 3)"};
+      throw Failure{ErrorCode::kImageGeometryInvalid, "its unit of length has the code " +
+                                                          std::to_string(code & 7) +
+                                                          ", which NIfTI does not know (1 to 3)"};
   }
 }
 

@@ -230,7 +230,7 @@ std::optional<std::array<double, 3>> FindFrame(const Fields& fields, FileFrame& 
   // ITK turns its first coordinate round where the format's second one differs: the two readings are mirrored
   if (name == "leftanteriorsuperior" || name == "las" || name == "last") {
     throw Failure{
-        ErrorCode::kImageUnsupported,
+        ErrorCode::kImageGeometryInvalid,
         "its space is left-anterior-superior, which programs read in two ways; save it as LPS or RAS"};
   }
   return std::nullopt;
@@ -287,9 +287,8 @@ bool FindSameUnit(const std::vector<std::optional<double>>& units, std::optional
   return true;
 }
 
-/// The axes with their sizes, kinds and steps, and the place of the first sample.
-std::vector<Axis> ReadAxes(const Fields& fields, std::array<double, 3>& origin,
-                           std::size_t& space_dimensions) {
+/// Sizes and kinds of the axes.
+std::vector<Axis> ReadAxes(const Fields& fields) {
   const std::int64_t dimension = ParseWhole(fields.Need("dimension"), "dimension");
   constexpr std::int64_t kMostDimensions = 16;  // Teem's
   if (dimension < 1 || dimension > kMostDimensions) {
@@ -312,91 +311,123 @@ std::vector<Axis> ReadAxes(const Fields& fields, std::array<double, 3>& origin,
       if (axes[i].kind == "none" || axes[i].kind == "???") axes[i].kind.clear();
     }
   }
+  return axes;
+}
 
-  std::vector<std::vector<double>> vectors;
-  if (const std::string* directions = fields.Find("space directions")) {
-    vectors = ParseVectors(*directions, "space directions");
-    if (vectors.size() != axes.size()) {
-      throw Failure{ErrorCode::kImageUndecodable, "its space directions are not one for each of its axes"};
-    }
+/// Where the axes lie, in the header's own unit.
+struct Space {
+  std::size_t dimensions = 0;                // 0: the header gives no directions
+  std::vector<std::vector<double>> vectors;  // [axis] one step; empty for an axis that is no direction
+};
+
+/// Reads the directions and says of each axis whether it is one in space.
+Space ReadSpace(const Fields& fields, std::vector<Axis>& axes) {
+  Space space;
+  const std::string* directions = fields.Find("space directions");
+  if (directions == nullptr) {
+    for (Axis& axis : axes)
+      axis.is_spatial = axis.kind.empty() || axis.kind == "domain" || axis.kind == "space";
+    return space;
   }
-  space_dimensions = 0;
-  for (const auto& vector : vectors) {
+  space.vectors = ParseVectors(*directions, "space directions");
+  if (space.vectors.size() != axes.size())
+    throw Failure{ErrorCode::kImageUndecodable, "its space directions are not one for each of its axes"};
+  for (const auto& vector : space.vectors) {
     if (vector.empty()) continue;
-    if (space_dimensions != 0 && vector.size() != space_dimensions)
+    if (space.dimensions != 0 && vector.size() != space.dimensions)
       throw Failure{ErrorCode::kImageUndecodable,
                     "its space directions differ in how many numbers they have"};
-    space_dimensions = vector.size();
+    space.dimensions = vector.size();
   }
-  if (space_dimensions > 4 || space_dimensions == 1)
+  constexpr std::size_t kWithTime = 4;
+  if (space.dimensions < 2 || space.dimensions > kWithTime)
     throw Failure{ErrorCode::kImageUnsupported, "its space has neither two nor three dimensions"};
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    if (space_dimensions == 0) {
-      axes[i].is_spatial = axes[i].kind.empty() || axes[i].kind == "domain" || axes[i].kind == "space";
-    } else if (!vectors[i].empty()) {
-      const bool is_of_time = space_dimensions == 4 && std::all_of(vectors[i].begin(), vectors[i].begin() + 3,
-                                                                   [](double x) { return x == 0; });
-      if (space_dimensions == 4 && !is_of_time && vectors[i][3] != 0)
-        throw Failure{ErrorCode::kImageGeometryInvalid,
-                      "one of its space directions leads through time as well"};
-      axes[i].is_spatial = !is_of_time;
-      if (is_of_time) axes[i].kind = "time";
-    }
+    const auto& vector = space.vectors[i];
+    axes[i].is_spatial = !vector.empty();
+    if (vector.size() < kWithTime || vector[3] == 0) continue;
+    if (vector[0] != 0 || vector[1] != 0 || vector[2] != 0)
+      throw Failure{ErrorCode::kImageGeometryInvalid,
+                    "one of its space directions leads through time as well"};
+    axes[i].is_spatial = false;
+    axes[i].kind = "time";
   }
+  return space;
+}
 
-  // units: of the space's directions, or else of the axes
-  std::vector<bool> is_spatial, is_length;
+/// Units of length of the header [mm].
+struct Units {
+  std::array<double, 3> of_space = {1, 1, 1};  // of directions and places, by their numbers
+  std::vector<double> of_axes;                 // of spacings
+};
+
+/// Units of the space's directions, or else of the axes; millimetres where neither is said.
+Units ReadUnits(const Fields& fields, const std::vector<Axis>& axes, const Space& space) {
+  std::vector<bool> is_spatial, is_length(space.dimensions, true);
   for (const Axis& axis : axes) is_spatial.push_back(axis.is_spatial);
+  if (space.dimensions > 3) is_length[3] = false;
   const auto axis_units = ParseUnits(fields, "units", axes.size(), is_spatial);
   std::optional<double> of_axes, of_space;
   const bool is_one = FindSameUnit(axis_units, of_axes);
-  std::array<double, 3> unit_mm = {1, 1, 1};
-  if (space_dimensions > 0) {
-    for (std::size_t k = 0; k < space_dimensions; ++k) is_length.push_back(k < 3);
-    const auto space_units = ParseUnits(fields, "space units", space_dimensions, is_length);
-    const bool is_one_space = FindSameUnit(space_units, of_space);
-    if (of_space && of_axes && (!is_one || !is_one_space || *of_space != *of_axes))
-      throw Failure{ErrorCode::kImageUndecodable, "\"units\" and \"space units\" of its header do not agree"};
-    if (!of_space && !is_one)
-      throw Failure{ErrorCode::kImageUndecodable, "\"units\" of its header differ from axis to axis"};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const bool is_said = k < space_units.size() && space_units[k];
-      unit_mm[k] = is_said ? *space_units[k] : of_space.value_or(of_axes.value_or(1.0));
-    }
-  }
-  if (const std::string* spacings = fields.Find("spacings"); spacings != nullptr && space_dimensions == 0) {
-    const auto numbers = ParseNumbers(*spacings, "spacings");
-    if (numbers.size() != axes.size())
-      throw Failure{ErrorCode::kImageUndecodable, "dimension and spacings of its header do not agree"};
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      const double unit = axis_units.empty() ? 1.0 : axis_units[i].value_or(of_axes.value_or(1.0));
-      if (axes[i].is_spatial && !std::isnan(numbers[i])) axes[i].spacing = unit * std::fabs(numbers[i]);
-    }
-  }
+  Units units;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    if (!axes[i].is_spatial || space_dimensions == 0) continue;
+    const bool is_said = i < axis_units.size() && axis_units[i];
+    units.of_axes.push_back(is_said ? *axis_units[i] : of_axes.value_or(1.0));
+  }
+  if (space.dimensions == 0) return units;
+  const auto space_units = ParseUnits(fields, "space units", space.dimensions, is_length);
+  const bool is_one_space = FindSameUnit(space_units, of_space);
+  if (of_space && of_axes && (!is_one || !is_one_space || *of_space != *of_axes))
+    throw Failure{ErrorCode::kImageUndecodable, "\"units\" and \"space units\" of its header do not agree"};
+  if (!of_space && !is_one)
+    throw Failure{ErrorCode::kImageUndecodable, "\"units\" of its header differ from axis to axis"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const bool is_said = k < space_units.size() && space_units[k];
+    units.of_space[k] = is_said ? *space_units[k] : of_space.value_or(of_axes.value_or(1.0));
+  }
+  return units;
+}
+
+/// Sets the steps of the axes: by the directions, else by the spacings.
+void ReadSteps(const Fields& fields, const Space& space, const Units& units, std::vector<Axis>& axes) {
+  for (std::size_t i = 0; i < axes.size() && space.dimensions > 0; ++i) {
+    if (!axes[i].is_spatial) continue;
     auto& step = axes[i].direction.emplace();
-    for (std::size_t k = 0; k < std::min<std::size_t>(space_dimensions, 3); ++k)
-      step[k] = unit_mm[k] * vectors[i][k];
+    for (std::size_t k = 0; k < std::min<std::size_t>(space.dimensions, 3); ++k)
+      step[k] = units.of_space[k] * space.vectors[i][k];
     axes[i].spacing = std::sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]);
     if (axes[i].spacing == 0)
       throw Failure{ErrorCode::kImageGeometryInvalid, "one of its space directions has no length"};
   }
-  if (const std::string* place = fields.Find("space origin"); place != nullptr && space_dimensions > 0) {
-    const auto places = ParseVectors(*place, "space origin");
-    if (places.size() != 1 || (!places[0].empty() && places[0].size() != space_dimensions))
-      throw Failure{ErrorCode::kImageUndecodable, "its space origin is no place in its space"};
-    for (std::size_t k = 0; k < std::min<std::size_t>(places[0].size(), 3); ++k)
-      origin[k] = unit_mm[k] * places[0][k];
+  const std::string* spacings = fields.Find("spacings");
+  if (spacings == nullptr || space.dimensions > 0) return;
+  const auto numbers = ParseNumbers(*spacings, "spacings");
+  if (numbers.size() != axes.size())
+    throw Failure{ErrorCode::kImageUndecodable, "dimension and spacings of its header do not agree"};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (axes[i].is_spatial && !std::isnan(numbers[i]))
+      axes[i].spacing = units.of_axes[i] * std::fabs(numbers[i]);
   }
-  return axes;
+}
+
+/// Place of the first sample, in the file's frame [mm].
+std::array<double, 3> ReadOrigin(const Fields& fields, const Space& space, const Units& units) {
+  std::array<double, 3> origin{};
+  const std::string* written = fields.Find("space origin");
+  if (written == nullptr || space.dimensions == 0) return origin;
+  const auto places = ParseVectors(*written, "space origin");
+  if (places.size() != 1 || (!places[0].empty() && places[0].size() != space.dimensions))
+    throw Failure{ErrorCode::kImageUndecodable, "its space origin is no place in its space"};
+  for (std::size_t k = 0; k < std::min<std::size_t>(places[0].size(), 3); ++k)
+    origin[k] = units.of_space[k] * places[0][k];
+  return origin;
 }
 
 /// Directions and place, where the space is the patient's.
-void ReadFrame(const Fields& fields, const std::vector<const Axis*>& spatial, std::size_t space_dimensions,
+void ReadFrame(const Fields& fields, const std::vector<const Axis*>& spatial, const Space& space,
                const std::array<double, 3>& origin, ImageHeader& header) {
   for (std::size_t i = 0; i < spatial.size(); ++i) header.spacing[i] = spatial[i]->spacing;
-  if (space_dimensions < 3) return;
+  if (space.dimensions < 3) return;
   FileFrame frame = FileFrame::kNotSaid;
   const auto signs = FindFrame(fields, frame);
   if (!signs) return;
@@ -483,9 +514,10 @@ void ReadChannels(const Fields& fields, const Axis& axis, std::size_t spatial_ax
 
 /// Sets sides, channels and how the channels are stored.
 void ReadShape(const Fields& fields, const Job& job, ImageHeader& header, StoredSamples& stored) {
-  std::array<double, 3> origin{};
-  std::size_t space_dimensions = 0;
-  std::vector<Axis> axes = ReadAxes(fields, origin, space_dimensions);
+  std::vector<Axis> axes = ReadAxes(fields);
+  const Space space = ReadSpace(fields, axes);
+  const Units units = ReadUnits(fields, axes, space);
+  ReadSteps(fields, space, units, axes);
   std::vector<const Axis*> spatial;
   const Axis* channels = nullptr;
   std::uint64_t run = 1;
@@ -516,7 +548,7 @@ void ReadShape(const Fields& fields, const Job& job, ImageHeader& header, Stored
         std::any_of(axes.begin(), axes.end(), [](const Axis& axis) { return axis.kind == "list"; });
     header.is_layered = has_list ? 1 : 0;
   }
-  ReadFrame(fields, spatial, space_dimensions, origin, header);
+  ReadFrame(fields, spatial, space, ReadOrigin(fields, space, units), header);
 }
 
 /// How the samples are written down.

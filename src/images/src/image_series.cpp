@@ -119,7 +119,9 @@ core::Result<ImageSeries> ImageSeries::Open(const fs::path& path, const ImageSer
                    core::Printable(path.string()) + " does not exist; name the folder or file of the images"};
     }
     if (!file) return file.error();
-    if (SniffKind(file->ReadBegin(348)) == FileKind::kDicom) {
+    // samples of a pair of files may begin like anything
+    const bool is_of_pair = FindHeader(path) != path;
+    if (!is_of_pair && SniffKind(file->ReadBegin(348)) == FileKind::kDicom) {
       const std::string name = path.filename().string();
       status = OpenDicom(path.parent_path(), {&name, 1}, Links::kFollow, options, progress, *content);
     } else {

@@ -111,12 +111,6 @@ fs::path FindOther(const fs::path& path, const std::string& mine, const std::str
   return {};
 }
 
-/// The header of a pair, where a person named the file with its samples.
-fs::path HeaderOf(const fs::path& path) {
-  fs::path header = FindOther(path, ".img", ".hdr");
-  return header.empty() ? path : header;
-}
-
 /// The samples that belong to the header of a pair.
 core::Result<ImportFile> OpenBeside(const fs::path& header) {
   const fs::path samples = FindOther(header, ".hdr", ".img");
@@ -131,8 +125,13 @@ core::Result<ImportFile> OpenBeside(const fs::path& header) {
 
 }  // namespace
 
+fs::path FindHeader(const fs::path& path) {
+  fs::path header = FindOther(path, ".img", ".hdr");
+  return header.empty() ? path : header;
+}
+
 core::Result<DecodedFile> DecodeFile(const std::filesystem::path& typed, Links links, ImportPool& pool) {
-  const fs::path path = HeaderOf(typed);
+  const fs::path path = FindHeader(typed);
   const auto file = ImportFile::Open(path, links);
   if (!file) return file.error();
   auto reply = pool.Probe(*file);
