@@ -509,6 +509,16 @@ TEST_F(OneVolume, FourDimensionsKeepTheirTilt) {
   EXPECT_NEAR(series->Info().slice_mm, 2.0, 1e-3);
 }
 
+// The samples of a pair may begin like anything, here like a DICOM file without its preamble.
+TEST_F(OneVolume, IsFoundByTheNameOfItsSamples) {
+  std::string samples = Samples(8, 6, 4);
+  samples.replace(0, 2, std::string("\x08\0", 2));
+  ASSERT_TRUE(core::WriteFile(folder_.Path() / "a.hdr", NiftiHdr()).ok());
+  const auto series = Open("a.img", samples);
+  ASSERT_TRUE(series.ok()) << series.error().Text();
+  EXPECT_EQ(series->Info().format, "NIfTI");
+}
+
 // Whatever the length, a file that ends too early is a refusal in words.
 TEST(VolumesCutShort, AreRefusedAtEveryLength) {
   const TemporaryFolder folder;
