@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "trocar/simulation/attempt_end.h"
 #include "trocar/training/critical_view.h"
 #include "trocar/training/injury.h"
 #include "trocar/training/operation_error.h"
@@ -66,6 +67,28 @@ std::string CalcOutcome(const simulation::Simulation& simulation) {
   if (const auto& task = simulation.GetScene().task) json["task"] = OutcomeOf(*task, now.task);
   if (const auto result = simulation.GetOperationResult()) json["operation"] = OutcomeOf(*result);
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::optional<OutcomeSummary> ReadOutcome(std::string_view outcome) {
+  using scene::TaskPhase;
+  const auto json = nlohmann::json::parse(outcome, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  const auto field = [](const nlohmann::json& of, const char* key) {
+    const auto found = of.find(key);
+    return found == of.end() ? nlohmann::json() : *found;
+  };
+  OutcomeSummary summary;
+  const auto task = field(json, "task"), operation = field(json, "operation");
+  const auto phase = task.is_object() ? (field(task, "phase") == scene::PhaseName(TaskPhase::kCompleted)
+                                             ? TaskPhase::kCompleted
+                                             : TaskPhase::kRunning)
+                                      : TaskPhase::kNone;
+  const bool is_operation_completed = operation.is_object() && field(operation, "completed") == true;
+  summary.is_completed = simulation::HasCompleted(phase, is_operation_completed);
+  if (task.is_object()) {
+    if (const auto score = field(task, "score"); score.is_number()) summary.score = score.get<double>();
+  }
+  return summary;
 }
 
 }  // namespace trocar::record

@@ -2,7 +2,9 @@
 /// \file outcome.h  What an attempt came to, computed from the simulation alone: the same for a recording and its replay.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "trocar/simulation/simulation.h"
 
@@ -13,5 +15,14 @@ namespace trocar::record {
 /// The same state gives the same text, digit for digit.
 /// \note Allocates.
 std::string CalcOutcome(const simulation::Simulation& simulation);
+
+/// What an outcome says in short.
+struct OutcomeSummary {
+  bool is_completed = false;    ///< as simulation::HasCompleted
+  std::optional<double> score;  ///< of a task, as shown
+};
+/// \param outcome  of CalcOutcome, or what a file says it was
+/// \return nothing where it is no such object
+std::optional<OutcomeSummary> ReadOutcome(std::string_view outcome);
 
 }  // namespace trocar::record
