@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "metric_definitions_text.h"
+#include "trocar/core/assert.h"
 
 namespace trocar::training {
 namespace {
@@ -26,6 +27,7 @@ BetterWhen ReadBetter(const std::string& text) {
   for (const BetterWhen better : {BetterWhen::kHigher, BetterWhen::kLower}) {
     if (text == NameOf(better)) return better;
   }
+  TROCAR_ASSERT(text == NameOf(BetterWhen::kNeither));  // delivered inside of the program
   return BetterWhen::kNeither;
 }
 
