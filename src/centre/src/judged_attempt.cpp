@@ -2,6 +2,7 @@
 #include "trocar/centre/judged_attempt.h"
 
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "trocar/assessment/judge_recording.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/translate.h"
+#include "trocar/core/version.h"
 #include "trocar/record/replay.h"
 #include "trocar/scene/scene.h"
 #include "trocar/store/keep_attempt.h"
@@ -123,6 +125,25 @@ core::Result<store::Attempt> Describe(const record::Recording& recording, const 
   return attempt;
 }
 
+/// Whether the file says what was computed. Of a part of an operation nothing is computed behind the step's last moment.
+void SetMark(const record::Replay& replay, const record::Description& description, store::Attempt& attempt) {
+  store::VerificationMark& mark = attempt.mark;
+  mark.program = core::VersionText();
+  mark.time_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
+                     std::chrono::system_clock::now().time_since_epoch())
+                     .count();
+  if (replay.IsAtEnd() && !replay.IsEndingSame()) {
+    const bool is_of_this_version = description.program == core::VersionText();
+    mark.claim = replay.GetRecording().ending->outcome;
+    mark.state = is_of_this_version ? store::Verification::kRefused : store::Verification::kUnverified;
+    mark.why = is_of_this_version ? store::WhyUnverified::kOtherEnding : store::WhyUnverified::kOtherVersion;
+  } else if (description.first_tick > 0) {
+    mark.why = store::WhyUnverified::kSavedState;
+  } else {
+    mark.state = store::Verification::kVerified, mark.why = store::WhyUnverified::kNone;
+  }
+}
+
 }  // namespace
 
 core::Result<store::Attempt> DescribeRecording(const fs::path& path, const std::string& person,
@@ -172,6 +193,7 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
     if (!found.ok()) return found.error();
     proficiency = std::move(*found);
   }
+  SetMark(*replay, description, judged.attempt);
   judged.attempt.metrics = result.metrics.values;
   judged.attempt.is_completed = result.is_completed;
   judged.attempt.score = played->trace.outcome.score;
@@ -189,6 +211,7 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
   input.facts = report::DescribeAttempt(description, scene.task ? scene.task->name : scene.name);
   input.facts.person = settings.person;
   input.facts.recording = path.filename().string();
+  input.facts.is_as_recorded = judged.attempt.mark.claim.empty();
   if (scene.task && scene.task->reference_points > 0) input.facts.best_score = scene.task->best_score;
   input.references = references;
   input.advice = advice;

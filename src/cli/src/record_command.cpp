@@ -46,7 +46,8 @@ ordered_json InfoJson(const Recording& recording) {
                        {"finished", recording.ending.has_value()},
                        {"events", ordered_json::array()},
                        {"marks", ordered_json::array()},
-                       {"outcome", nullptr}};
+                       {"outcome", nullptr},
+                       {"outcome_verified", false}};
   if (!d.branched_from.empty()) {
     json["branched"] = {{"from", d.branched_from},
                         {"id", core::HashText(d.branched_id)},

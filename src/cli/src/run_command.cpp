@@ -4,9 +4,12 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <string>
 #include <vector>
@@ -125,6 +128,23 @@ int ParseAndRun(int argc, char** argv) {
   return outcome.has_finding ? kExitError : kExitGood;
 }
 
+/// What was printed and did not arrive is no success, whichever command printed it.
+int CheckOutput(int exit_status) {
+  errno = 0;
+  const bool is_flushed = std::fflush(stdout) == 0;
+  const int why = errno;
+  std::cout.flush();
+  if (is_flushed && std::ferror(stdout) == 0 && std::cout.good()) return exit_status;
+  std::clearerr(stdout);
+  std::cout.clear();
+  const int failed =
+      Fail({core::ErrorCode::kFileUnwritable,
+            "standard output" + (why == 0 ? std::string() : std::string(": ") + std::strerror(why)) +
+                "; not all of the output was written: free space, or write it elsewhere"},
+           kExitError);
+  return exit_status == kExitGood ? failed : exit_status;
+}
+
 /// Without a conversion that would need memory.
 constexpr const char* kNoMemory =
     "trocar: E-SIM-005 the system refused memory; close other programs, raise the limit (ulimit -v), or ask "
@@ -147,7 +167,27 @@ constexpr const char* kNoMemory =
   std::abort();
 }
 
+void ListBelow(const CLI::App& app, std::vector<std::string>& words,
+               std::vector<std::vector<std::string>>& all) {
+  all.push_back(words);
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    words.push_back(command->get_name());
+    ListBelow(*command, words, all);
+    words.pop_back();
+  }
+}
+
 }  // namespace
+
+std::vector<std::vector<std::string>> ListCommands() {
+  CLI::App app(kDescription, "trocar");
+  Outcome outcome;
+  AddCommands(app, outcome);
+  std::vector<std::string> words;
+  std::vector<std::vector<std::string>> all;
+  ListBelow(app, words, all);
+  return all;
+}
 
 void ListHelpTexts(const TextVisitor& visit) {
   CLI::App app(kDescription, "trocar");
@@ -162,7 +202,7 @@ int RunCommand(int argc, char** argv) {
   core::UseLanguage(core::FindLocaleFolder());
   // the last fence: nothing below should throw, and if memory ends the person still gets a line
   try {
-    return ParseAndRun(argc, argv);
+    return CheckOutput(ParseAndRun(argc, argv));
   } catch (const std::bad_alloc&) {
     std::fputs(kNoMemory, stderr);
     return kExitError;

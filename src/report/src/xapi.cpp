@@ -153,7 +153,9 @@ core::Status WriteSynced(const fs::path& path, const std::string& content) {
   std::error_code failure;
   const fs::path folder = path.parent_path();
   // a new folder's own entry lies in its parent
-  if (fs::create_directories(folder, failure) && folder.has_parent_path()) {
+  const bool is_new = !fs::exists(folder, failure);
+  failure = core::MakeFolders(folder);
+  if (is_new && folder.has_parent_path()) {
     if (auto status = SyncPath(folder.parent_path(), O_RDONLY | O_DIRECTORY); !status.ok()) return status;
   }
   const fs::path part = path.string() + ".part";
@@ -212,6 +214,11 @@ core::Result<std::vector<XapiStatement>> MakeStatements(const AttemptReport& rep
     return core::Error{
         core::ErrorCode::kUsage,
         "the accounts' home page must be an address such as https://training.hospital.example"};
+  if (facts.is_as_recorded == false)
+    return core::Error{
+        core::ErrorCode::kRecordingInvalid,
+        "the recording's file claims another outcome than its replay comes to, and no statement "
+        "is made of it; trocar replay --verify shows both"};
   const std::string attempt = settings.home_page + '\n' + facts.person + '\n' + facts.task_key + '\n' +
                               facts.level + '\n' + std::to_string(facts.seed) + '\n' + facts.started + '\n' +
                               facts.recording;
@@ -286,6 +293,15 @@ core::Result<std::size_t> XapiQueue::Erase(const std::string& pseudonym) {
   std::size_t count = 0;
   std::error_code failure;
   for (const fs::path& folder : {folder_, folder_ / "refused"}) {
+    // what a program that was killed left half written
+    for (const auto& entry : fs::directory_iterator(folder, failure)) {
+      if (entry.path().extension() != ".part") continue;
+      const auto text = core::ReadFile(entry.path(), kMostBytes);
+      if (text.ok() && text->find(pseudonym) == std::string::npos) continue;
+      fs::remove(entry.path(), failure);
+      if (failure) return Unwritable(entry.path());
+      ++count;
+    }
     for (const fs::path& path : ListFiles(folder)) {
       const auto text = core::ReadFile(path, kMostBytes);
       if (!text.ok()) return text.error();

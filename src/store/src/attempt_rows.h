@@ -10,8 +10,14 @@
 
 namespace trocar::store {
 
+/// Which attempts count: as VerificationMark::Counts, and completed.
+#define TROCAR_COUNTS \
+  "attempt.completed = 1 AND attempt.verification IN ('verified', 'recorded_here', 'accepted')"
+
 /// What AddAttempt refuses. \return kStoreInvalid
 core::Status CheckAttempt(const Attempt& attempt);
+/// Whether the store has it as somebody else's, or as nobody's where it is somebody's.
+core::Result<bool> IsAnothers(Database& database, const Attempt& attempt);
 /// The metrics in the order of their key, with the score and the length.
 std::vector<training::MetricValue> ListMetrics(const Attempt& attempt);
 
