@@ -75,6 +75,10 @@ std::vector<FieldMeaning> FixedFields() {
       {"attempt.player", "who or what moved the hands", "", own},
       {"attempt.program", "version of Trocar", "", own},
       {"attempt.recording", "file name of the recording", "", own},
+      {"attempt.as_recorded",
+       "whether the replay came to the outcome that the recording's file says; null where it was not read "
+       "from a file",
+       "", own},
       {"outcome.ending",
        "\"completed\", \"time_over\", \"error\" (one that ends the task), \"left\", or \"no_task\"", "", own},
       {"outcome.completed", "whether the task or operation was brought to its end", "", own},
