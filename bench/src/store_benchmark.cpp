@@ -57,6 +57,8 @@ store::Attempt MakeAttempt(int number, const std::vector<std::string>& trainees,
   attempt.outcome = R"({"seconds":60,"task":{"phase":"completed","score":50}})";
   attempt.recording = "/home/trocar/recordings/" + attempt.recording_id + ".trocar";
   attempt.program = "0.1.0";
+  attempt.mark.state = store::Verification::kRecordedHere;
+  attempt.mark.why = store::WhyUnverified::kNone;
   attempt.metrics = {{"path_length", "left", "", static_cast<double>(random() % 4000) / 1000, ""},
                      {"path_length", "right", "", static_cast<double>(random() % 4000) / 1000, ""}};
   return attempt;

@@ -19,6 +19,7 @@
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/clock.h"
+#include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
 #include "trocar/record/trace.h"
@@ -173,8 +174,10 @@ json ToJson(const StudyAttempt& attempt) {
 }
 
 std::optional<StudyAttempt> FromJson(const std::string& line) {
-  const json read = json::parse(line, nullptr, false);
-  if (!read.is_object() || !read.contains("values")) return std::nullopt;  // cut where the study was stopped
+  const auto parsed = core::ParseJson<json>(line, "attempts.jsonl", core::kSmallJson);
+  if (!parsed.ok() || !parsed->is_object() || !parsed->contains("values"))
+    return std::nullopt;  // cut where the study was stopped
+  const json& read = *parsed;
   try {
     StudyAttempt attempt{read.at("task"),   read.at("group"), read.at("person"),
                          read.at("repeat"), read.at("seed"),  read.value("patient", 0)};

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "guard.h"
 #include "trocar/core/result.h"
 #include "trocar/math/pose.h"
 

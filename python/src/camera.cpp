@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "forks.h"
 #include "trocar/view/labels.h"
 
 namespace trocar::python {
@@ -11,54 +12,54 @@ namespace trocar::python {
 core::Result<std::unique_ptr<Camera>> Camera::Make(int width, int height) {
   if (width < 8 || width > 4096 || height < 8 || height > 4096)
     return core::Error{core::ErrorCode::kUsage, "a picture has 8 to 4096 pixels a side"};
+  ExpectThreadsOfLibraries();
   auto context = render::OffscreenContext::Make();
   if (!context) return context.error();
   auto target = render::OffscreenTarget::Make(width, height);
   if (!target) return target.error();
   context->Release();
-  return std::unique_ptr<Camera>(new Camera(std::move(*context), std::move(*target)));
+  return std::unique_ptr<Camera>(
+      new Camera(std::make_unique<Graphics>(std::move(*context), std::move(*target), std::nullopt)));
 }
 
-Camera::Camera(render::OffscreenContext context, render::OffscreenTarget target)
-    : context_(std::move(context)), target_(std::move(target)) {}
-
 Camera::~Camera() {
-  if (!context_ || !context_->MakeCurrent().ok()) return;
-  view_.reset();
-  target_.reset();
+  // without a context nothing of it can be taken down, in a fork for example: its memory is left
+  if (!graphics_->context.MakeCurrent().ok()) static_cast<void>(graphics_.release());
 }
 
 template <typename Work>
 core::Status Camera::InContext(const Work& work) {
-  if (const auto current = context_->MakeCurrent(); !current) return current;
+  if (const auto current = graphics_->context.MakeCurrent(); !current) return current;
   const core::Status done = work();
-  context_->Release();
+  graphics_->context.Release();
   return done;
 }
 
 core::Status Camera::Show(const simulation::Simulation& simulation) {
-  if (!view_ || scene_ != &simulation.GetScene() || model_ != simulation.ModelFingerprint()) {
-    view_.reset();
+  std::optional<view::LaparoscopeView>& view = graphics_->view;
+  if (!view || scene_ != &simulation.GetScene() || model_ != simulation.ModelFingerprint()) {
+    view.reset();
     auto made = view::LaparoscopeView::Make(simulation.GetScene(), simulation.Surfaces(),
                                             simulation.GetSnapshot(), simulation.Strands());
     if (!made) return made.error();
-    view_.emplace(std::move(*made));
+    view.emplace(std::move(*made));
     // exposure control remembers earlier pictures: here a picture is a function of the state alone
-    view_->SetOptions({.has_force_arrows = false, .has_automatic_exposure = false});
+    view->SetOptions({.has_force_arrows = false, .has_automatic_exposure = false});
     scene_ = &simulation.GetScene();
     model_ = simulation.ModelFingerprint();
   }
-  view_->Update(simulation.GetSnapshot());
-  focal_length_ = view_->FocalLength(target_->Height());
+  view->Update(simulation.GetSnapshot());
+  focal_length_ = view->FocalLength(graphics_->target.Height());
   return {};
 }
 
 core::Status Camera::Draw(const simulation::Simulation& simulation, render::Image& image) {
   return InContext([&]() -> core::Status {
     if (const auto shown = Show(simulation); !shown) return shown;
-    target_->Bind();
-    view_->Draw(target_->Width(), target_->Height());
-    target_->Read(image);
+    render::OffscreenTarget& target = graphics_->target;
+    target.Bind();
+    graphics_->view->Draw(target.Width(), target.Height());
+    target.Read(image);
     return {};
   });
 }
@@ -67,8 +68,9 @@ core::Status Camera::LookAt(const simulation::Simulation& simulation, bool has_f
                             render::GeometryPicture& picture) {
   return InContext([&]() -> core::Status {
     if (const auto shown = Show(simulation); !shown) return shown;
-    return has_flow ? view_->DrawGeometryAndFlow(target_->Width(), target_->Height(), picture)
-                    : view_->DrawGeometry(target_->Width(), target_->Height(), picture);
+    const int width = graphics_->target.Width(), height = graphics_->target.Height();
+    return has_flow ? graphics_->view->DrawGeometryAndFlow(width, height, picture)
+                    : graphics_->view->DrawGeometry(width, height, picture);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "trocar/environment/environment.h"
@@ -33,15 +34,19 @@ class Camera {
   double FocalLength() const { return focal_length_; }  ///< of the last picture [pixels]
 
  private:
-  Camera(render::OffscreenContext context, render::OffscreenTarget target);
+  /// What needs the context to be current where it goes.
+  struct Graphics {
+    render::OffscreenContext context;
+    render::OffscreenTarget target;
+    std::optional<view::LaparoscopeView> view;
+  };
+  explicit Camera(std::unique_ptr<Graphics> graphics) : graphics_(std::move(graphics)) {}
   template <typename Work>
   core::Status InContext(const Work& work);
   core::Status Show(const simulation::Simulation& simulation);
 
-  std::optional<render::OffscreenContext> context_;
-  std::optional<render::OffscreenTarget> target_;
-  std::optional<view::LaparoscopeView> view_;
-  const scene::Scene* scene_ = nullptr;  // that view_ is of
+  std::unique_ptr<Graphics> graphics_;
+  const scene::Scene* scene_ = nullptr;  // that the view is of
   std::uint64_t model_ = 0;
   double focal_length_ = 0;
 };

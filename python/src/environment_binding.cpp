@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
-#include <map>
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "attempt.h"
 #include "binding.h"
 #include "camera.h"
+#include "running.h"
 #include "scene_source.h"
 #include "trocar/agent/taking_over.h"
 #include "trocar/core/state_hash.h"
@@ -36,9 +38,10 @@ std::span<const std::int32_t> View(const Ids& ids) {
 }
 
 /// Weights by name over the usual ones.
-environment::Features ReadWeights(const std::map<std::string, double>& named) {
+environment::Features ReadWeights(const py::dict& named) {
   environment::Features weights = environment::DefaultWeights();
-  for (const auto& [name, weight] : named) {
+  for (const auto& [key, weight] : ToPlain(named, "weights")) {
+    const std::string name = py::str(key);
     std::size_t i = 0;
     while (i < kFeatureCount && environment::NameOf(static_cast<Feature>(i)) != name) ++i;
     if (i == kFeatureCount) {
@@ -48,7 +51,11 @@ environment::Features ReadWeights(const std::map<std::string, double>& named) {
       throw Failure(
           {core::ErrorCode::kUnknownName, "a reward has no feature \"" + name + "\"; there are " + known});
     }
-    weights[i] = weight;
+    if (!py::isinstance<py::float_>(weight) && !py::isinstance<py::int_>(weight)) {
+      throw Failure({core::ErrorCode::kUsage,
+                     "weights." + name + " is " + std::string(py::repr(weight)) + "; a weight is a number"});
+    }
+    weights[i] = weight.cast<double>();
   }
   return weights;
 }
@@ -56,9 +63,8 @@ environment::Features ReadWeights(const std::map<std::string, double>& named) {
 std::shared_ptr<EnvironmentModel> MakeModel(const py::object& task, const std::string& level,
                                             const py::object& patient, std::uint64_t seed, int layouts,
                                             const std::string& actions, double actions_per_second,
-                                            double most_seconds, bool moves_camera,
-                                            const std::map<std::string, double>& weights,
-                                            const std::string& folder) {
+                                            double most_seconds, bool moves_camera, const py::dict& weights,
+                                            const std::filesystem::path& folder) {
   const auto kind = environment::FindActionKind(actions);
   if (!kind) {
     throw Failure({core::ErrorCode::kUnknownName,
@@ -66,10 +72,11 @@ std::shared_ptr<EnvironmentModel> MakeModel(const py::object& task, const std::s
   }
   const SceneSource source = ReadSceneSource(task, folder);
   PatientSource given(patient);
+  const environment::Features features = ReadWeights(weights);
   const py::gil_scoped_release release;
   auto model = Take(
       EnvironmentModel::Make({source.name, level, given.Folder(), seed, layouts, *kind, actions_per_second,
-                              most_seconds, moves_camera, ReadWeights(weights), source.document}));
+                              most_seconds, moves_camera, features, source.document}));
   // layouts are read when they are asked for, from the patient's folder
   EnvironmentModel* made = model.get();
   return {made, [held = std::move(model), given = std::move(given)](EnvironmentModel*) {}};
@@ -101,31 +108,22 @@ py::tuple DescribeOutcome(const Outcome& outcome) {
                         DescribeFeatures(outcome.features));
 }
 
-/// What the hands do in the environment from now on, each episode an attempt of its own.
-std::shared_ptr<Attempt> CollectAttempt(Environment& environment) {
-  auto attempt = std::make_shared<Attempt>(environment.GetSimulation());
-  environment.SetTickObserver([attempt](const simulation::Simulation& simulation, const scene::Input* input) {
-    if (input == nullptr) {
-      attempt->Begin(simulation);
-    } else {
-      attempt->Add(simulation, *input);
-    }
-  });
-  return attempt;
-}
-
 /// Goes on from where hands and picture are: at first where an episode begins.
-std::unique_ptr<agent::Surgeon> MakeSurgeon(const Environment& environment, const std::string& name,
+std::unique_ptr<agent::Surgeon> MakeSurgeon(const RunningEnvironment& running, const std::string& name,
                                             std::uint64_t seed) {
-  const simulation::Simulation& simulation = environment.GetSimulation();
+  const simulation::Simulation& simulation = running.Simulation();
   return Take(agent::MakeSurgeonTakingOver(name, simulation.GetScene(), simulation.GetSnapshot(), seed));
 }
+
+}  // namespace
 
 /// A pool with what is drawn of it.
 struct DrawnPool {
   std::shared_ptr<PoolPictures> pictures;  // also of the pool's observer; empty where states are enough
   std::unique_ptr<Pool> pool;
 };
+
+namespace {
 
 environment::Autoreset FindAutoreset(const std::string& name) {
   if (name == "NextStep") return environment::Autoreset::kNextStep;
@@ -200,8 +198,8 @@ void ViewPictures(const PoolPictures& pictures, py::ssize_t count, const py::obj
   view("final_", pictures.Final());
 }
 
-py::dict ViewPool(const py::object& self) {
-  const auto& drawn = self.cast<const DrawnPool&>();
+py::dict ViewPool(const DrawnPool& drawn) {
+  const py::object self = py::cast(&drawn);  // the object there is, which the views keep alive
   const auto& rows = drawn.pool->Rows();
   const auto count = static_cast<py::ssize_t>(drawn.pool->Count());
   const auto size = static_cast<py::ssize_t>(drawn.pool->Model().StateSize());
@@ -214,6 +212,7 @@ py::dict ViewPool(const py::object& self) {
   out["truncated"] = ViewRows(rows.truncated, {count}, self);
   out["success"] = ViewRows(rows.success, {count}, self);
   out["was_reset"] = ViewRows(rows.was_reset, {count}, self);
+  out["layout"] = ViewRows(rows.layout, {count}, self);
   if (drawn.pictures) ViewPictures(*drawn.pictures, count, self, out);
   return out;
 }
@@ -228,10 +227,10 @@ void BindPool(py::module_& module) {
       .def_property_readonly("at_work", [](const DrawnPool& p) { return p.pool->AtWork(); })
       .def(
           "reset",
-          [](DrawnPool& p, const Ids& ids, std::optional<std::uint64_t> seed) {
-            Check(p.pool->Reset(View(ids), seed));
+          [](DrawnPool& p, const Ids& ids, const std::vector<std::optional<std::uint64_t>>& seeds) {
+            Check(p.pool->ResetEach(View(ids), seeds));
           },
-          py::arg("ids"), py::arg("seed"))
+          py::arg("ids"), py::arg("seeds"))
       .def(
           "send",
           [](DrawnPool& p, const Row& actions, const Ids& ids) {
@@ -253,6 +252,76 @@ void BindPool(py::module_& module) {
            "Views of the pool's own rows; row i is written while environment i is at work.");
 }
 
+void BindRunningEnvironment(py::module_& module) {
+  py::class_<RunningEnvironment>(module, "Environment", "One running environment; trocar.make wraps it.")
+      .def(py::init([](std::shared_ptr<EnvironmentModel> model, bool metrics) {
+             const py::gil_scoped_release release;
+             return std::make_unique<RunningEnvironment>(Take(Environment::Make(std::move(model))), metrics);
+           }),
+           py::arg("model"), py::arg("metrics") = false)
+      .def(
+          "reset",
+          [](RunningEnvironment& r, std::optional<std::uint64_t> seed) {
+            const py::gil_scoped_release release;
+            Check(r.environment.Reset(seed));
+          },
+          py::arg("seed"))
+      .def(
+          "step",
+          [](RunningEnvironment& r, const Row& action) {
+            // a copy, because the array may be another thread's as well
+            const std::vector<double> numbers(action.data(), action.data() + action.size());
+            Outcome outcome;
+            {
+              const py::gil_scoped_release release;
+              outcome = Take(r.environment.Step(numbers));
+            }
+            return DescribeOutcome(outcome);
+          },
+          py::arg("action"))
+      .def("surgeon", &MakeSurgeon, py::arg("name"), py::arg("seed") = 1)
+      .def(
+          "step_by",
+          [](RunningEnvironment& r, agent::Surgeon& surgeon, py::array_t<double, py::array::c_style> action) {
+            Environment& e = r.environment;
+            if (static_cast<std::size_t>(action.size()) != e.ActionSize())
+              throw Failure(
+                  {core::ErrorCode::kUsage, "an action has " + std::to_string(e.ActionSize()) + " numbers"});
+            std::vector<double> written(e.ActionSize());
+            Outcome outcome;
+            {
+              const py::gil_scoped_release release;
+              outcome = Take(
+                  e.StepBy([&](const simulation::Snapshot& seen) { return surgeon.Act(seen); }, written));
+            }
+            std::copy(written.begin(), written.end(), action.mutable_data());
+            return DescribeOutcome(outcome);
+          },
+          py::arg("surgeon"), py::arg("action").noconvert())
+      .def(
+          "observe",
+          [](const RunningEnvironment& r, py::array_t<float, py::array::c_style> state) {
+            const Environment& e = r.environment;
+            if (static_cast<std::size_t>(state.size()) != e.StateSize())
+              throw Failure(
+                  {core::ErrorCode::kUsage, "a state has " + std::to_string(e.StateSize()) + " numbers"});
+            e.Observe({state.mutable_data(), static_cast<std::size_t>(state.size())});
+          },
+          py::arg("state").noconvert())
+      .def("metrics",
+           [](const RunningEnvironment& r) {
+             if (r.attempt == nullptr) {
+               throw Failure({core::ErrorCode::kEnvironmentState,
+                              "the metrics are not collected; make the environment with metrics=True"});
+             }
+             return r.attempt->Describe();
+           })
+      .def_property_readonly("layout", [](const RunningEnvironment& r) { return r.environment.Layout(); })
+      .def_property_readonly("tick",
+                             [](const RunningEnvironment& r) { return r.Simulation().GetSnapshot().tick; })
+      .def("hash", [](const RunningEnvironment& r) { return core::HashText(r.Simulation().Hash()); });
+}
+
 }  // namespace
 
 void BindEnvironment(py::module_& module) {
@@ -266,8 +335,7 @@ void BindEnvironment(py::module_& module) {
       .def(py::init(&MakeModel), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
            py::arg("patient") = "", py::arg("seed") = 1, py::arg("layouts") = 1,
            py::arg("actions") = "joints", py::arg("actions_per_second") = 10.0, py::arg("most_seconds") = 0.0,
-           py::arg("moves_camera") = false, py::arg("weights") = std::map<std::string, double>(),
-           py::arg("folder") = "")
+           py::arg("moves_camera") = false, py::arg("weights") = py::dict(), py::arg("folder") = "")
       .def_property_readonly("action_fields",
                              [](const EnvironmentModel& m) { return DescribeFields(m.ActionFields()); })
       .def_property_readonly("state_fields",
@@ -279,59 +347,7 @@ void BindEnvironment(py::module_& module) {
                              [](const EnvironmentModel& m) { return m.Settings().most_seconds; })
       .def_property_readonly("moves_camera",
                              [](const EnvironmentModel& m) { return m.Settings().moves_camera; });
-  py::class_<Attempt, std::shared_ptr<Attempt>>(module, "Attempt", "The episode of an environment so far.")
-      .def(py::init(&CollectAttempt), py::arg("environment"))
-      .def("metrics", &Attempt::Describe);
-  py::class_<Environment>(module, "Environment", "One running environment; trocar.make wraps it.")
-      .def(py::init([](std::shared_ptr<EnvironmentModel> model) {
-             const py::gil_scoped_release release;
-             return std::make_unique<Environment>(Take(Environment::Make(std::move(model))));
-           }),
-           py::arg("model"))
-      .def(
-          "reset", [](Environment& e, std::optional<std::uint64_t> seed) { Check(e.Reset(seed)); },
-          py::arg("seed"), py::call_guard<py::gil_scoped_release>())
-      .def(
-          "step",
-          [](Environment& e, const Row& action) {
-            Outcome outcome;
-            {
-              py::gil_scoped_release release;
-              outcome = Take(e.Step(View(action)));
-            }
-            return DescribeOutcome(outcome);
-          },
-          py::arg("action"))
-      .def("surgeon", &MakeSurgeon, py::arg("name"), py::arg("seed") = 1)
-      .def(
-          "step_by",
-          [](Environment& e, agent::Surgeon& surgeon, py::array_t<double, py::array::c_style> action) {
-            if (static_cast<std::size_t>(action.size()) != e.ActionSize())
-              throw Failure(
-                  {core::ErrorCode::kUsage, "an action has " + std::to_string(e.ActionSize()) + " numbers"});
-            const std::span<double> written(action.mutable_data(), e.ActionSize());
-            Outcome outcome;
-            {
-              py::gil_scoped_release release;
-              outcome = Take(
-                  e.StepBy([&](const simulation::Snapshot& seen) { return surgeon.Act(seen); }, written));
-            }
-            return DescribeOutcome(outcome);
-          },
-          py::arg("surgeon"), py::arg("action").noconvert())
-      .def(
-          "observe",
-          [](const Environment& e, py::array_t<float, py::array::c_style> state) {
-            if (static_cast<std::size_t>(state.size()) != e.StateSize())
-              throw Failure(
-                  {core::ErrorCode::kUsage, "a state has " + std::to_string(e.StateSize()) + " numbers"});
-            e.Observe({state.mutable_data(), static_cast<std::size_t>(state.size())});
-          },
-          py::arg("state").noconvert())
-      .def_property_readonly("layout", &Environment::Layout)
-      .def_property_readonly("tick",
-                             [](const Environment& e) { return e.GetSimulation().GetSnapshot().tick; })
-      .def("hash", [](const Environment& e) { return core::HashText(e.GetSimulation().Hash()); });
+  BindRunningEnvironment(module);
   BindPool(module);
 }
 

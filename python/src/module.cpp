@@ -63,6 +63,7 @@ PYBIND11_MODULE(_trocar, module) {
   module.doc() = "The compiled part of the package trocar.";
   module.attr("__version__") = trocar::core::VersionText();
   trocar::python::BindErrors(module);
+  trocar::python::BindGuard(module);
   trocar::python::BindSimulation(module);
   trocar::python::BindEnvironment(module);
   trocar::python::BindPicture(module);

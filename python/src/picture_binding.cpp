@@ -80,8 +80,8 @@ void BindPicture(py::module_& module) {
           py::arg("simulation"), py::keep_alive<1, 2>(), about)
       .def(
           "draw",
-          [](Camera& camera, const environment::Environment& environment) {
-            return Draw(camera, environment.GetSimulation());
+          [](Camera& camera, const RunningEnvironment& running) {
+            return Draw(camera, running.Simulation());
           },
           py::arg("environment"), py::keep_alive<1, 2>(), about)
       .def(
@@ -92,8 +92,8 @@ void BindPicture(py::module_& module) {
           py::arg("simulation"), py::arg("flow") = false, py::keep_alive<1, 2>(), about_geometry)
       .def(
           "geometry",
-          [](Camera& camera, const environment::Environment& environment, bool flow) {
-            return LookAt(camera, environment.GetSimulation(), flow);
+          [](Camera& camera, const RunningEnvironment& running, bool flow) {
+            return LookAt(camera, running.Simulation(), flow);
           },
           py::arg("environment"), py::arg("flow") = false, py::keep_alive<1, 2>(), about_geometry);
   py::dict classes;

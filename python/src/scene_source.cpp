@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_source.h"
 
+#include <unistd.h>
+
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
@@ -8,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "forks.h"
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/safe_file.h"
@@ -28,8 +31,12 @@ std::optional<std::string> FindPath(const py::object& given) {
 }
 
 /// As on a command line, where truth values are yes and no.
-std::string FormatSetting(const py::handle& value) {
+std::string FormatSetting(const std::string& where, const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "yes" : "no";
+  if (!py::isinstance<py::str>(value) && !py::isinstance<py::int_>(value) &&
+      !py::isinstance<py::float_>(value))
+    throw Failure(Unusable(where + " is " + std::string(py::repr(value)) +
+                           "; it is set to a number, a truth value or a text"));
   return py::str(value);
 }
 
@@ -38,25 +45,27 @@ std::shared_ptr<const fs::path> MakeFolder() {
   std::string name = (fs::temp_directory_path() / "trocar-patient-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
     throw Failure({core::ErrorCode::kFileUnwritable, name + ": a folder for the patient cannot be made"});
-  return {new fs::path(name), [](const fs::path* folder) {
+  // not by children of fork: it is still the parent's
+  return {new fs::path(name), [process = ::getpid()](const fs::path* folder) {
             std::error_code ignored;
-            fs::remove_all(*folder, ignored);
+            if (::getpid() == process) fs::remove_all(*folder, ignored);
             delete folder;
           }};
 }
 
 }  // namespace
 
-SceneSource ReadSceneSource(const py::object& scene, const std::string& folder) {
+py::dict ToPlain(const py::dict& given, const char* name) {
+  return py::module_::import("trocar.plain").attr("plain")(given, name);
+}
+
+SceneSource ReadSceneSource(const py::object& scene, const std::filesystem::path& folder) {
   if (auto path = FindPath(scene)) return {std::move(*path), {}};
   if (!py::isinstance<py::dict>(scene))
     throw Failure(Unusable("a scene is a task's key, \"cholecystectomy\", a file, or a dictionary"));
-  try {
-    const py::object text = py::module_::import("json").attr("dumps")(scene, py::arg("allow_nan") = false);
-    return {(fs::path(folder) / "the dictionary").string(), py::str(text)};
-  } catch (const py::error_already_set& wrong) {
-    throw Failure(Unusable("the dictionary is no JSON: " + std::string(py::str(wrong.value()))));
-  }
+  const py::object text =
+      py::module_::import("json").attr("dumps")(ToPlain(scene, ""), py::arg("allow_nan") = false);
+  return {(folder / "the dictionary").string(), py::str(text)};
 }
 
 core::Result<scene::Scene> FindScene(const SceneSource& source, const scene::TaskChoice& choice) {
@@ -76,19 +85,27 @@ PatientSource::PatientSource(const py::object& patient) {
     throw Failure(Unusable("a patient is a folder, or a dictionary with seed and what to set"));
   std::uint64_t seed = 1;
   std::vector<anatomy::ParameterSetting> settings;
-  for (const auto& [key, value] : py::cast<py::dict>(patient)) {
+  for (const auto& [key, value] : ToPlain(patient, "patient")) {
     const std::string name = py::str(key);
-    if (name == "seed" && py::isinstance<py::int_>(value)) {
-      seed = value.cast<std::uint64_t>();
+    if (name == "seed" && py::isinstance<py::int_>(value) && !py::isinstance<py::bool_>(value)) {
+      seed = PyLong_AsUnsignedLongLong(value.ptr());
+      if (PyErr_Occurred() != nullptr) {
+        PyErr_Clear();
+        throw Failure(Unusable("patient.seed is " + std::string(py::repr(value)) +
+                               "; a seed is a whole number from 0 to 2^64 - 1"));
+      }
     } else if (name == "set" && py::isinstance<py::dict>(value)) {
-      for (const auto& [parameter, wanted] : py::cast<py::dict>(value))
-        settings.emplace_back(py::str(parameter), FormatSetting(wanted));
+      for (const auto& [parameter, wanted] : py::cast<py::dict>(value)) {
+        const std::string where = "patient.set." + std::string(py::str(parameter));
+        settings.emplace_back(py::str(parameter), FormatSetting(where, wanted));
+      }
     } else {
       throw Failure(
           Unusable("a patient's dictionary has a whole number \"seed\" and a dictionary \"set\"; \"" + name +
                    "\" is something else"));
     }
   }
+  ExpectThreadsOfLibraries();
   made_ = MakeFolder();
   folder_ = *made_;
   const py::gil_scoped_release release;

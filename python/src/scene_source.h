@@ -11,6 +11,11 @@
 
 namespace trocar::python {
 
+/// A copy of plain Python values, as files hold them: numpy's numbers, truth values and arrays become Python's.
+/// \param name  of the whole, in messages
+/// \throw trocar.Error that names the field, where something else is in it
+py::dict ToPlain(const py::dict& given, const char* name);
+
 /// A scene's text, or where it stands.
 struct SceneSource {
   std::string
@@ -19,7 +24,7 @@ struct SceneSource {
 };
 /// \param folder  that relative paths of a dictionary start from; the working folder where it is empty
 /// \throw Failure kUsage for something else, and for a dictionary that is no JSON
-SceneSource ReadSceneSource(const py::object& scene, const std::string& folder);
+SceneSource ReadSceneSource(const py::object& scene, const std::filesystem::path& folder);
 
 /// An operation, a task, or a scene to look at.
 core::Result<scene::Scene> FindScene(const SceneSource& source, const scene::TaskChoice& choice);

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "binding.h"
+#include "forks.h"
 #include "running.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/record/input_codec.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/state_file.h"
 
@@ -31,9 +33,10 @@ constexpr std::array<const char*, 4> kCommandNames = {"wait", "retract", "relax"
 
 std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& level, std::uint64_t seed,
                                      const py::object& patient, int threads, bool has_metrics,
-                                     const std::string& folder) {
+                                     const std::filesystem::path& folder) {
   if (threads < 1 || threads > 256)
     throw Failure({core::ErrorCode::kUsage, "a simulation has 1 to 256 threads"});
+  if (threads > 1) ExpectThreadsOfLibraries();
   const SceneSource source = ReadSceneSource(task, folder);
   PatientSource given(patient);
   const py::gil_scoped_release release;
@@ -138,7 +141,22 @@ void BindInput(py::module_& module) {
           "The automatic holder moves the laparoscope.")
       .def(
           "copy", [](const Input& input) { return input; }, "Another one with the same values.")
-      .def("__eq__", [](const Input& a, const Input& b) { return a == b; });
+      .def("__eq__", [](const Input& a, const Input& b) { return a == b; })
+      .def(py::pickle(
+          [](const Input& input) {
+            std::vector<std::byte> bytes;
+            record::InputEncoder().Encode(input, bytes);
+            return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+          },
+          [](const py::bytes& encoded) {
+            const std::string_view view = encoded;
+            std::span bytes = std::as_bytes(std::span(view.data(), view.size()));
+            Input input;
+            if (!record::InputDecoder().Decode(bytes, input) || !bytes.empty())
+              throw Failure(
+                  {core::ErrorCode::kRecordingInvalid, "these bytes are no Input; pickle it again"});
+            return input;
+          }));
   BindPedal<&scene::HandControls::cut>(type, "cut", "(2) yellow pedal of each hand.");
   BindPedal<&scene::HandControls::coagulate>(type, "coagulate", "(2) blue pedal of each hand.");
   BindPedal<&scene::HandControls::rinse>(type, "rinse", "(2) irrigation of each hand.");
@@ -338,11 +356,12 @@ py::list DescribeSurfaces(const Running& running) {
   return out;
 }
 
-/// So many ticks without the GIL; Ctrl-C ends them between two.
+/// So many ticks, without the GIL; Ctrl-C ends them between two.
 /// \param step  false ends them, too \return how many there were
 template <typename Step>
 int RunTicks(int ticks, const Step& step) {
   constexpr int kTicksBetweenLooks = 60;
+  const py::gil_scoped_release release;
   for (int done = 0; done < ticks; ++done) {
     if (!step()) return done;
     if (done % kTicksBetweenLooks != kTicksBetweenLooks - 1) continue;
@@ -353,7 +372,9 @@ int RunTicks(int ticks, const Step& step) {
 }
 
 void BindRunning(py::module_& module) {
-  py::class_<Running>(module, "Simulation", "One running surgery. Not for two threads at a time.")
+  py::class_<Running>(
+      module, "Simulation",
+      "One running surgery. A call that finds another one in the middle of its work fails with E-ENV-002.")
       .def(py::init(&MakeRunning), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
            py::arg("seed") = 1, py::arg("patient") = "", py::arg("threads") = 1, py::arg("metrics") = false,
            py::arg("folder") = "",
@@ -393,8 +414,7 @@ void BindRunning(py::module_& module) {
               return true;
             });
           },
-          py::arg("input"), py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
-          "Goes on by `ticks` ticks with the same input.")
+          py::arg("input"), py::arg("ticks") = 1, "Goes on by `ticks` ticks with the same input.")
       .def(
           "step_script",
           [](Running& r, int ticks) {
@@ -403,15 +423,15 @@ void BindRunning(py::module_& module) {
               return true;
             });
           },
-          py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
-          "Goes on as the scene's own script says.")
+          py::arg("ticks") = 1, "Goes on as the scene's own script says.")
       .def(
           "reset",
           [](Running& r) {
+            const py::gil_scoped_release release;
             r.simulation.Reset();
             r.BeginAttempt();
           },
-          py::call_guard<py::gil_scoped_release>(), "Back to the first tick.")
+          "Back to the first tick.")
       .def("snapshot", &DescribeSnapshot, "What the last tick published, copied: SI units, world frame.")
       .def(
           "positions",
@@ -448,13 +468,13 @@ void BindRunning(py::module_& module) {
           py::arg("state"), "Takes up a saved state of the same model.")
       .def(
           "save_file",
-          [](const Running& r, const std::string& path) {
+          [](const Running& r, const std::filesystem::path& path) {
             Check(simulation::WriteStateFile(path, r.simulation));
           },
           py::arg("path"), "As `trocar simulate --save`.")
       .def(
           "restore_file",
-          [](Running& r, const std::string& path) {
+          [](Running& r, const std::filesystem::path& path) {
             (void)Take(simulation::ReadStateFile(path, r.simulation));
             r.BeginAttempt();
           },
@@ -471,7 +491,7 @@ void BindRunning(py::module_& module) {
               return true;
             });
           },
-          py::arg("surgeon"), py::arg("ticks"), py::call_guard<py::gil_scoped_release>(),
+          py::arg("surgeon"), py::arg("ticks"),
           "Lets a scripted surgeon go on for at most `ticks` ticks; returns how many it took.");
 }
 

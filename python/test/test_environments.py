@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Environments against the published interface, and against bad input."""
+import copy
+import json
 import multiprocessing
+import pickle
 import signal
 import subprocess
 import sys
@@ -69,7 +72,11 @@ class Interface(unittest.TestCase):
             def step(self, action):
                 return super().step(action)[:4]
 
-        for wrong in (Random, Outside, Short):
+        class Unseeded(trocar.Environment):
+            def reset(self, *, seed=None, options=None):
+                return super().reset(options=options)
+
+        for wrong in (Random, Outside, Short, Unseeded):
             with self.subTest(wrong=wrong.__name__), self.assertRaises(AssertionError):
                 trocar.check_env(wrong("peg_transfer"), steps=2)
 
@@ -178,6 +185,121 @@ class Meaning(unittest.TestCase):
             np.testing.assert_array_equal(observations[agent], observation)
             self.assertEqual(rewards[agent], reward)
         self.assertEqual(code_of(lambda: apart.step({"left": parts["left"]})), "E-ENV-001")
+
+
+    def test_infos_say_of_which_environments_they_are(self):
+        pool = trocar.make_vec("peg_transfer", 3, autoreset_mode="SameStep", most_seconds=0.3, layouts=4)
+        infos = pool.reset(seed=[1, 2, 3])[1]
+        self.assertEqual(infos["layout"].tolist(), [trocar.make("peg_transfer", layouts=4).reset(seed=seed)[1]["layout"] for seed in (1, 2, 3)])
+        pool.step(np.zeros((3, 10)))
+        self.assertEqual(pool.reset(options={"reset_mask": np.array([False, True, False])})[1]["_layout"].tolist(), [False, True, False])
+        for _ in range(2):
+            pool.send(np.ones((3, 10)))
+            *_, truncated, infos = pool.recv()
+        # the first and the last have ended now, in their third step; the second was reset after its first
+        self.assertEqual(truncated.tolist(), [True, False, True])
+        for infos_of, keys, has in ((infos, ("env_id", "is_success", "was_reset", "features"), [True] * 3), (infos, ("final_obs", "final_info", "layout"), truncated.tolist()),
+                                    (infos["final_info"], ("is_success", "features"), truncated.tolist())):
+            for key in keys:
+                self.assertEqual(infos_of["_" + key].tolist(), has, key)
+        final = infos["final_info"]
+        np.testing.assert_array_equal(final["features"][truncated], infos["features"][truncated])
+        self.assertFalse(final["features"][1].any())
+        self.assertGreater(final["features"][0][trocar.FEATURES.index("time")], 0)
+        self.assertIsNone(infos["final_obs"][1])
+
+    def test_a_pool_takes_a_seed_for_each(self):
+        pool, other = trocar.make_vec("peg_transfer", 3, layouts=64), trocar.make("peg_transfer", layouts=64)
+        layouts = {seed: other.reset(seed=seed)[1]["layout"] for seed in (1, 5, 9, 10, 11)}
+        for seeds in ([5, 1, 9], (5, 1, 9), np.array([5, 1, 9]), [np.int64(5), np.uint8(1), 9]):
+            self.assertEqual(pool.reset(seed=seeds)[1]["layout"].tolist(), [layouts[seed] for seed in (5, 1, 9)])
+            self.assertEqual(pool.np_random_seed, (5, 1, 9))
+        self.assertEqual(pool.reset(seed=np.int32(9))[1]["layout"].tolist(), [layouts[seed] for seed in (9, 10, 11)])
+        # the second goes on with the row that 10 began
+        other.reset(seed=10)
+        self.assertEqual(pool.reset(seed=[5, None, 5])[1]["layout"].tolist(), [layouts[5], other.reset()[1]["layout"], layouts[5]])
+        self.assertEqual(pool.np_random_seed, (5, 10, 5))
+        for wrong in ([1, 2], [1, 2, 3, 4], [1, -2, 3], [1, 2.5, 3], "abc", -1, 1.5, True, 2 ** 64, [1, "two", 3], {1, 2, 3}, [[1], [2], [3]]):
+            self.assertEqual(code_of(lambda: pool.reset(seed=wrong)), "E-CLI-001", repr(wrong))
+        for wrong in (np.array([True]), np.array([0, 1, 1]), [True, False], "all"):
+            self.assertEqual(code_of(lambda: pool.reset(options={"reset_mask": wrong})), "E-CLI-001", repr(wrong))
+        for wrong in (-1, 1.5, "one", True, [1]):
+            self.assertEqual(code_of(lambda: other.reset(seed=wrong)), "E-CLI-001", repr(wrong))
+
+    def test_random_numbers_are_those_of_the_seed(self):
+        env = trocar.make("peg_transfer")
+        env.reset(seed=7)
+        expected = np.random.Generator(np.random.PCG64(np.random.SeedSequence(7))).random(3)
+        np.testing.assert_array_equal(env.np_random.random(3), expected)
+        self.assertEqual(env.np_random_seed, 7)
+        before = env.np_random
+        env.reset()
+        env.step(np.zeros(10))
+        self.assertTrue(env.np_random is before and env.np_random_seed == 7)
+        env.np_random = np.random.default_rng(3)
+        self.assertEqual((env.np_random.random(), env.np_random_seed), (np.random.default_rng(3).random(), -1))
+        other = trocar.make("peg_transfer")
+        seed = other.np_random_seed  # a new one, that the numbers belong to
+        self.assertEqual(other.np_random.random(), np.random.default_rng(seed).random())
+        pool = trocar.make_vec("peg_transfer", 2)
+        pool.reset(seed=7)
+        np.testing.assert_array_equal(pool.np_random[0].random(3), expected)
+        self.assertEqual(len(pool.np_random), 2)
+
+    def test_agents_do_nothing_after_the_end(self):
+        env = trocar.make_parallel("peg_transfer", most_seconds=0.1)
+        self.assertEqual(code_of(lambda: env.step({})), "E-ENV-002")
+        _, infos = env.reset(seed=1)
+        self.assertIsNot(infos["left"], infos["right"])
+        env.step({agent: np.zeros(5) for agent in env.agents})
+        self.assertEqual((env.agents, code_of(lambda: env.step({}))), ([], "E-ENV-002"))
+
+
+class Copies(unittest.TestCase):
+    ways = staticmethod(lambda: (lambda thing: pickle.loads(pickle.dumps(thing)), copy.copy, copy.deepcopy))
+
+    def test_are_made_of_the_same(self):
+        task = json.loads(trocar.find("lift_and_grasp").read_text())
+        settings = {"folder": str(trocar.find("lift_and_grasp").parent), "seed": 3, "layouts": 2, "actions": "tip", "weights": {"path": np.float32(2)}}
+        for make in (lambda: trocar.make(task, **settings), lambda: trocar.make_vec(task, 2, autoreset_mode="SameStep", **settings),
+                     lambda: trocar.make_parallel(task, **settings), lambda: Renamed("tip")):
+            env = make()
+            env.reset(seed=5)  # a copy does not know of it
+            for again in self.ways():
+                with self.subTest(env=str(env)):
+                    other, new = again(env), make()
+                    self.assertIs(type(other), type(env))
+                    self.assertEqual(code_of(lambda: other.step(self.still(other))), "E-ENV-002")
+                    for seed in (None, 4):
+                        seen, expected = other.reset(seed=seed)[0], new.reset(seed=seed)[0]
+                        step, other_step = other.step(self.still(other)), new.step(self.still(new))
+                        for a, b in ((seen, expected), (step[0], other_step[0]), (step[1], other_step[1])):
+                            np.testing.assert_equal(a, b)
+
+    @staticmethod
+    def still(env):
+        if isinstance(env, trocar.ParallelEnvironment):
+            return {agent: np.zeros(env.action_space(agent).shape) for agent in env.possible_agents}
+        return np.full(env.action_space.shape, 0.5)
+
+    def test_models_too(self):
+        model = trocar.make("lift_and_grasp", actions="discrete", layouts=3).model
+        for again in self.ways():
+            other = again(model)
+            self.assertEqual((other.action_fields, other.state_fields), (model.action_fields, model.state_fields))
+
+    def test_dictionaries_may_change_afterwards(self):
+        task = json.loads(trocar.find("lift_and_grasp").read_text())
+        env = trocar.make(task, folder=str(trocar.find("lift_and_grasp").parent))
+        task.clear()
+        self.assertEqual(pickle.loads(pickle.dumps(env)).task, env.task)
+
+
+class Renamed(trocar.Environment):
+    """Of other arguments than its parent."""
+
+    def __init__(self, kind):
+        super().__init__("lift_and_grasp", actions=kind)
 
 
 class Metrics(unittest.TestCase):
@@ -302,6 +424,22 @@ class BadInput(unittest.TestCase):
         env.reset(seed=1)
         for wrong in (good[:9], np.zeros((2, 5)), np.full(10, np.nan), np.full(10, 1.01), "up", None, [[1], [2, 3]]):
             self.assertEqual(code_of(lambda: env.step(wrong)), "E-ENV-001", repr(wrong))
+        # what single precision makes of 1 at most is cut; beyond that the message has every digit, and the number's name
+        other = trocar.make("peg_transfer")
+        other.reset(seed=1)
+        above = np.full(10, np.nextafter(np.float32(1), np.float32(2)))
+        self.assertGreater(above[0], 1)
+        for sign in (1, -1):
+            self.assertEqual(env.step(sign * above)[1], other.step(np.full(10, sign))[1])
+            self.assertEqual(env.hash(), other.hash())
+        good[3] = 1.00001
+        with self.assertRaises(trocar.Error) as caught:
+            env.step(good.astype(float).round(5))
+        self.assertIn('"left.depth" of the action is 1.00001;', caught.exception.message)
+        pool = trocar.make_vec("peg_transfer", 2)
+        pool.reset(seed=1)
+        pool.step(np.array([above, -above]))
+        self.assertEqual(code_of(lambda: pool.step(np.full((2, 10), 1.00001))), "E-ENV-001")
         discrete = trocar.make("peg_transfer", actions="discrete")
         discrete.reset(seed=1)
         for wrong in ([0, 99], [-1, 0], [0.5, 0]):

@@ -8,10 +8,11 @@
 
 Lengths in metres, angles in radians, forces in newtons, the world frame x to the patient's left, y cranial, z anterior.
 """
-from ._trocar import CLASSES, FEATURES, Camera, Input, Simulation, Surgeon, __version__, default_weights, error_table, find, surgeons, tasks
+from ._trocar import CLASSES, FEATURES, Input, Surgeon, __version__, default_weights, error_table, find, surgeons, tasks
 from .checker import check_env, check_vector_env
 from .environments import Environment, VectorEnvironment, environments, make, make_vec
 from .errors import Error
+from .objects import Camera, Simulation
 from .parallel import ParallelEnvironment, make_parallel
 
 __all__ = [

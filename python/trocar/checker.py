@@ -26,7 +26,8 @@ def _check(holds: bool, what: str) -> None:
 
 def check_env(env: Any, steps: int = 10) -> None:
     """Raises AssertionError with what does not hold; leaves the environment reset."""
-    for name in ("action_space", "observation_space", "metadata", "render_mode", "reset", "step", "render", "close"):
+    for name in ("action_space", "observation_space", "metadata", "render_mode", "spec", "unwrapped", "np_random", "np_random_seed", "reset", "step",
+                 "render", "close"):
         _check(hasattr(env, name), f"the environment has no {name}")
     for space in (env.action_space, env.observation_space):
         _check(space.sample() in space, f"{space} does not hold what it drew")
@@ -40,6 +41,10 @@ def check_env(env: Any, steps: int = 10) -> None:
         _check(isinstance(answer, tuple) and len(answer) == 2, "reset gives (observation, info)")
         _check(answer[0] in env.observation_space, "what reset gives lies outside of observation_space")
         _check(isinstance(answer[1], dict), "the info of reset is no dict")
+        if seed is not None:
+            random = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
+            _check(env.np_random_seed == seed and env.np_random.bit_generator.state == random.bit_generator.state,
+                   "np_random does not begin with the seed of reset")
         return answer[0]
 
     def play(seed):

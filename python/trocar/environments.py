@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _trocar
 from .errors import Error, closed
+from .objects import Camera, EnvironmentModel, Taken, one_at_a_time, seed_of
 from .spaces import Box, Dict, action_space, batch_space
 
 try:
@@ -41,6 +42,12 @@ def _name_of(task: Scene) -> str:
 def environments() -> list[str]:
     """What ``make`` knows: the delivered tasks and the operation."""
     return sorted(_trocar.tasks()) + ["cholecystectomy"]
+
+
+def _random_of(seed: Optional[int]) -> tuple[np.random.Generator, int]:
+    """Gymnasium's row of random numbers of a seed, and the seed; without one, of a new one."""
+    sequence = np.random.SeedSequence(seed)
+    return np.random.Generator(np.random.PCG64(sequence)), sequence.entropy
 
 
 def _as_action(action: Any) -> np.ndarray:
@@ -73,7 +80,8 @@ class _Observation:
         return seen(self.parts[0]) if self.is_one else {part: seen(part) for part in self.parts}
 
 
-class Environment(_Env):
+@one_at_a_time
+class Environment(Taken, _Env):
     """One environment. ``reset`` and ``step`` follow Gymnasium; see docs/python.md for actions, states and rewards.
 
     ``observation`` is "state" ((n,) float32 in SI units; ``state_fields`` names them), "picture" ((height, width, 3) uint8),
@@ -89,10 +97,10 @@ class Environment(_Env):
                  actions: str = "joints", observation: Union[str, Sequence[str]] = "state", picture_size: tuple[int, int] = (84, 84),
                  actions_per_second: float = 10.0, most_seconds: float = 0.0, moves_camera: bool = False,
                  weights: Optional[dict[str, float]] = None, render_mode: Optional[str] = None, metrics: bool = False,
-                 folder: str = "") -> None:
+                 folder: Union[str, "os.PathLike[str]"] = "") -> None:
         if render_mode not in (None, "rgb_array"):
             raise Error("E-SCN-003", f'there is no render_mode "{render_mode}"; choose rgb_array or None')
-        self.model = _trocar.EnvironmentModel(
+        self.model = EnvironmentModel(
             task, level=level, patient=patient, seed=seed, layouts=layouts, actions=actions,
             actions_per_second=actions_per_second, most_seconds=most_seconds, moves_camera=moves_camera,
             weights=weights or {}, folder=folder)
@@ -103,19 +111,31 @@ class Environment(_Env):
         self._seen = _Observation(observation, self.model, picture_size)
         self.observation_space = self._seen.space
         self._size, self._camera = tuple(picture_size), None
-        self._environment: Optional[_trocar.Environment] = _trocar.Environment(self.model)
-        self._attempt = _trocar.Attempt(self._environment) if metrics else None
-        self._np_random = None
+        self._environment: Optional[_trocar.Environment] = _trocar.Environment(self.model, metrics)
+        self._np_random: Optional[np.random.Generator] = None
+        self._np_random_seed: Optional[int] = None
 
     @property
     def unwrapped(self):
         return self
 
     @property
-    def np_random(self):
+    def np_random(self) -> np.random.Generator:
+        """Random numbers for whoever wants some, begun anew by ``reset(seed=...)``. The environment itself uses none of them."""
         if self._np_random is None:
-            self._np_random = np.random.default_rng()
+            self._np_random, self._np_random_seed = _random_of(None)
         return self._np_random
+
+    @np_random.setter
+    def np_random(self, value: np.random.Generator) -> None:
+        self._np_random, self._np_random_seed = value, -1
+
+    @property
+    def np_random_seed(self) -> int:
+        """What ``np_random`` was begun with; -1 where it was set."""
+        if self._np_random_seed is None:
+            self._np_random, self._np_random_seed = _random_of(None)
+        return self._np_random_seed
 
     def _open(self) -> _trocar.Environment:
         if self._environment is None:
@@ -124,12 +144,12 @@ class Environment(_Env):
 
     def _draw(self) -> np.ndarray:
         if self._camera is None:
-            self._camera = _trocar.Camera(*self._size)
+            self._camera = Camera(*self._size)
         return self._camera.draw(self._open())
 
     def _geometry(self) -> dict[str, Any]:
         if self._camera is None:
-            self._camera = _trocar.Camera(*self._size)
+            self._camera = Camera(*self._size)
         seen = self._camera.geometry(self._open())
         # single precision rounds the unit vectors' components beyond 1 at times
         return {"depth": seen["depth"], "masks": seen["classes"], "normals": np.clip(seen["normals"], -1, 1)}
@@ -145,11 +165,10 @@ class Environment(_Env):
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict] = None):
         """Begins an episode. ``seed`` chooses among the layouts; without one the row of episodes goes on."""
-        if seed is not None:
-            if seed < 0:
-                raise Error("E-CLI-001", f"a seed is not negative; this is {seed}")
-            self._np_random = np.random.default_rng(seed)
+        seed = seed_of(seed)
         self._open().reset(seed)
+        if seed is not None:
+            self._np_random, self._np_random_seed = _random_of(seed)
         return self._observe(), {"layout": self._open().layout}
 
     def step(self, action: Any):
@@ -175,17 +194,14 @@ class Environment(_Env):
 
     def metrics(self) -> list[dict[str, Any]]:
         """What the episode came to so far, as ``Simulation.metrics``; of an environment made with ``metrics=True``."""
-        self._open()
-        if self._attempt is None:
-            raise Error("E-ENV-002", "the metrics are not collected; make the environment with metrics=True")
-        return self._attempt.metrics()
+        return self._open().metrics()
 
     def hash(self) -> str:
         """Fingerprint of the simulation's state, as the commands print it."""
         return self._open().hash()
 
     def close(self) -> None:
-        self._environment = self._camera = self._attempt = None
+        self._environment = self._camera = None
 
     def __enter__(self):
         return self
@@ -198,7 +214,8 @@ class Environment(_Env):
         return f"<trocar.Environment {self.task}>"
 
 
-class VectorEnvironment(_VectorEnv):
+@one_at_a_time
+class VectorEnvironment(Taken, _VectorEnv):
     """A pool: many environments of one model, stepped by C++ threads, all states in one array.
 
     ``reset`` and ``step`` follow Gymnasium's ``VectorEnv``. ``send`` and ``recv`` do the same in two parts, for all
@@ -214,9 +231,9 @@ class VectorEnvironment(_VectorEnv):
                  layouts: int = 1, actions: str = "joints", observation: Union[str, Sequence[str]] = "state",
                  picture_size: tuple[int, int] = (84, 84), actions_per_second: float = 10.0, most_seconds: float = 0.0,
                  moves_camera: bool = False, weights: Optional[dict[str, float]] = None, threads: int = 0,
-                 autoreset_mode: Any = "NextStep", copy: bool = True, folder: str = "") -> None:
+                 autoreset_mode: Any = "NextStep", copy: bool = True, folder: Union[str, "os.PathLike[str]"] = "") -> None:
         mode = getattr(autoreset_mode, "value", autoreset_mode)
-        self.model = _trocar.EnvironmentModel(
+        self.model = EnvironmentModel(
             task, level=level, patient=patient, seed=seed, layouts=layouts, actions=actions,
             actions_per_second=actions_per_second, most_seconds=most_seconds, moves_camera=moves_camera,
             weights=weights or {}, folder=folder)
@@ -234,6 +251,25 @@ class VectorEnvironment(_VectorEnv):
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._rows = self._pool.rows()
         self._none = np.empty(0, np.int32)
+        self._random: list[tuple[Optional[np.random.Generator], Optional[int]]] = [(None, None)] * num_envs
+
+    @property
+    def unwrapped(self):
+        return self
+
+    def _all_random(self) -> list[tuple[np.random.Generator, int]]:
+        self._random = [known if known[0] is not None else _random_of(known[1]) for known in self._random]
+        return self._random
+
+    @property
+    def np_random(self) -> tuple[np.random.Generator, ...]:
+        """Of each environment, as of :class:`Environment`."""
+        return tuple(random for random, _ in self._all_random())
+
+    @property
+    def np_random_seed(self) -> tuple[int, ...]:
+        """What each environment's ``np_random`` was begun with."""
+        return tuple(seed for _, seed in self._all_random())
 
     def _open(self) -> _trocar.Pool:
         if self._pool is None:
@@ -249,17 +285,38 @@ class VectorEnvironment(_VectorEnv):
     def _observe(self, ids: Optional[np.ndarray], prefix: str = ""):
         return self._seen.pack(lambda part: self._take(prefix + part, ids))
 
-    def reset(self, *, seed: Optional[int] = None, options: Optional[dict] = None):
-        """Environment i gets ``seed`` + i. ``options={"reset_mask": mask}`` resets only those of the mask."""
-        mask = (options or {}).get("reset_mask")
-        ids = self._none if mask is None else np.flatnonzero(np.asarray(mask)).astype(np.int32)
-        count = self.num_envs if mask is None else len(ids)
-        if seed is not None and (not np.isscalar(seed) or seed < 0):
-            raise Error("E-CLI-001", "a pool's seed is one number, not negative; environment i gets it plus i")
-        if count:
-            self._open().reset(ids, seed)
-            self._open().receive(count)
-        return self._observe(None), {}
+    def _seeds(self, seed: Any) -> list[Optional[int]]:
+        """One for each environment."""
+        if seed is None or np.ndim(seed) == 0 and not isinstance(seed, (str, bytes, dict, set)):
+            first = seed_of(seed)
+            return [None if first is None else (first + i) % 2 ** 64 for i in range(self.num_envs)]
+        if isinstance(seed, (str, bytes, dict, set)) or len(seed) != self.num_envs:
+            raise Error("E-CLI-001", f"the seeds are {seed!r}; a pool takes one number, which environment i gets plus i, or a list "
+                        f"of {self.num_envs}, None for those that go on")
+        return [seed_of(each, f"the seed of environment {i}") for i, each in enumerate(seed)]
+
+    def reset(self, *, seed: Union[int, Sequence[Optional[int]], None] = None, options: Optional[dict] = None):
+        """Environment i gets ``seed`` + i, or ``seed[i]`` of a list; where that is None its row of episodes goes on.
+
+        ``options={"reset_mask": mask}`` resets only those of the mask.
+        """
+        seeds, mask = self._seeds(seed), (options or {}).get("reset_mask")
+        ids = np.arange(self.num_envs, dtype=np.int32)
+        if mask is not None:
+            mask = np.asarray(mask)
+            if mask.shape != (self.num_envs,) or mask.dtype != bool:
+                raise Error("E-CLI-001", f"the reset_mask has the shape {mask.shape} and holds {mask.dtype}; give {self.num_envs} truth values")
+            ids = ids[mask]
+        pool = self._open()
+        if len(ids):
+            pool.reset(ids, [seeds[i] for i in ids])
+            pool.receive(len(ids))
+        for i in ids:
+            if seeds[i] is not None:
+                self._random[i] = (None, seeds[i])
+        begun = np.zeros(self.num_envs, bool)
+        begun[ids] = True
+        return self._observe(None), _masked({"layout": self._rows["layout"].copy()}, begun)
 
     def send(self, actions: Any, env_ids: Optional[Sequence[int]] = None) -> None:
         """Hands actions (len(env_ids), action_size) to the threads and returns; all environments without ``env_ids``."""
@@ -282,24 +339,27 @@ class VectorEnvironment(_VectorEnv):
         ids = pool.receive(pool.at_work if batch_size is None else batch_size)
         rows = None if len(ids) == self.num_envs else ids
         terminated, truncated = (self._take(name, rows).astype(bool) for name in ("terminated", "truncated"))
-        infos: dict[str, Any] = {
-            "env_id": ids,
-            "is_success": self._take("success", rows).astype(bool),
-            "was_reset": self._take("was_reset", rows).astype(bool),
-            "features": self._take("features", rows),
-        }
+        success, features = self._take("success", rows).astype(bool), self._take("features", rows)
+        begun = self._take("was_reset", rows).astype(bool)
+        infos = _masked({"env_id": ids, "is_success": success, "was_reset": begun, "features": features}, np.ones(len(ids), bool))
+        if begun.any():
+            infos.update(_masked({"layout": self._take("layout", rows).copy()}, begun))
         if self.metadata["autoreset_mode"] == _AutoresetMode("SameStep"):
             ended = terminated | truncated
             if ended.any():
                 final = np.full(len(ids), None, dtype=object)
                 for i in np.flatnonzero(ended):
                     final[i] = self._seen.pack(lambda part: self._rows["final_" + part][ids[i]].copy())
-                infos["final_obs"], infos["_final_obs"] = final, ended
+                infos.update(_masked({"final_obs": final, "final_info": _masked(
+                    {"is_success": success & ended, "features": np.where(ended[:, None], features, 0.0)}, ended)}, ended))
         return self._observe(rows), self._take("reward", rows), terminated, truncated, infos
 
     def step(self, actions: Any):
         self.send(actions)
         return self.recv()
+
+    def render(self) -> None:
+        """Nothing: pictures are observations here."""
 
     def close(self, **_: Any) -> None:
         self._pool = None
@@ -315,6 +375,11 @@ class VectorEnvironment(_VectorEnv):
 
     def __str__(self) -> str:
         return f"<trocar.VectorEnvironment {self.task} x {self.num_envs}>"
+
+
+def _masked(values: dict[str, Any], has: np.ndarray) -> dict[str, Any]:
+    """As Gymnasium has infos: beside each key one with an underscore, which says of which environments it is."""
+    return {**values, **{f"_{name}": has.copy() for name in values}}
 
 
 def make(task: Scene, **settings: Any) -> Environment:

@@ -1,15 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of Trocar as exceptions."""
+from __future__ import annotations
+
+import re
+from typing import Optional, Union
+
+from ._trocar import error_table
+
+_TEXT = re.compile(r"(E-[A-Z]+-[0-9]{3}) (.*)", re.DOTALL)
 
 
 class Error(Exception):
-    """What Trocar refuses. ``code`` is stable ("E-ENV-001"); ``trocar errors`` lists all."""
+    """What Trocar refuses. ``code`` is stable ("E-ENV-001"); ``trocar errors`` lists all.
 
-    def __init__(self, code: str, message: str, meaning: str = "") -> None:
-        super().__init__(f"{code} {message}")
-        self.code = code
+    It can also be made of its own text, or of another error, as programs do that hand errors from process to process.
+    ``code`` is "" where a text begins with none.
+    """
+
+    def __init__(self, code: Union[str, Exception], message: Optional[str] = None, meaning: Optional[str] = None) -> None:
+        if message is None:
+            text = str(code)
+            found = _TEXT.fullmatch(text)
+            code, message = found.groups() if found else ("", text)
+        super().__init__(f"{code} {message}" if code else message)
+        self.code = str(code)
         self.message = message
-        self.meaning = meaning
+        self.meaning = error_table().get(self.code, "") if meaning is None else meaning
 
     @property
     def remedy(self) -> str:
@@ -21,5 +37,4 @@ class Error(Exception):
 
 
 def closed(what: str) -> Error:
-    return Error("E-ENV-002", f"this {what} is closed; make another one",
-                 "an environment or pool was called out of turn, or is closed")
+    return Error("E-ENV-002", f"this {what} is closed; make another one")

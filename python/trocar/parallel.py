@@ -8,6 +8,7 @@ import numpy as np
 
 from .environments import Environment, Scene
 from .errors import Error
+from .objects import Taken, one_at_a_time
 from .spaces import action_space
 
 try:
@@ -16,7 +17,8 @@ except ImportError:
     _ParallelEnv = object
 
 
-class ParallelEnvironment(_ParallelEnv):
+@one_at_a_time
+class ParallelEnvironment(Taken, _ParallelEnv):
     """Every agent sees the whole state and gets the same reward; each moves only its part. Settings as of ``trocar.make``."""
 
     metadata = {"render_modes": ["rgb_array"], "name": "trocar"}
@@ -59,9 +61,11 @@ class ParallelEnvironment(_ParallelEnv):
     def reset(self, seed: Optional[int] = None, options: Optional[dict] = None):
         observation, info = self.environment.reset(seed=seed, options=options)
         self.agents = list(self.possible_agents)
-        return {agent: observation for agent in self.agents}, {agent: info for agent in self.agents}
+        return {agent: observation for agent in self.agents}, {agent: dict(info) for agent in self.agents}
 
     def step(self, actions: dict[str, Any]):
+        if not self.agents:
+            raise Error("E-ENV-002", "no agent is there: no episode has begun, or it is over; call reset before the next step")
         if set(actions) != set(self.agents):
             raise Error("E-ENV-001", f"actions are of {sorted(actions)}; give one for each of {sorted(self.agents)}")
         whole = np.zeros(self.environment.model.action_size)
@@ -74,7 +78,8 @@ class ParallelEnvironment(_ParallelEnv):
         agents = self.agents
         if terminated or truncated:
             self.agents = []
-        return tuple({agent: value for agent in agents} for value in (observation, reward, terminated, truncated, info))
+        return (*({agent: value for agent in agents} for value in (observation, reward, terminated, truncated)),
+                {agent: dict(info) for agent in agents})
 
     def render(self):
         return self.environment.render()

@@ -17,6 +17,7 @@ OTHER_TABLES = {
     "src/training/src/triplet.cpp": "targets as CholecT50 writes them",
     "src/presenter/src/patient_list.cpp": "parameters of a generated patient whose findings a list shows",
     "src/anatomy/src/patient_parameters.cpp": "parameters of a generated patient, one of which asks for a subvesical duct",
+    "src/anatomy/src/structure_names.cpp": "what segmentations of others call their segments, in many languages",
 }
 
 # In the table, and words of other things as well: "held" of a grasp, "other" of anything.

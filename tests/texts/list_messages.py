@@ -10,7 +10,7 @@ import re
 import sys
 
 MAKERS = {"Invalid", "Refuse", "Refused", "Fail", "fail", "refuse", "Failed", "Complain", "Failure", "Away", "Unusable",
-          "Usage", "WrongUse", "AtLine", "Throw", "Unwritable", "Undecodable", "Changed", "Unknown", "Mismatch"}
+          "Usage", "WrongUse", "AtLine", "Note", "Throw", "Unwritable", "Undecodable", "Changed", "Unknown", "Mismatch"}
 LEAST_SIGNS = 3  # as kLeastLetters of src/core/src/catalogue.h
 TOKEN = re.compile(
     r'(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<raw>R"(?P<end>[^(]*)\(.*?\)(?P=end)")|(?P<text>"(?:[^"\\\n]|\\.)*")'

@@ -61,9 +61,9 @@ class Map {
   Map(const images::LabelVolume& labels, const OrganLabels& organs) : labels_(labels), organs_(organs) {
     for (int axis = 0; axis < 3; ++axis)
       step_[axis] = {labels.direction[axis][0], labels.direction[axis][1], labels.direction[axis][2]};
-    for (const auto& [name, label] : labels.names) {
-      has_vessels_ = has_vessels_ || roles::FindRole<NeighbourRole>(name) == NeighbourRole::kPortalVein;
-      if (const auto tissue = FindTissue(name)) others_.emplace_back(label, *tissue);
+    for (const auto& [label, structure] : organs.structures) {
+      has_vessels_ = has_vessels_ || structure == Structure::kPortalVein;
+      if (const auto tissue = FindTissue(structure)) others_.emplace_back(label, *tissue);
     }
   }
 
@@ -121,33 +121,34 @@ class Map {
   }
 
  private:
-  static std::optional<CtTissue> FindTissue(const std::string& name) {
-    if (name == kDucts) return CtTissue::kBile;
-    if (name == kArteries) return CtTissue::kArterialBlood;
-    if (name == kHepaticVeins) return CtTissue::kHepaticBlood;
-    if (name == "spleen") return CtTissue::kSpleen;
-    switch (roles::FindRole<NeighbourRole>(name).value_or(NeighbourRole::kOther)) {
-      case NeighbourRole::kStomach:
-      case NeighbourRole::kDuodenum:
-      case NeighbourRole::kColon:
-      case NeighbourRole::kSmallBowel:
-        return CtTissue::kBowelContent;
-      case NeighbourRole::kPancreas:
-        return CtTissue::kPancreas;
-      case NeighbourRole::kRightKidney:
-        return CtTissue::kRenalCortex;
-      case NeighbourRole::kVenaCava:
-        return CtTissue::kVenousBlood;
-      case NeighbourRole::kAorta:
+  static std::optional<CtTissue> FindTissue(Structure structure) {
+    switch (structure) {
+      case Structure::kBileDuct:
+        return CtTissue::kBile;
+      case Structure::kArtery:
+      case Structure::kAorta:
         return CtTissue::kArterialBlood;
-      case NeighbourRole::kPortalVein:
+      case Structure::kLiverVessel:
+      case Structure::kPortalVein:
         return CtTissue::kHepaticBlood;
-      case NeighbourRole::kRibs:
-      case NeighbourRole::kSpine:
-        return CtTissue::kBone;
-      case NeighbourRole::kOther:
+      case Structure::kVenaCava:
+        return CtTissue::kVenousBlood;
+      case Structure::kSpleen:
+        return CtTissue::kSpleen;
+      case Structure::kStomach:
+      case Structure::kDuodenum:
+      case Structure::kColon:
+      case Structure::kSmallBowel:
+        return CtTissue::kBowelContent;
+      case Structure::kPancreas:
+        return CtTissue::kPancreas;
+      case Structure::kKidneyRight:
+        return CtTissue::kRenalCortex;
+      default:
         break;
     }
+    const NeighbourRole role = RoleOf(structure);
+    if (role == NeighbourRole::kRibs || role == NeighbourRole::kSpine) return CtTissue::kBone;
     return std::nullopt;
   }
 
@@ -229,6 +230,11 @@ core::Result<CtPhantom> MakeCtPhantom(const images::LabelVolume& labels, const i
                                       std::stop_token stop, const images::Progress& progress) {
   const auto organs = FindLabels(labels, {});
   if (!organs) return organs.error();
+  if (!organs->joined.empty()) {
+    images::LabelVolume whole = labels;
+    JoinParts(*organs, whole);
+    return MakeCtPhantom(whole, settings, stop, progress);
+  }
   if (images::IsOblique(labels)) {
     return core::Error{core::ErrorCode::kLabelsMismatch,
                        "the label map's axes are not at right angles; resample it, in 3D Slicer for example"};

@@ -11,11 +11,15 @@
 
 namespace trocar::anatomy {
 
-/// Reads a table of labels: JSON, {"liver": 5} or {"5": "liver"}, also as the member `labels` of nnU-Net's
-/// dataset.json; a colour table of 3D Slicer (lines of number, name, colour); a label description of ITK-SNAP
-/// (lines that begin with a number and end with a name in quotation marks). Label 0 is left out.
-/// \return kFileMissing, kJsonSyntax, kJsonField, or kLabelsMismatch where a line is no entry, a label is no whole number from 0
-///         to kLargestLabel, or one has two names
+/// Reads a table of labels, UTF-8 or UTF-16, with or without a byte order mark:
+/// - JSON: {"liver": 5} or {"5": "liver"}, also as the member `labels` of nnU-Net's dataset.json, with regions ({"liver": [1, 2]});
+///   {"5": {"name": "liver"}}; a list of {"label": 5, "name": "liver"}; dcmqi's segmentAttributes.
+/// - a table with a header, separated by commas, semicolons or tabs, which has a column of labels (label, index, value, id, ...) and
+///   one of names (name, structure, organ, ...): CSV, TSV, BIDS's dseg.tsv, 3D Slicer's colour tables in CSV.
+/// - lines of a number and a name: colour tables of 3D Slicer and FreeSurfer, label descriptions of ITK-SNAP, "5: liver", "liver = 5".
+/// Label 0 is left out. A label of several regions has the name of the smallest first.
+/// \return kFileMissing, kJsonSyntax, kJsonField, or kLabelsMismatch where something is no table (it says what it is, or which line or
+///         field is no entry), a label is no whole number from 0 to kLargestLabel, or one has two names
 core::Result<std::vector<std::pair<std::string, int>>> ReadLabelNames(const std::filesystem::path& path);
 
 }  // namespace trocar::anatomy

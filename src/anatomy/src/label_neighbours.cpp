@@ -4,10 +4,8 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "trocar/geometry/mesh_measures.h"
@@ -18,108 +16,12 @@
 namespace trocar::anatomy {
 namespace {
 
-/// What label maps call them, without blanks, lines and capitals. TotalSegmentator's names are those of the roles.
-struct Synonym {
-  std::string_view name;
-  NeighbourRole role;
-};
-constexpr Synonym kSynonyms[] = {{"largebowel", NeighbourRole::kColon},
-                                 {"largeintestine", NeighbourRole::kColon},
-                                 {"smallintestine", NeighbourRole::kSmallBowel},
-                                 {"rightkidney", NeighbourRole::kRightKidney},
-                                 {"postcava", NeighbourRole::kVenaCava},
-                                 {"ivc", NeighbourRole::kVenaCava},
-                                 {"portalvein", NeighbourRole::kPortalVein},
-                                 {"vertebralcolumn", NeighbourRole::kSpine},
-                                 {"sacrum", NeighbourRole::kSpine}};
-constexpr std::string_view kBodyNames[] = {"body", "skin", "trunk", "bodytrunc", "bodytrunk"};
-
-/// First and last number of each in TotalSegmentator's class maps.
-struct Numbers {
-  int first, last;
-  NeighbourRole role;
-};
-constexpr Numbers kVersion2[] = {{2, 2, NeighbourRole::kRightKidney}, {6, 6, NeighbourRole::kStomach},
-                                 {7, 7, NeighbourRole::kPancreas},    {18, 18, NeighbourRole::kSmallBowel},
-                                 {19, 19, NeighbourRole::kDuodenum},  {20, 20, NeighbourRole::kColon},
-                                 {25, 50, NeighbourRole::kSpine},     {52, 52, NeighbourRole::kAorta},
-                                 {63, 63, NeighbourRole::kVenaCava},  {64, 64, NeighbourRole::kPortalVein},
-                                 {92, 115, NeighbourRole::kRibs}};
-constexpr int kThirdLumbar2 = 29, kFourthLumbar2 = 28;
-constexpr Numbers kVersion1[] = {{2, 2, NeighbourRole::kRightKidney}, {6, 6, NeighbourRole::kStomach},
-                                 {7, 7, NeighbourRole::kAorta},       {8, 8, NeighbourRole::kVenaCava},
-                                 {9, 9, NeighbourRole::kPortalVein},  {10, 10, NeighbourRole::kPancreas},
-                                 {18, 41, NeighbourRole::kSpine},     {55, 55, NeighbourRole::kSmallBowel},
-                                 {56, 56, NeighbourRole::kDuodenum},  {57, 57, NeighbourRole::kColon},
-                                 {58, 81, NeighbourRole::kRibs}};
-constexpr int kThirdLumbar1 = 20, kFourthLumbar1 = 19;
-
 constexpr double kPixelMm = 1.0;    // of a slice, unless the voxels are larger
 constexpr double kSpacingMm = 2.0;  // of the volume's lattice
 constexpr double kLeastPartMl = 0.4, kLeastPartShare = 0.03;
 constexpr int kMostParts = 8;          // of one label
 constexpr double kTriangleMm2 = 22.0;  // one for so much of a ball's surface of that volume
 constexpr int kFewestTriangles = 240, kMostTriangles = 3600;  // of a part
-
-std::string Plain(std::string_view text) {
-  std::string plain;
-  for (const char c : text) {
-    if (c == ' ' || c == '_' || c == '-' || c == '.') continue;
-    plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return plain;
-}
-
-NeighbourRole RoleOfName(const std::string& plain) {
-  for (std::size_t i = 1; i < roles::kNeighbourRoleCount; ++i) {
-    const auto role = static_cast<NeighbourRole>(i);
-    if (plain == Plain(roles::NameOf(role))) return role;
-  }
-  for (const Synonym& synonym : kSynonyms) {
-    if (plain == synonym.name) return synonym.role;
-  }
-  if (plain.starts_with("rib")) return NeighbourRole::kRibs;
-  if (plain.starts_with("vertebra")) return NeighbourRole::kSpine;
-  return NeighbourRole::kOther;
-}
-
-std::size_t CountOf(const LabelBoxes& boxes, int label) {
-  const auto found = boxes.find(label);
-  return found == boxes.end() ? 0 : found->second.count;
-}
-
-NeighbourLabels ByNumbers(const LabelBoxes& boxes) {
-  NeighbourLabels found;
-  // bowel is by far more than two vertebrae, and than two arteries of the neck
-  const bool is_first = CountOf(boxes, 55) + CountOf(boxes, 57) > CountOf(boxes, 18) + CountOf(boxes, 20);
-  const auto add = [&](std::span<const Numbers> table) {
-    for (const Numbers& numbers : table) {
-      for (int label = numbers.first; label <= numbers.last; ++label) {
-        if (CountOf(boxes, label) > 0) found.roles[label] = numbers.role;
-      }
-    }
-  };
-  is_first ? add(kVersion1) : add(kVersion2);
-  const auto or_none = [&](int label) { return CountOf(boxes, label) > 0 ? label : 0; };
-  found.third_lumbar = or_none(is_first ? kThirdLumbar1 : kThirdLumbar2);
-  found.fourth_lumbar = or_none(is_first ? kFourthLumbar1 : kFourthLumbar2);
-  return found;
-}
-
-NeighbourLabels ByNames(const images::LabelVolume& volume, const LabelBoxes& boxes) {
-  NeighbourLabels found;
-  for (const auto& [name, label] : volume.names) {
-    if (CountOf(boxes, label) == 0) continue;
-    const std::string plain = Plain(name);
-    if (const NeighbourRole role = RoleOfName(plain); role != NeighbourRole::kOther)
-      found.roles[label] = role;
-    if (plain == "vertebrael3" || plain == "l3") found.third_lumbar = label;
-    if (plain == "vertebrael4" || plain == "l4") found.fourth_lumbar = label;
-    if (std::find(std::begin(kBodyNames), std::end(kBodyNames), plain) != std::end(kBodyNames))
-      found.body = label;
-  }
-  return found;
-}
 
 /// Part of a map with one label as 1, and where it lies in the map.
 struct Crop {
@@ -287,17 +189,16 @@ LabelBoxes FindLabelBoxes(const images::LabelVolume& volume) {
   return boxes;
 }
 
-NeighbourLabels FindNeighbourLabels(const images::LabelVolume& volume, const OrganLabels& organs,
-                                    const LabelBoxes& boxes) {
-  constexpr int kTotalLiver = 5, kTotalGallbladder = 4;
+NeighbourLabels FindNeighbourLabels(const OrganLabels& organs, const LabelBoxes& boxes) {
   NeighbourLabels found;
-  if (!volume.names.empty()) {
-    found = ByNames(volume, boxes);
-  } else if (organs.liver == kTotalLiver && organs.gallbladder == kTotalGallbladder) {
-    found = ByNumbers(boxes);
+  for (const auto& [label, structure] : organs.structures) {
+    if (!boxes.contains(label) || label == organs.liver || label == organs.gallbladder) continue;
+    if (const NeighbourRole role = RoleOf(structure); role != NeighbourRole::kOther)
+      found.roles[label] = role;
+    if (structure == Structure::kVertebraL3) found.third_lumbar = label;
+    if (structure == Structure::kVertebraL4) found.fourth_lumbar = label;
+    if (structure == Structure::kBody) found.body = label;
   }
-  found.roles.erase(organs.liver);
-  found.roles.erase(organs.gallbladder);
   return found;
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file label_neighbours.h  What a label map shows beside liver and gallbladder becomes meshes.
-/// Source of the numbers: TotalSegmentator (Wasserthal et al., Radiology: Artificial Intelligence 2023), class maps total (version 2)
-/// and total_v1.
 #pragma once
 
 #include <array>
@@ -36,10 +34,8 @@ struct NeighbourLabels {
   int third_lumbar = 0, fourth_lumbar = 0, body = 0;
 };
 
-/// By the map's names where it has some; else by TotalSegmentator's numbers where liver and gallbladder have them (version 2, or
-/// 1 where stomach and bowel are found at its numbers); else none.
-NeighbourLabels FindNeighbourLabels(const images::LabelVolume& volume, const OrganLabels& organs,
-                                    const LabelBoxes& boxes);
+/// Those that FindLabels understood.
+NeighbourLabels FindNeighbourLabels(const OrganLabels& organs, const LabelBoxes& boxes);
 
 /// One neighbour as a mesh in the map's frame (left, cranial, anterior) [mm].
 struct NeighbourMesh {

@@ -119,16 +119,21 @@ core::Status CheckBody(const MeasuredLabels& measured, bool is_mirrored) {
   const bool is_spleen_right = measured.spleen && measured.spleen->x < liver.centre.x;
   const bool is_spleen_left = measured.spleen && !is_spleen_right;
   if (is_spleen_right || (!is_spleen_left && liver.skewness_left < kMirroredSkewness)) {
-    return Mismatch(
-        std::string(is_spleen_right ? "the spleen lies to the right of the liver"
-                                    : "the liver's thin lobe lies to the right") +
-        (is_mirrored
-             ? ": left and right were right as they are in the map; leave --mirrored out"
-             : ": left and right are swapped (RAS read as LPS?), or this is situs inversus; with --mirrored "
-               "the map is taken the other way round, so that a body with situs inversus becomes its mirror "
-               "image"));
+    return ExplainMirrored(is_spleen_right ? "the spleen lies to the right of the liver"
+                                           : "the liver's thin lobe lies to the right",
+                           is_mirrored);
   }
   return {};
+}
+
+core::Error ExplainMirrored(const std::string& sign, bool is_mirrored) {
+  return Mismatch(
+      sign +
+      (is_mirrored
+           ? ": left and right were right as they are in the map; leave --mirrored out"
+           : ": left and right are swapped (RAS read as LPS?), or this is situs inversus; with --mirrored "
+             "the map is taken the other way round, so that a body with situs inversus becomes its mirror "
+             "image"));
 }
 
 core::Status CheckParts(const std::string& organ, const std::vector<double>& parts_ml, bool takes_largest) {

@@ -17,7 +17,7 @@ struct MeasuredLabels {
   std::optional<Vec3> spleen;  ///< its centre, where the map has one [mm]
 };
 
-/// Measures the organs, and the spleen where names or TotalSegmentator's numbers say which label it is.
+/// Measures the organs, and the spleen where it is known which label it is.
 MeasuredLabels MeasureOrgans(const images::LabelVolume& volume, const OrganLabels& labels,
                              const VoxelFrame& frame);
 
@@ -25,6 +25,10 @@ MeasuredLabels MeasureOrgans(const images::LabelVolume& volume, const OrganLabel
 /// \return kLabelsMismatch with the likely reason: labels swapped, voxels in centimetres, metres or ten times too
 ///         large, organs far apart (two frames), turned upside down, left and right swapped or situs inversus
 core::Status CheckBody(const MeasuredLabels& measured, bool is_mirrored);
+
+/// That left and right are swapped.
+/// \param sign  by what it is known: a clause
+core::Error ExplainMirrored(const std::string& sign, bool is_mirrored);
 
 /// Parts that do not hang together [mL], the largest first.
 /// \return kLabelsMismatch where a large one would be lost (two livers, or one that the map cuts in two)

@@ -248,7 +248,7 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly({"format", "version", "name", "provenance", "frame", "unit", "organs", "attachments",
-                  "tubes", "landmarks", "parameters", "neighbours", "ports", "table"});
+                  "tubes", "landmarks", "parameters", "neighbours", "ports", "table", "labels"});
   if (root.Text("format") != kFormat) root.Complain(std::string("format must be \"") + kFormat + "\"");
   root.Integer("version", {kVersion, kVersion});
   if (root.Text("frame") != "LPS" || root.Text("unit") != "mm")

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include "body_shape.h"
@@ -29,11 +27,6 @@ using core::ErrorCode;
 using math::Vec3;
 
 constexpr double kMaxPixels = 4e6;  // of one slice after it was given square pixels
-// the same in the class maps total (version 2), total_v1 and total_mr
-constexpr int kTotalSpleen = 1, kTotalGallbladder = 4, kTotalLiver = 5;
-
-/// TotalSegmentator's lobes of the lung, version 2.
-constexpr int kTotalFirstLung = 10, kTotalLastLung = 14;
 
 Error Mismatch(const std::string& why) {
   return {ErrorCode::kLabelsMismatch, why};
@@ -41,75 +34,6 @@ Error Mismatch(const std::string& why) {
 
 Error GivenUp() {
   return {ErrorCode::kCancelled, "the patient was given up; nothing was written"};
-}
-
-/// How many voxels each label has that occurs.
-using LabelCounts = std::map<std::int32_t, std::size_t>;
-
-LabelCounts CountLabels(const images::LabelVolume& volume) {
-  LabelCounts counts;
-  for (std::size_t i = 0; i < volume.labels.size();) {
-    // labels come in runs along a row
-    std::size_t end = i + 1;
-    while (end < volume.labels.size() && volume.labels[end] == volume.labels[i]) ++end;
-    counts[volume.labels[i]] += end - i;
-    i = end;
-  }
-  return counts;
-}
-
-std::size_t CountOf(const LabelCounts& counts, int label) {
-  const auto found = counts.find(label);
-  return found == counts.end() ? 0 : found->second;
-}
-
-/// "1, 2, 5", the first of them where there are many.
-std::string ListLabels(const LabelCounts& counts) {
-  constexpr std::size_t kMostNamed = 20;
-  std::string text;
-  std::size_t named = 0;
-  for (const auto& [label, count] : counts) {
-    if (label == 0) continue;
-    if (named++ == kMostNamed) return text + ", ...";
-    text += (text.empty() ? "" : ", ") + std::to_string(label);
-  }
-  return text.empty() ? "none" : text;
-}
-
-std::string LowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  std::erase_if(text, [](char c) { return c == ' ' || c == '_' || c == '-'; });
-  return text;
-}
-
-/// Whether a map shows the chest: its names speak of lungs or heart, or most of its voxels are lungs by number.
-bool IsOfThorax(const images::LabelVolume& volume, const LabelCounts& counts) {
-  for (const auto& [name, label] : volume.names) {
-    const std::string plain = LowerCase(name);
-    if ((plain.starts_with("lung") || plain.starts_with("heart")) && CountOf(counts, label) > 0) return true;
-  }
-  if (!volume.names.empty()) return false;
-  std::size_t all = 0, lungs = 0;
-  for (const auto& [label, count] : counts) {
-    if (label != 0) all += count;
-    if (label >= kTotalFirstLung && label <= kTotalLastLung) lungs += count;
-  }
-  return 2 * lungs > all;
-}
-
-/// What it means that an organ's label is not there.
-std::string ExplainAbsence(bool is_liver_there, const images::LabelVolume& volume,
-                           const LabelCounts& counts) {
-  const bool is_of_thorax = IsOfThorax(volume, counts);
-  if (is_liver_there) {
-    return std::string(". Where the gallbladder was taken out before") +
-           (is_of_thorax ? ", or a scan of the chest ends above it" : "") +
-           ", there is nothing to take out: operate on a patient who has one (trocar anatomy generate), or "
-           "practise without a patient (trocar play --list names the tasks)";
-  }
-  return is_of_thorax ? ". It looks like a map of the chest, with lungs or a heart: take one of the abdomen"
-                      : ". If the map shows another region of the body, take one of the abdomen";
 }
 
 /// The end of the gallbladder that is more cranial and posterior.
@@ -199,7 +123,7 @@ void AddSurroundings(const images::LabelVolume& volume, const OrganLabels& organ
   progress("meshing the neighbours", 0.75);
   Patient& patient = report.patient;
   const LabelBoxes boxes = FindLabelBoxes(volume);
-  const NeighbourLabels labels = FindNeighbourLabels(volume, organs, boxes);
+  const NeighbourLabels labels = FindNeighbourLabels(organs, boxes);
   for (NeighbourMesh& one : MeshNeighbours(volume, labels, organs, boxes, frame, report.notes)) {
     for (Vec3& p : one.mesh.positions) p = 0.001 * p + shift;
     report.neighbours.push_back(one.report);
@@ -210,54 +134,6 @@ void AddSurroundings(const images::LabelVolume& volume, const OrganLabels& organ
 }
 
 }  // namespace
-
-core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options) {
-  const auto counts = CountLabels(volume);
-  OrganLabels found{options.liver, options.gallbladder, 0, "named on request"};
-  if (found.liver == 0 || found.gallbladder == 0) {
-    OrganLabels usual;
-    for (const auto& [name, label] : volume.names) {
-      const std::string plain = LowerCase(name);
-      if (plain == NameOf(OrganRole::kLiver)) usual.liver = label;
-      if (plain == NameOf(OrganRole::kGallbladder)) usual.gallbladder = label;
-      if (plain == "spleen") usual.spleen = label;
-    }
-    usual.convention = "segment names";
-    if (usual.liver == 0 && usual.gallbladder == 0) {
-      // spleen and right kidney are TotalSegmentator's 1 and 2: the liver is larger than both
-      const bool is_total = CountOf(counts, kTotalLiver) > CountOf(counts, 1) &&
-                            CountOf(counts, kTotalLiver) > CountOf(counts, 2);
-      usual = is_total
-                  ? OrganLabels{kTotalLiver, kTotalGallbladder, kTotalSpleen, "TotalSegmentator's numbers"}
-                  : OrganLabels{1, 2, 0, "1 and 2"};
-    }
-    if (found.liver == 0) found.liver = usual.liver;
-    if (found.gallbladder == 0) found.gallbladder = usual.gallbladder;
-    found.spleen = usual.spleen;
-    found.convention = usual.convention;
-  }
-  // a number in place of a name that the file does not have would take some other organ
-  const std::pair<const char*, int> both[] = {{NameOf(OrganRole::kLiver), found.liver},
-                                              {NameOf(OrganRole::kGallbladder), found.gallbladder}};
-  const bool is_liver_there = found.liver > 0 && CountOf(counts, found.liver) > 0;
-  const std::string absence = ExplainAbsence(is_liver_there, volume, counts);
-  for (const auto& [name, label] : both) {
-    if (label != 0) continue;
-    return Mismatch("the label map names its labels, and none of them is the " + std::string(name) +
-                    "; say which one it is with --" + name + absence);
-  }
-  for (const auto& [name, label] : both) {
-    if (label > 0 && CountOf(counts, label) > 0) continue;
-    return Mismatch("the label map has no label " + std::to_string(label) + ", which should be the " + name +
-                    " (found by: " + found.convention + "); it has " + ListLabels(counts) +
-                    "; name the right one with --" + name + absence);
-  }
-  if (found.liver == found.gallbladder) {
-    return Mismatch("liver and gallbladder have the same label " + std::to_string(found.liver) +
-                    "; name two different ones");
-  }
-  return found;
-}
 
 core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
                                                  const images::Progress& progress) {
@@ -279,10 +155,11 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   const auto frame = MakeVoxelFrame(*volume, options.is_mirrored);
   if (!frame.ok())
     return Error{frame.error().code, core::Printable(options.labels.string()) + ": " + frame.error().message};
+  report_progress("looking at the labels", 0.05);
   const auto labels = FindLabels(*volume, options);
   if (!labels.ok()) return labels.error();
+  JoinParts(*labels, *volume);
   if (options.stop.stop_requested()) return GivenUp();
-  report_progress("looking at the labels", 0.05);
   const MeasuredLabels measured = MeasureOrgans(*volume, *labels, *frame);
   if (const auto status = CheckBody(measured, options.is_mirrored); !status.ok()) return status.error();
 
@@ -303,6 +180,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   auto patient = AssemblePatient(world, *meshes);
   if (!patient.ok()) return patient.error();
   report.patient = std::move(*patient);
+  report.patient.labels = labels->taken;
   const auto liver = static_cast<std::size_t>(report.patient.OrganOf(OrganRole::kLiver));
   const Vec3 shift =
       report.patient.organs[liver].mesh.positions.front() - 0.001 * (*meshes)[0].mesh.positions.front();

@@ -44,6 +44,7 @@ geometry::TriangleMesh Outward(geometry::TriangleMesh mesh) {
 
 LintReport Linter::Run() {
   LintNames();
+  LintLabels();
   for (std::size_t i = 0; i < patient_.organs.size(); ++i) LintMesh(i);
   for (std::size_t i = 0; i < patient_.neighbours.size(); ++i) LintNeighbour(i);
   LintUnit();
@@ -107,6 +108,15 @@ void Linter::LintNames() {
     if (patient_.OrganOf(organ) < 0)
       Add("L-ORGAN-MISSING", roles::NameOf(organ),
           "there is no such organ; place its contours and build the patient again");
+  }
+}
+
+void Linter::LintLabels() {
+  report_.labels = patient_.labels;
+  for (const SourceLabel& label : patient_.labels) {
+    if (label.doubt.empty()) continue;
+    Add("L-LABEL-DOUBT", label.meaning,
+        label.doubt + "; look whether it is the right label, or build the patient again with the right one");
   }
 }
 

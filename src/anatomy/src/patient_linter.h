@@ -31,6 +31,7 @@ class Linter {
 
   // patient_lint.cpp
   void LintNames();
+  void LintLabels();
   // patient_lint_mesh.cpp
   void LintMesh(std::size_t index);
   void LintSurface(const Organ& organ, MeshSummary& summary);

@@ -19,6 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr core::NumberRange kPortMm{-3000, 3000};
 constexpr core::NumberRange kTableDeg{-30, 30};
+constexpr core::NumberRange kLabel{0, 2147483647};
 constexpr double kMostTableTilt = 30 * math::kDegree;
 constexpr const char* kUses[] = {"laparoscope", "left_hand", "right_hand", "assistant"};
 static_assert(std::size(kUses) == kPortUseCount);
@@ -78,6 +79,13 @@ void ReadSurroundings(const JsonView& root, Patient& patient) {
     patient.table = Table{math::kDegree * view.Number("head_up_deg", kTableDeg),
                           math::kDegree * view.Number("right_up_deg", kTableDeg), view.Text("reason")};
   }
+  if (root.Has("labels")) {
+    for (const JsonView& view : root.Array("labels")) {
+      view.AllowOnly({"label", "taken_as", "reason", "doubt"});
+      patient.labels.push_back({view.Integer("label", kLabel), view.Text("taken_as"), view.Text("reason"),
+                                view.TextOr("doubt", "")});
+    }
+  }
 }
 
 std::vector<std::pair<std::string, Json>> MakeSurroundingsJson(const Patient& patient) {
@@ -105,6 +113,15 @@ std::vector<std::pair<std::string, Json>> MakeSurroundingsJson(const Patient& pa
     members.emplace_back("table", Json{{"head_up_deg", patient.table->head_up / math::kDegree},
                                        {"right_up_deg", patient.table->right_up / math::kDegree},
                                        {"reason", patient.table->reason}});
+  }
+  if (!patient.labels.empty()) {
+    Json labels = Json::array();
+    for (const SourceLabel& one : patient.labels) {
+      Json json = {{"label", one.label}, {"taken_as", one.meaning}, {"reason", one.reason}};
+      if (!one.doubt.empty()) json["doubt"] = one.doubt;
+      labels.push_back(std::move(json));
+    }
+    members.emplace_back("labels", std::move(labels));
   }
   return members;
 }

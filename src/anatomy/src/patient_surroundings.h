@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patient_surroundings.h  The parts of patient.json about what lies beside the operated organs: neighbours, ports, table.
+/// \file patient_surroundings.h  The parts of patient.json about what lies beside the operated organs, and whence they come: neighbours, ports, table, labels.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@
 
 namespace trocar::anatomy {
 
-/// Neighbours without their meshes, ports and table; complains in `root`.
+/// Neighbours without their meshes, ports, table and labels; complains in `root`.
 void ReadSurroundings(const core::JsonView& root, Patient& patient);
 
 /// The top-level members that the patient needs for them, in their order; none for a patient without.

@@ -90,6 +90,7 @@ TEST(CtPhantom, RefusesMapsWithoutTheOrgans) {
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.error().code, core::ErrorCode::kLabelsMismatch);
   std::fill(map.labels.begin(), map.labels.begin() + 4000, 2);
+  map.names = {{"liver", 1}, {"gallbladder", 2}};
   map.direction[0][1] = 1;
   const auto oblique = MakeCtPhantom(map, Coarse());
   ASSERT_FALSE(oblique.ok());

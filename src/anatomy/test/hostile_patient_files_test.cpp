@@ -29,10 +29,10 @@ class HostileFiles : public testing::Test {
 };
 
 TEST_F(HostileFiles, ControlPoints) {
-  EXPECT_EQ(PointsCode(std::string(1000000, '[')), ErrorCode::kJsonSyntax);
+  EXPECT_EQ(PointsCode(std::string(1000000, '[')), ErrorCode::kFileTooLarge);
   std::string deep;
   for (int i = 0; i < 200000; ++i) deep += "{\"a\":";
-  EXPECT_EQ(PointsCode(deep), ErrorCode::kJsonSyntax);
+  EXPECT_EQ(PointsCode(deep), ErrorCode::kFileTooLarge);
   EXPECT_EQ(PointsCode("{\"format\": NaN}"), ErrorCode::kJsonSyntax);
   EXPECT_EQ(PointsCode("{\"format\": \"\xff\xfe\"}"), ErrorCode::kJsonSyntax);
   EXPECT_EQ(PointsCode(std::string("\0\0\0", 3)), ErrorCode::kJsonSyntax);

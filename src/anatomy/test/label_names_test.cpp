@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "trocar/core/safe_file.h"
@@ -51,6 +52,85 @@ TEST_F(LabelNames, AreReadInEveryForm) {
       "98 255");
   ASSERT_TRUE(slicer.ok());
   EXPECT_THAT(*slicer, UnorderedElementsAre(testing::Pair("liver", 17), testing::Pair("gall_bladder", 300)));
+}
+
+TEST_F(LabelNames, AreReadAsTheTradeWritesThem) {
+  const std::string snap = "17 liver\n300 gall bladder\n";
+  ExpectOrgans("\xef\xbb\xbf" + snap);
+  ExpectOrgans("17 liver\r300 gall bladder\r");
+  // UTF-16 of a spreadsheet
+  std::string little = "\xff\xfe", big = "\xfe\xff";
+  for (const char c : std::string("Label\tName\r\n17\tliver\r\n300\tgall bladder\r\n"))
+    (little += c) += '\0', (big += '\0') += c;
+  ExpectOrgans(little), ExpectOrgans(big);
+  // tables with a header
+  ExpectOrgans("label,name\n0,background\n17,liver\n300,gall bladder\n");
+  ExpectOrgans("Name;Color;Label Value\nliver;red;17\n\"gall bladder\";green;300\n");
+  ExpectOrgans(
+      "index\tname\tabbreviation\tcolor\tmapping\n17\tliver\tL\t#dd8265\t1\n300\tgall "
+      "bladder\tGB\t#8b9662\t2\n");
+  ExpectOrgans(
+      "LabelValue,Name,Color_R,Color_G,Color_B,Color_A,Category_CodeMeaning\n17,liver,221,130,101,255,"
+      "\"Organ, solid\"\n"
+      "300,\"gall bladder\",139,150,98,255,Organ\n");
+  ExpectOrgans("\"structure\",\"value\"\n\"liver\",17.0\n\"gall bladder\",300.0\n");
+  ExpectOrgans("# BIDS\n\nid,label\n17,liver\n300,gall bladder\n");
+  // lines without one
+  ExpectOrgans("17,liver\n300,gall bladder\n");
+  ExpectOrgans("17: liver\n300: gall bladder\n");
+  ExpectOrgans("class_map:\n  17: liver\n  300: \"gall bladder\"\n");
+  ExpectOrgans("liver = 17\ngall bladder = 300\n");
+  ExpectOrgans("liver: 17\ngall bladder: 300\n");
+  ExpectOrgans("    17: \"liver\",\n    300: \"gall bladder\",\n");
+  ExpectOrgans("17 liver 221 130 101 255\n300 gall bladder 139 150 98 255\n");
+  // JSON
+  ExpectOrgans("\xef\xbb\xbf{\"17\": \"liver\", \"300\": \"gall bladder\"}");
+  ExpectOrgans(
+      R"({"0": {"name": "background"}, "17": {"name": "liver", "parent": "organ"}, "300": {"name": "gall bladder"}})");
+  ExpectOrgans(R"([{"label": 17, "name": "liver"}, {"label": 300, "name": "gall bladder"}])");
+  ExpectOrgans(R"({"labels": [{"id": "17", "name": "liver"}, {"id": "300", "name": "gall bladder"}]})");
+  ExpectOrgans(R"({"liver": "17", "gall bladder": 300.0})");
+  ExpectOrgans(R"({"segmentAttributes": [[{"labelID": 17, "SegmentDescription": "liver"},
+                   {"labelID": 300, "SegmentedPropertyTypeCodeSequence": {"CodeMeaning": "gall bladder"}}]]})");
+}
+
+TEST_F(LabelNames, OfRegionsAreTheSmallestFirst) {
+  const auto names =
+      Read(R"({"channel_names": {"0": "CT"}, "labels": {"background": 0, "liver": [17, 18], "tumor": 18,
+                              "gall bladder": 300}, "regions_class_order": [17, 18, 300]})");
+  ASSERT_TRUE(names.ok()) << names.error().Text();
+  EXPECT_THAT(*names,
+              testing::UnorderedElementsAre(testing::Pair("tumor", 18), testing::Pair("liver", 17),
+                                            testing::Pair("liver", 18), testing::Pair("gall bladder", 300)));
+  const auto at = [&](const char* name) {
+    return std::find(names->begin(), names->end(), std::pair<std::string, int>(name, 18)) - names->begin();
+  };
+  EXPECT_LT(at("tumor"), at("liver"));
+  ExpectRefused(R"({"labels": {"a": [1, 2], "b": [2, 3]}})", ErrorCode::kLabelsMismatch,
+                "label 2 has two names, a and b");
+  ExpectRefused(R"({"labels": {"liver": []}})", ErrorCode::kJsonField, "labels.liver");
+  ExpectRefused(R"({"labels": {"liver": [1, "x"]}})", ErrorCode::kJsonField, "labels.liver");
+}
+
+TEST_F(LabelNames, WhatIsNoTableIsCalledByItsName) {
+  ExpectRefused(std::string("PK\x03\x04", 4) + std::string(60, '\0'), ErrorCode::kLabelsMismatch,
+                "save the table as CSV");
+  ExpectRefused("\x1f\x8b\x08", ErrorCode::kLabelsMismatch, "compressed");
+  ExpectRefused("NRRD0004\ntype: uchar\n", ErrorCode::kLabelsMismatch, "it is an image");
+  ExpectRefused("<?xml version=\"1.0\"?><LabelTable/>", ErrorCode::kLabelsMismatch, "XML");
+  ExpectRefused(std::string("5 liver\0", 8), ErrorCode::kLabelsMismatch, "no text");
+  ExpectRefused(
+      "\xff\xfe"
+      "5",
+      ErrorCode::kLabelsMismatch, "UTF-16");
+  ExpectRefused("Structure,SegmentedPropertyCategory\nliver,Anatomical\n", ErrorCode::kLabelsMismatch,
+                "column of labels");
+  ExpectRefused("label,name\n5\n", ErrorCode::kLabelsMismatch, "fewer columns");
+  ExpectRefused("label,name\nfive,liver\n", ErrorCode::kLabelsMismatch, "line 2 (five,liver)");
+  ExpectRefused("Segment 5\nSegment 6 7\n", ErrorCode::kLabelsMismatch, "line 2");
+  ExpectRefused(R"([{"label": 5}])", ErrorCode::kJsonField, "a name");
+  ExpectRefused(R"([{"label": 5, "name": "a"}, {"label": 5, "name": "b"}])", ErrorCode::kLabelsMismatch,
+                "two names");
 }
 
 TEST_F(LabelNames, WithMistakesAreRefused) {

@@ -227,7 +227,7 @@ TEST_F(FromLabels, KnowsSlicersSegmentNames) {
   const auto report = Build(Write("mine.seg.nrrd", FormatNrrd(MakeLabels(7, 9), 7, 9)));
   ASSERT_TRUE(report.ok()) << report.error().Text();
   ExpectThatBody(*report);
-  EXPECT_THAT(report->patient.provenance, HasSubstr("segment names"));
+  EXPECT_THAT(report->patient.provenance, HasSubstr("the map's names"));
 }
 
 TEST_F(FromLabels, KnowsTheNamesInANiftiHeader) {
@@ -236,7 +236,7 @@ TEST_F(FromLabels, KnowsTheNamesInANiftiHeader) {
       "ml.nii", WithLabelTable(plain, {{1, "spleen"}, {3, "gallbladder"}, {17, "liver"}, {300, "far"}})));
   ASSERT_TRUE(report.ok()) << report.error().Text();
   ExpectThatBody(*report);
-  EXPECT_THAT(report->patient.provenance, HasSubstr("segment names"));
+  EXPECT_THAT(report->patient.provenance, HasSubstr("the map's names"));
 }
 
 TEST_F(FromLabels, AsksForTheOrganThatAFileWithNamesDoesNotName) {
@@ -256,11 +256,11 @@ TEST_F(FromLabels, PassesOverExtensionsThatAreNoLabelTables) {
     EXPECT_TRUE(volume.ok());
     return volume.ok() ? FindLabels(*volume, {})->convention : "";
   };
-  EXPECT_EQ(convention(whole), "segment names");
+  EXPECT_EQ(convention(whole), "the map's names");
   for (const std::int32_t size : {0, -16, 7, 1 << 30, INT32_MAX, INT32_MIN}) {
     std::string lying = whole;
     Put<std::int32_t>(lying, 352, size);
-    EXPECT_EQ(convention(lying), "1 and 2") << size;
+    EXPECT_EQ(convention(lying), "the numbers of Trocar") << size;
   }
   for (const char* text :
        {"<Label Key=\"1", "<Label >liver</Label>", "<Label Key=\"x\">liver</Label>",
@@ -269,7 +269,7 @@ TEST_F(FromLabels, PassesOverExtensionsThatAreNoLabelTables) {
     const auto end = static_cast<std::size_t>(odd.find("</CaretExtension>"));
     std::fill(odd.begin() + 360, odd.begin() + static_cast<std::ptrdiff_t>(end) + 17, ' ');
     odd.replace(end - std::strlen(text), std::strlen(text), text);
-    EXPECT_EQ(convention(odd), "1 and 2") << text;
+    EXPECT_EQ(convention(odd), "the numbers of Trocar") << text;
   }
 }
 
@@ -391,7 +391,7 @@ TEST_F(FromLabels, NamesTheLabelThatIsMissing) {
   const core::Error error = Failure(file);
   EXPECT_EQ(error.code, ErrorCode::kLabelsMismatch);
   EXPECT_THAT(error.message, HasSubstr("liver"));
-  EXPECT_THAT(error.message, HasSubstr("3, 4"));
+  EXPECT_THAT(error.message, testing::AllOf(HasSubstr("label 3: "), HasSubstr("label 4: ")));
   EXPECT_THAT(Failure(file, 3, 8).message, HasSubstr("--gallbladder"));
   EXPECT_EQ(Failure(file, 3, 3).code, ErrorCode::kLabelsMismatch);
   EXPECT_TRUE(Build(file, 3, 4).ok());

@@ -162,6 +162,13 @@ const Wrong kWrongs[] = {
      {"L-MESH-MANIFOLD"},
      "liver",
      "repair the mesh"},
+    {"DoubtfulLabel",
+     [](Patient& p) {
+       p.labels = {{1, "liver", "its name", ""}, {2, "gallbladder", "as asked", "it does not touch the liver"}};
+     },
+     {"L-LABEL-DOUBT"},
+     "gallbladder",
+     "does not touch the liver"},
     {"InsideOut",
      [](Patient& p) {
        for (auto& t : Liver(p).mesh.triangles) std::swap(t[1], t[2]);

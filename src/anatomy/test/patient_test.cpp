@@ -143,6 +143,18 @@ TEST_F(PatientFolder, KeepsParameters) {
   EXPECT_EQ(ReadPatient(folder_).error().code, ErrorCode::kJsonField);
 }
 
+TEST_F(PatientFolder, KeepsWhatLabelsWereTakenFor) {
+  Patient written = MakePatient();
+  ASSERT_TRUE(WritePatient(folder_, written).ok());
+  EXPECT_TRUE(ReadPatient(folder_)->labels.empty());
+  written.labels = {{5, "liver", "the numbers of AbdomenAtlas, which all labels fit", ""},
+                    {2, "gallbladder", "as asked", "it does not touch the liver"}};
+  ASSERT_TRUE(WritePatient(folder_, written).ok());
+  const auto read = ReadPatient(folder_);
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->labels, written.labels);
+}
+
 TEST_F(PatientFolder, HoldsLpsMillimetres) {
   ASSERT_TRUE(WritePatient(folder_, MakePatient()).ok());
   const auto mesh = geometry::ReadPly(folder_ / "liver.ply");

@@ -40,7 +40,9 @@ class Program {
   /// Who operates, and where attempts go. \return what the person has to change
   core::Status FindStore() {
     const presenter::Options& options = command_.options;
-    access_.place = store::FindPlace(options.store);
+    auto place = store::FindPlace(options.store);
+    if (!place.ok()) return place.error();
+    access_.place = std::move(*place);
     // one that nobody attends keeps an attempt only where it is told to
     const bool keeps = !options.recordings.empty() && (options.run.IsAttended() || !options.store.empty());
     if (!options.trainee.empty()) {

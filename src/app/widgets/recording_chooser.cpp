@@ -31,7 +31,8 @@ std::string DescribeRow(const record::RecordingSummary& recording) {
   if (!recording.is_finished) {
     text += core::Translate("  ·  not finished");
   } else if (!outcome.empty()) {
-    text += "  ·  " + outcome;
+    // nobody has replayed it: it is what its file says
+    text += "  ·  " + core::TranslateWith("{1} (not verified)", {outcome});
   }
   if (!recording.is_whole) text += core::Translate("  ·  damaged");
   if (recording.errors > 0)

@@ -8,6 +8,7 @@
 #include "exam_json.h"
 #include "private_key.h"
 #include "signing.h"
+#include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/record/replay.h"
 
@@ -22,6 +23,8 @@ using nlohmann::json;
 
 constexpr const char* kFormat = "trocar-certificate";
 constexpr std::size_t kLargestRecording = std::size_t{4} << 30;  // [bytes]
+/// Before its signature is looked at, anybody may have written it.
+constexpr core::JsonLimits kLimits{4u << 20, 16, 100'000, 1000, 1u << 20};
 constexpr core::NumberRange kBytes{1, 4294967296.0};
 constexpr double kSameMetric = 1e-9;  // of a metric, or of 1 where it is smaller [-]
 /// Before what is signed, so that a signature for something else is none for a certificate.
@@ -219,8 +222,10 @@ core::Result<std::string> IssueCertificate(const ExamSettings& exam, const fs::p
 
 core::Result<Certificate> ReadCertificate(std::string_view text, const std::string& source,
                                           const std::string& signer) {
-  json value = json::parse(text, nullptr, false);
-  if (!value.is_object()) return Changed(source, "this is no certificate, or it was cut or changed");
+  auto parsed = core::ParseJson<json>(text, source, kLimits);
+  if (!parsed.ok() || !parsed->is_object())
+    return Changed(source, "this is no certificate, or it was cut or changed");
+  json& value = *parsed;
   // the one way of writing it: other spaces, orders or escapes would be other bytes that say the same
   if (DumpCanonical(value) != text) return Changed(source, "the bytes are not those that were issued");
   const auto found = value.find("signature");
@@ -233,7 +238,7 @@ core::Result<Certificate> ReadCertificate(std::string_view text, const std::stri
   value.erase("signature");
   if (!IsSignedBy(key, signature, SignedText(value)))
     return Changed(source, "the signature does not fit: something in it was changed");
-  const auto document = core::JsonDocument::Parse(text, source);
+  const auto document = core::JsonDocument::Parse(text, source, kLimits);
   if (!document.ok()) return Changed(source, document.error().message);
   Certificate certificate = ReadFields(document->Root());
   // what is signed and is no certificate of this format comes from a program that this one does not know
@@ -268,7 +273,7 @@ core::Status CheckRecordingBytes(const Certificate& certificate, std::span<const
 core::Result<Certificate> VerifyCertificate(const fs::path& path, const fs::path& recording,
                                             const std::string& signer, const fs::path& cache,
                                             const ReplaySettings& settings) {
-  const auto text = core::ReadFile(path);
+  const auto text = core::ReadFile(path, kLimits.bytes);
   if (!text.ok()) return text.error();
   auto certificate = ReadCertificate(*text, path.string(), signer);
   if (!certificate.ok()) return certificate.error();

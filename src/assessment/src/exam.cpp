@@ -17,6 +17,7 @@
 #include "owner_file.h"
 #include "signing.h"
 #include "trocar/assessment/preparation.h"
+#include "trocar/core/json_choice.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::assessment {
@@ -60,16 +61,22 @@ Threshold ReadPass(const JsonView& view) {
   view.AllowOnly({"metric", "hand", "phase", "better", "value", "purpose", "undefined"});
   Threshold threshold;
   threshold.of = {view.Text("metric"), view.Text("hand"), view.Text("phase")};
-  threshold.better = view.Text("better") == "higher" ? Better::kHigher : Better::kLower;
+  core::OneOf<bool>(view, "hand", {{"", true}, {"left", true}, {"right", true}, {"camera", true}},
+                    ErrorCode::kExamInvalid);
+  threshold.better = core::OneOf<Better>(
+      view, "better", {{"lower", Better::kLower}, {"higher", Better::kHigher}}, ErrorCode::kExamInvalid);
   const auto value = ParseExact(view.Text("value"));
   if (!value)
     view.Complain("value is a number as text, with as many digits as it needs", ErrorCode::kExamInvalid);
   threshold.value = value.value_or(0);
-  const std::string purpose = view.Text("purpose");
-  for (const Purpose one : {Purpose::kSafety, Purpose::kTime, Purpose::kEconomy, Purpose::kQuality}) {
-    if (purpose == NameOf(one)) threshold.purpose = one;
-  }
-  threshold.passes_undefined = view.Text("undefined") == "passes";
+  threshold.purpose = core::OneOf<Purpose>(view, "purpose",
+                                           {{NameOf(Purpose::kSafety), Purpose::kSafety},
+                                            {NameOf(Purpose::kTime), Purpose::kTime},
+                                            {NameOf(Purpose::kEconomy), Purpose::kEconomy},
+                                            {NameOf(Purpose::kQuality), Purpose::kQuality}},
+                                           ErrorCode::kExamInvalid);
+  threshold.passes_undefined =
+      core::OneOf<bool>(view, "undefined", {{"fails", false}, {"passes", true}}, ErrorCode::kExamInvalid);
   return threshold;
 }
 

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "trocar/core/user_folder.h"
+
 namespace trocar::assessment {
 namespace {
 
@@ -40,7 +42,7 @@ core::Status WriteOwnerFile(const std::filesystem::path& path, std::string_view 
                      (why == EEXIST ? "; choose another name, nothing is replaced" : "")};
   };
   std::error_code failure;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
+  if (path.has_parent_path()) failure = core::MakeFolders(path.parent_path());
   const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
   if (file.Number() < 0) return refuse(errno);
   while (!content.empty()) {

@@ -5,6 +5,7 @@
 
 #include "trocar/assessment/proficiency.h"
 #include "trocar/core/json.h"
+#include "trocar/core/json_choice.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::assessment {
@@ -31,20 +32,17 @@ MetricKey ReadKey(const JsonView& view) {
 }
 
 Purpose ReadPurpose(const JsonView& view) {
-  const std::string text = view.Text("purpose");
-  for (const Purpose purpose : {Purpose::kSafety, Purpose::kTime, Purpose::kEconomy, Purpose::kQuality}) {
-    if (text == NameOf(purpose)) return purpose;
-  }
-  view.Complain("purpose is \"safety\", \"time\", \"economy\" or \"quality\", not \"" + text + "\"",
-                ErrorCode::kProficiencyInvalid);
-  return Purpose::kSafety;
+  return core::OneOf<Purpose>(view, "purpose",
+                              {{NameOf(Purpose::kSafety), Purpose::kSafety},
+                               {NameOf(Purpose::kTime), Purpose::kTime},
+                               {NameOf(Purpose::kEconomy), Purpose::kEconomy},
+                               {NameOf(Purpose::kQuality), Purpose::kQuality}},
+                              ErrorCode::kProficiencyInvalid);
 }
 
 Better ReadBetter(const JsonView& view) {
-  const std::string text = view.Text("better");
-  if (text != "lower" && text != "higher")
-    view.Complain("better is \"lower\" or \"higher\"", ErrorCode::kProficiencyInvalid);
-  return text == "higher" ? Better::kHigher : Better::kLower;
+  return core::OneOf<Better>(view, "better", {{"lower", Better::kLower}, {"higher", Better::kHigher}},
+                             ErrorCode::kProficiencyInvalid);
 }
 
 Norm ReadNorm(const JsonView& view) {
@@ -77,10 +75,8 @@ std::vector<Threshold> ReadThresholds(const std::vector<JsonView>& elements) {
     threshold.better = view.Has("at_least") ? Better::kHigher : Better::kLower;
     threshold.value = view.Number(NameOf(threshold.better), kMetricValue);
     threshold.purpose = ReadPurpose(view);
-    const std::string undefined = view.TextOr("undefined", "fails");
-    if (undefined != "fails" && undefined != "passes")
-      view.Complain("undefined is \"fails\" or \"passes\"", ErrorCode::kProficiencyInvalid);
-    threshold.passes_undefined = undefined == "passes";
+    threshold.passes_undefined = core::OneOfOr<bool>(
+        view, "undefined", false, {{"fails", false}, {"passes", true}}, ErrorCode::kProficiencyInvalid);
     threshold.source = view.Text("source");
     if (threshold.source.empty())
       view.Complain("a threshold needs a source: a publication, or how it was found",

@@ -282,6 +282,37 @@ TEST(Exam, SealIsBrokenByAnyOtherSetting) {
   EXPECT_FALSE(WriteExam(path, *other).ok()) << "a seal is not replaced";
 }
 
+// The seal is of what was read: a word that is taken for its default would not break it.
+TEST(Exam, AWordThatIsNotKnownIsNoDefault) {
+  test::TemporaryFolder folder;
+  ExamSettings settings;
+  settings.name = "Wire";
+  settings.task = "wire_run";
+  settings.level = "easy";
+  settings.passes = {{{"time", "", ""}, Better::kLower, 40.25, Purpose::kSafety, false, ""}};
+  const auto sealed = SealExam(settings);
+  ASSERT_TRUE(sealed.ok()) << sealed.error().Text();
+  const auto path = folder.Path() / "exam.json", odd = folder.Path() / "odd.json";
+  ASSERT_TRUE(WriteExam(path, *sealed).ok());
+  const auto good = core::ReadFile(path);
+  ASSERT_TRUE(good.ok() && ReadExam(path).ok());
+  for (const char* field : {"better", "purpose", "undefined", "hand"}) {
+    for (const char* word : {"bogus", "LOWER", "lower ", "1"}) {
+      std::string text = *good;
+      const std::size_t at = text.find("\"" + std::string(field) + "\"");
+      ASSERT_NE(at, std::string::npos) << field;
+      const std::size_t begin = text.find('"', text.find(':', at)) + 1, end = text.find('"', begin);
+      text.replace(begin, end - begin, word);
+      ASSERT_TRUE(core::WriteFile(odd, text).ok());
+      const auto read = ReadExam(odd);
+      ASSERT_FALSE(read.ok()) << field << ": " << word;
+      EXPECT_EQ(read.error().code, ErrorCode::kExamInvalid) << field << ": " << word;
+      EXPECT_NE(read.error().message.find(std::string(field) + " is one of"), std::string::npos)
+          << read.error().message;
+    }
+  }
+}
+
 TEST(Exam, NamesWhatThereIs) {
   ExamSettings settings;
   settings.task = "juggling";

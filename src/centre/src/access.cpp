@@ -41,6 +41,7 @@ core::Result<std::string> FindPseudonym(const Access& access, const std::string&
   const auto known = store::FindPerson(*opened, text);
   if (known.ok()) return known->pseudonym;
   if (known.error().code != core::ErrorCode::kStoreUnknown || LooksLikePseudonym(text)) return known.error();
+  if (const auto sound = store::CheckName(text); !sound.ok()) return sound.error();
   const auto added = store::AddPerson(*opened, Viewer::Owner(), store::Role::kTrainee);
   if (!added.ok()) return added.error();
   if (const auto named = store::SetName(access.place.NamesFile(), added->pseudonym, text); !named.ok())

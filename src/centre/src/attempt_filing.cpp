@@ -196,6 +196,11 @@ struct AttemptFiling::Content {
     std::optional<store::Attempt> attempt;
     if (judged.ok()) {
       attempt = judged->attempt;
+      // this program wrote the recording from the live simulation, from whatever state that began
+      store::VerificationMark& mark = attempt->mark;
+      if (mark.IsVerified() || mark.why == store::WhyUnverified::kSavedState)
+        mark.state = store::Verification::kRecordedHere, mark.why = store::WhyUnverified::kNone;
+      judged->attempt.mark = mark;
       if (judged->is_demonstration) attempt.reset();
       result.judged = std::move(*judged);
     } else {
@@ -204,6 +209,7 @@ struct AttemptFiling::Content {
       result.failure = judged.error();
       auto described = DescribeRecording(one.recording, one.person, one.step);
       if (described.ok()) attempt = std::move(*described);
+      if (attempt) attempt->mark.why = store::WhyUnverified::kCannotReplay;
     }
     if (attempt) {
       if (const auto kept = courier.Keep(*attempt); !kept.ok()) {

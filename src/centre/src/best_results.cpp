@@ -30,8 +30,9 @@ core::Result<BestResults> LoadBestResults(const Access& access) {
       const store::Attempt& attempt = stored.attempt;
       if (attempt.trainee != access.person) continue;  // without a person the owner sees everyone's
       BestResult& best = results[{attempt.task, attempt.level}];
+      if (!attempt.mark.Counts()) ++best.unverified;
       if (best.attempts++ == 0) best.is_score_percent = tasks.IsScorePercent(attempt.task, attempt.level);
-      if (!attempt.is_completed) continue;
+      if (!attempt.CountsAsCompleted()) continue;
       ++best.completed;
       if (attempt.score) best.score = std::max(best.score.value_or(*attempt.score), *attempt.score);
       best.seconds = std::min(best.seconds.value_or(attempt.seconds), attempt.seconds);
@@ -46,13 +47,19 @@ std::string DescribeBest(const BestResults& results, const std::string& task, co
   const auto found = results.find({task, level});
   if (found == results.end()) return core::Translate("Not tried yet");
   const BestResult& best = found->second;
+  const std::string unverified =
+      best.unverified == 0
+          ? std::string()
+          : "; " + core::TranslateCount("{1} not verified", "{1} not verified", best.unverified);
   if (best.completed == 0)
     return core::TranslateCount("Not completed in {1} attempt", "Not completed in {1} attempts",
-                                best.attempts);
+                                best.attempts) +
+           unverified;
   std::string what = best.score ? ScoreText(*best.score, best.is_score_percent) + ", " : "";
   what += report::FormatClock(best.seconds.value_or(0));
   return core::TranslateWith("Best {1}; {2}",
-                             {what, core::TranslateCount("{1} attempt", "{1} attempts", best.attempts)});
+                             {what, core::TranslateCount("{1} attempt", "{1} attempts", best.attempts)}) +
+         unverified;
 }
 
 }  // namespace trocar::centre

@@ -60,8 +60,8 @@ Attempt Convert(const store::Attempt& from, const Course& course) {
 }
 
 /// The person's attempts at tasks of the course, the oldest first.
-core::Result<std::vector<Attempt>> ListAttemptsAt(Desk& desk, const std::string& person,
-                                                  const Course& course) {
+core::Result<std::vector<Attempt>> ListAttemptsAt(Desk& desk, const std::string& person, const Course& course,
+                                                  std::size_t& left_out) {
   std::vector<std::string> tasks;
   for (const Step& step : course.steps) {
     const std::string& task = step.IsOperation() ? step.operation : step.task;
@@ -78,6 +78,10 @@ core::Result<std::vector<Attempt>> ListAttemptsAt(Desk& desk, const std::string&
       if (!page.ok()) return page.error();
       for (const store::StoredAttempt& one : page->attempts) {
         if (one.attempt.trainee != person) continue;
+        if (!one.attempt.mark.Counts()) {
+          ++left_out;
+          continue;
+        }
         const auto whole = store::FindAttempt(desk.store, desk.viewer, one.id);
         if (!whole.ok()) return whole.error();
         attempts.push_back(Convert(whole->attempt, course));
@@ -163,13 +167,18 @@ core::Result<LoadedCourse> LoadCourse(const Access& access, const std::string& c
   assessment::CourseDates dates;
   dates.today = Today();
   if (desk.ok()) {
-    auto listed = ListAttemptsAt(*desk, access.person, *course);
+    auto listed = ListAttemptsAt(*desk, access.person, *course, page.unverified);
     if (listed.ok()) {
       attempts = std::move(*listed);
     } else {
       loaded.store_failure = listed.error();
     }
   }
+  if (page.unverified > 0)
+    page.note = core::TranslateCount(
+        "{1} attempt is not verified and does not count here; trocar store verify --attempts replays it.",
+        "{1} attempts are not verified and do not count here; trocar store verify --attempts replays them.",
+        page.unverified);
   // a course begins with the first attempt at it
   if (!attempts.empty()) dates.started = assessment::ParseDay(attempts.front().started.substr(0, 10));
   const auto progress = assessment::CalcProgress(*course, attempts, dates);

@@ -8,6 +8,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/core/translate.h"
 #include "trocar/store/attempts.h"
+#include "trocar/store/people.h"
 #include "words.h"
 
 namespace trocar::centre {
@@ -35,6 +36,7 @@ core::Result<Start> PrepareExam(const ExamPage& page) {
     return core::Error{core::ErrorCode::kExamInvalid,
                        "nobody has said who sits the exam; say at \"Who are you?\" who you are"};
   }
+  if (const auto sound = store::CheckPseudonym(page.examinee); !sound.ok()) return sound.error();
   const auto exam = assessment::ReadExam(page.file);
   if (!exam.ok()) return exam.error();
   auto description = assessment::DescribeExam(*exam);

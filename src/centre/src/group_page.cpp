@@ -17,7 +17,7 @@ constexpr int kPage = 1000;  // rows that are asked for at once
 
 /// What a member came to in a task.
 struct Tally {
-  std::size_t attempts = 0, completed = 0;
+  std::size_t attempts = 0, completed = 0, unverified = 0;
   bool is_passed = false, is_judged = false;
   std::optional<double> last, best;  // score
   std::string level;                 // of the newest: only it counts for scores
@@ -39,7 +39,13 @@ core::Result<std::vector<std::string>> ListMembers(Desk& desk, const std::string
 }
 
 void Add(const store::Attempt& attempt, Tally& tally) {
-  if (tally.attempts++ == 0) tally.level = attempt.level;
+  ++tally.attempts;
+  // what a file says of itself does not decide
+  if (!attempt.mark.Counts()) {
+    ++tally.unverified;
+    return;
+  }
+  if (tally.attempts - tally.unverified == 1) tally.level = attempt.level;
   tally.completed += attempt.is_completed ? 1 : 0;
   tally.is_judged = tally.is_judged || attempt.is_passed.has_value();
   tally.is_passed = tally.is_passed || (attempt.is_completed && attempt.is_passed && *attempt.is_passed);
@@ -60,6 +66,8 @@ GroupPage::Cell MakeCell(const Tally& tally, TaskBook& tasks, const std::string&
   } else {
     cell.text += "\n" + core::TranslateWith("{1} completed", {std::to_string(tally.completed)});
   }
+  if (tally.unverified > 0)
+    cell.text += "\n" + core::TranslateCount("{1} not verified", "{1} not verified", tally.unverified);
   cell.is_passed = tally.is_passed;
   cell.text += tally.is_passed   ? "\n" + core::Translate("passed")
                : tally.is_judged ? "\n" + core::Translate("not passed yet")

@@ -36,6 +36,13 @@ HistoryPage::Row MakeRow(const Access& access, TaskBook& tasks, const store::Sto
   } else {
     row.outcome = core::Translate("completed");
   }
+  if (const std::string mark = store::DescribeMark(attempt.mark); !mark.empty()) {
+    row.mark = core::Translate(mark);
+    row.outcome = attempt.mark.state == store::Verification::kRefused
+                      ? row.mark
+                      : core::TranslateWith("{1}; {2}", {row.outcome, row.mark});
+    row.tone = attempt.mark.state == store::Verification::kRefused ? Tone::kBad : Tone::kCaution;
+  }
   if (attempt.score && attempt.is_completed)
     row.score = ScoreText(*attempt.score, tasks.IsScorePercent(attempt.task, attempt.level));
   row.time = report::FormatClock(attempt.seconds);
@@ -48,7 +55,7 @@ HistoryPage::Row MakeRow(const Access& access, TaskBook& tasks, const store::Sto
 
 /// A task's attempts of one level, the oldest first.
 core::Result<std::vector<store::Attempt>> ListOfTask(Desk& desk, const HistoryQuery& query,
-                                                     std::string& level) {
+                                                     std::string& level, std::size_t& left_out) {
   store::AttemptFilter filter;
   filter.trainee = query.person;
   filter.task = query.task;
@@ -57,7 +64,11 @@ core::Result<std::vector<store::Attempt>> ListOfTask(Desk& desk, const HistoryQu
   std::vector<store::Attempt> attempts;
   if (!page->attempts.empty()) level = page->attempts.front().attempt.level;
   for (const store::StoredAttempt& one : page->attempts) {
-    if (one.attempt.level == level) attempts.push_back(one.attempt);
+    if (one.attempt.level != level) continue;
+    if (one.attempt.mark.Counts())
+      attempts.push_back(one.attempt);
+    else
+      ++left_out;
   }
   std::reverse(attempts.begin(), attempts.end());
   return attempts;
@@ -158,8 +169,13 @@ core::Result<HistoryPage> LoadHistory(const Access& access, const HistoryQuery& 
   page.next = listed->next;
   if (query.task.empty()) return page;
 
-  const auto attempts = ListOfTask(*desk, query, page.level);
+  std::size_t left_out = 0;
+  const auto attempts = ListOfTask(*desk, query, page.level, left_out);
   if (!attempts.ok()) return attempts.error();
+  if (left_out > 0)
+    page.findings.push_back(core::TranslateCount("Not counted here: {1} attempt that is not verified.",
+                                                 "Not counted here: {1} attempts that are not verified.",
+                                                 left_out));
   std::vector<double> seconds;
   std::vector<bool> failed;
   for (const store::Attempt& attempt : *attempts) {

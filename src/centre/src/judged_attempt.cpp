@@ -2,13 +2,14 @@
 #include "trocar/centre/judged_attempt.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <chrono>
 #include <utility>
 
 #include "trocar/assessment/course.h"
 #include "trocar/assessment/judge_recording.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/translate.h"
+#include "trocar/core/version.h"
 #include "trocar/record/replay.h"
 #include "trocar/scene/scene.h"
 #include "trocar/store/keep_attempt.h"
@@ -21,17 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 using core::Error;
 using core::ErrorCode;
-using nlohmann::json;
 
 constexpr const char* kDemonstration = "the demonstration";  // as session::Runner names its player
 
 /// Keeps in the outcome for which step the attempt was made: the store's attempts know no courses.
 void SetStepName(store::Attempt& attempt, const StepName& step) {
-  if (!step.IsSet()) return;
-  json outcome = json::parse(attempt.outcome, nullptr, false);
-  if (!outcome.is_object()) outcome = json::object();
-  outcome["course"] = {{"course", step.course}, {"step", step.step}};
-  attempt.outcome = outcome.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (step.IsSet()) attempt.outcome = record::WithCourseStep(attempt.outcome, step);
 }
 
 core::Result<std::string> ReadAsset(const char* file) {
@@ -123,6 +119,25 @@ core::Result<store::Attempt> Describe(const record::Recording& recording, const 
   return attempt;
 }
 
+/// Whether the file says what was computed. Of a part of an operation nothing is computed behind the step's last moment.
+void SetMark(const record::Replay& replay, const record::Description& description, store::Attempt& attempt) {
+  store::VerificationMark& mark = attempt.mark;
+  mark.program = core::VersionText();
+  mark.time_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
+                     std::chrono::system_clock::now().time_since_epoch())
+                     .count();
+  if (replay.IsAtEnd() && !replay.IsEndingSame()) {
+    const bool is_of_this_version = description.program == core::VersionText();
+    mark.claim = replay.GetRecording().ending->outcome;
+    mark.state = is_of_this_version ? store::Verification::kRefused : store::Verification::kUnverified;
+    mark.why = is_of_this_version ? store::WhyUnverified::kOtherEnding : store::WhyUnverified::kOtherVersion;
+  } else if (description.first_tick > 0) {
+    mark.why = store::WhyUnverified::kSavedState;
+  } else {
+    mark.state = store::Verification::kVerified, mark.why = store::WhyUnverified::kNone;
+  }
+}
+
 }  // namespace
 
 core::Result<store::Attempt> DescribeRecording(const fs::path& path, const std::string& person,
@@ -172,6 +187,7 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
     if (!found.ok()) return found.error();
     proficiency = std::move(*found);
   }
+  SetMark(*replay, description, judged.attempt);
   judged.attempt.metrics = result.metrics.values;
   judged.attempt.is_completed = result.is_completed;
   judged.attempt.score = played->trace.outcome.score;
@@ -189,6 +205,7 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
   input.facts = report::DescribeAttempt(description, scene.task ? scene.task->name : scene.name);
   input.facts.person = settings.person;
   input.facts.recording = path.filename().string();
+  input.facts.is_as_recorded = judged.attempt.mark.claim.empty();
   if (scene.task && scene.task->reference_points > 0) input.facts.best_score = scene.task->best_score;
   input.references = references;
   input.advice = advice;
@@ -197,13 +214,7 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
 }
 
 StepName FindStepName(const store::Attempt& attempt) {
-  const json outcome = json::parse(attempt.outcome, nullptr, false);
-  if (!outcome.is_object() || !outcome.contains("course") || !outcome["course"].is_object()) return {};
-  const json& course = outcome["course"];
-  const auto text = [&course](const char* key) {
-    return course.contains(key) && course[key].is_string() ? course[key].get<std::string>() : std::string();
-  };
-  return {text("course"), text("step")};
+  return record::FindCourseStep(attempt.outcome);
 }
 
 std::string TaskNameOf(const std::string& key) {

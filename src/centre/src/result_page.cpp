@@ -160,6 +160,12 @@ ResultPage MakeResultPage(const JudgedAttempt& judged, const Access* access) {
   if (judged.is_demonstration)
     page.subtitle += core::Translate("  ·  a demonstration, which is nobody's attempt and is not stored");
   SetVerdict(judged, page);
+  if (const std::string mark = store::DescribeMark(judged.attempt.mark); !mark.empty()) {
+    page.verdict = judged.attempt.mark.state == store::Verification::kRefused
+                       ? core::Translate(mark)
+                       : core::TranslateWith("{1}; {2}", {page.verdict, core::Translate(mark)});
+    page.tone = judged.attempt.mark.state == store::Verification::kRefused ? Tone::kBad : Tone::kCaution;
+  }
   page.outcome = r.outcome;
   page.debriefing = core::Translate(judged.debriefing);
   AddTiles(judged, page);

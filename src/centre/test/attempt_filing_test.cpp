@@ -79,6 +79,7 @@ TEST_F(Filing, BringsAnAttemptWithItsMetricsIntoTheStoreByItself) {
   EXPECT_EQ(stored[0].attempt.trainee, "T-AAAAAA");
   EXPECT_EQ(stored[0].attempt.task, kTask);
   EXPECT_FALSE(stored[0].attempt.is_completed);
+  EXPECT_EQ(stored[0].attempt.mark.state, store::Verification::kRecordedHere);
   auto desk = OpenDesk(access_);
   ASSERT_TRUE(desk.ok());
   const auto whole = store::FindAttempt(desk->store, desk->viewer, stored[0].id);

@@ -122,6 +122,68 @@ TEST_P(Pages, WhatIsNotCompletedIsNotGreen) {
   EXPECT_EQ(page->rows[0].score, "") << "what was not completed has no score";
 }
 
+// Each page on which an attempt shows; a new one joins this list.
+TEST_P(Pages, EachSaysWhatIsNotVerifiedAndDoesNotCountIt) {
+  const std::string who = Add(Role::kTrainee), instructor = Add(Role::kInstructor);
+  ASSERT_TRUE(store::AddGroup(Open(), store::kOwner, "Ward 3").ok());
+  for (const std::string& member : {instructor, who})
+    ASSERT_TRUE(store::JoinGroup(Open(), store::kOwner, "Ward 3", member).ok());
+  const auto whole = assessment::FindCourse("basic-skills");
+  ASSERT_TRUE(whole.ok());
+  const auto step = assessment::FindStep(*whole, whole->steps.front().key);  // the others are locked
+  ASSERT_TRUE(step.ok());
+  const auto keep = [&](int day, store::VerificationMark mark) {
+    store::Attempt attempt = MakeOne(day, who, 30, true);
+    attempt.task = step->task, attempt.level = step->level;
+    attempt.metrics.clear();
+    for (const assessment::Threshold& threshold : step->proficiency.thresholds)
+      attempt.metrics.push_back(
+          {threshold.of.metric, threshold.of.hand, threshold.of.phase, threshold.value, ""});
+    attempt.mark = std::move(mark);
+    Keep(attempt);
+  };
+  struct Shown {
+    std::string page, text;
+    bool counts;
+  };
+  const auto show = [&]() -> std::vector<Shown> {
+    Access own = access_, teacher = access_;
+    own.person = who, teacher.person = instructor;
+    const auto history = LoadHistory(own, {who, "", ""});
+    const auto of_task = LoadHistory(own, {who, step->task, ""});
+    const auto best = LoadBestResults(own);
+    const auto course = LoadCourse(own, "basic-skills");
+    const auto group = LoadGroup(teacher, "Ward 3");
+    EXPECT_TRUE(history.ok() && of_task.ok() && best.ok() && course.ok() && group.ok());
+    JudgedAttempt judged;
+    judged.attempt = history->rows[0].attempt;
+    judged.report.facts.task_key = "x", judged.report.is_operation = true;
+    const ResultPage result = MakeResultPage(judged, nullptr);
+    const auto& cell = group->members.at(0).cells.at(0);
+    const std::string& tried = course->page.steps.front().progress;
+    return {{"history", history->rows[0].outcome,
+             history->rows[0].tone != Tone::kCaution && history->rows[0].tone != Tone::kBad},
+            {"history of a task", testing::PrintToString(of_task->findings), !of_task->drawings.empty()},
+            {"best", DescribeBest(*best, step->task, step->level),
+             best->at({step->task, step->level}).completed > 0},
+            {"course", course->page.note, tried != "not tried yet"},
+            {"group", cell.text, cell.is_passed},
+            {"result", result.verdict, result.tone == Tone::kPlain}};
+  };
+  keep(1, {});
+  for (const Shown& shown : show()) {
+    EXPECT_THAT(shown.text, HasSubstr("not verified")) << shown.page;
+    EXPECT_FALSE(shown.counts) << shown.page;
+  }
+  // the control: the same attempt, verified
+  ASSERT_TRUE(Open().GetDatabase().Run("DELETE FROM attempt").ok());
+  keep(2, {store::Verification::kVerified, store::WhyUnverified::kNone, "", {}, ""});
+  for (const Shown& shown : show()) {
+    EXPECT_THAT(shown.text, testing::Not(HasSubstr("not verified"))) << shown.page;
+    EXPECT_TRUE(shown.counts) << shown.page;
+  }
+}
+
 TEST_P(Pages, TraineesSeeNobodyElsesHistory) {
   const std::string one = Add(Role::kTrainee), other = Add(Role::kTrainee);
   Keep(MakeOne(1, one, 60, true));

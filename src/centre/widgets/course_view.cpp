@@ -59,6 +59,7 @@ void CourseView::Show(const CentrePage& shown) {
   head.append(*courses);
   all->append(head);
   all->append(MakeText(page.about, "name"));
+  if (!page.note.empty()) all->append(MakeText(page.note, StyleOf(Tone::kCaution)));
 
   auto* columns = Gtk::make_managed<Gtk::Box>();
   columns->set_spacing(kGap);

@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "label_console.h"
 #include "trocar/anatomy/patient_lint.h"
 
 namespace trocar::cli {
@@ -25,6 +26,11 @@ void PrintJson(const anatomy::LintReport& report) {
                               {"manifold", mesh.manifold},
                               {"self_intersections", mesh.self_intersections},
                               {"volume_ml", mesh.volume_ml}});
+  }
+  if (!report.labels.empty()) json["labels"] = nlohmann::ordered_json::array();
+  for (const anatomy::SourceLabel& label : report.labels) {
+    json["labels"].push_back({{"label", label.label}, {"taken_as", label.meaning}, {"reason", label.reason}});
+    if (!label.doubt.empty()) json["labels"].back()["doubt"] = label.doubt;
   }
   json["findings"] = nlohmann::ordered_json::array();
   for (const anatomy::LintFinding& finding : report.findings) {
@@ -44,8 +50,10 @@ void PrintForPerson(const anatomy::LintReport& report) {
   }
   PrintTable(rows);
   std::printf("\n");
+  PrintLabels(report.labels);
   for (const anatomy::LintFinding& finding : report.findings) {
-    Print(finding.code + "  " + finding.where + "\n    " + TranslateComposed(finding.text) + "\n");
+    Print(finding.code + "  " + core::PrintableLine(finding.where) + "\n    " +
+          core::PrintableLine(TranslateComposed(finding.text)) + "\n");
   }
   if (report.findings.empty()) {
     Say("No findings.\n");
@@ -65,9 +73,10 @@ void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome) {
   CLI::App* check = anatomy.add_subcommand("check", "Say what is wrong with a patient, and where");
   auto arguments = std::make_shared<Arguments>();
   check->add_option("patient", arguments->patient, "Patient folder")->required()->type_name("PATIENT");
-  check->add_flag("--json", arguments->is_json,
-                  "Machine-readable: {\"meshes\": [{name, triangles, closed, manifold, self_intersections, "
-                  "volume_ml}],\n\"findings\": [{code, where, text}]}");
+  check->add_flag(
+      "--json", arguments->is_json,
+      "Machine-readable: {\"meshes\": [{name, triangles, closed, manifold, self_intersections, "
+      "volume_ml}],\n\"labels\": [{label, taken_as, reason, doubt}], \"findings\": [{code, where, text}]}");
   check->footer(
       "Exit status 0 without findings, 1 with findings. Places are in the files' frame: LPS, millimetres.\n"
       "Example: trocar anatomy check assets/patients/visible-human-male/patient --json");

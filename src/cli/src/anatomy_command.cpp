@@ -10,6 +10,7 @@
 #include "command.h"
 #include "console.h"
 #include "image_options.h"
+#include "label_console.h"
 #include "trocar/anatomy/build_patient.h"
 #include "trocar/anatomy/patient_from_labels.h"
 
@@ -71,7 +72,8 @@ core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   PrintTable(rows);
   Say("Distance: of mesh and label surface from each other, the largest both ways, and the mesh's mean.\n");
   Print("\n" + anatomy::FormatSurroundings(*report));
-  if (!report->notes.empty()) std::printf("\n");
+  std::printf("\n");
+  PrintLabels(report->patient.labels);
   for (const std::string& note : report->notes) Print(TranslateComposed(note) + "\n");
   Print("\n" + TranslateComposed(report->patient.provenance) + ".\n");
   Say("Wrote {1}\n", options.output);
@@ -99,10 +101,10 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
       ->check(CLI::Range(1, images::kLargestLabel))
       ->type_name("LABEL");
   command
-      ->add_option(
-          "--names", options->names,
-          "Table that says which label is what: JSON ({\"liver\": 5}, nnU-Net's dataset.json), a colour "
-          "table of 3D Slicer or a label description of ITK-SNAP")
+      ->add_option("--names", options->names,
+                   "Table that says which label is what: JSON ({\"liver\": 5}, nnU-Net's dataset.json), CSV "
+                   "or TSV with a header, a colour "
+                   "table of 3D Slicer or a label description of ITK-SNAP")
       ->type_name("FILE");
   command->add_flag(
       "--mirrored", options->is_mirrored,
@@ -110,9 +112,11 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
   command->add_flag("--largest-part", options->takes_largest_part,
                     "Take the largest part of an organ that is in several, whatever is lost");
   command->footer(
-      "Labels are found by the names that 3D Slicer and TotalSegmentator write into the file, by\n"
-      "TotalSegmentator's numbers (liver 5, gallbladder 4), or are 1 and 2. Ducts and arteries are placed by "
-      "landmarks.\n"
+      "Labels are found by the names in the file or the table, in many languages; without names by their "
+      "numbers, where\n"
+      "all of them fit one known scheme (TotalSegmentator, AbdomenAtlas, BTCV, AMOS, ...; docs/patients.md) "
+      "and sizes and\n"
+      "places agree. What is not certain is asked for. Ducts and arteries are placed by landmarks.\n"
       "Examples: trocar anatomy from-labels total.nii.gz -o out/patient\n"
       "          trocar anatomy from-labels segmentations -o out/patient\n"
       "          trocar anatomy from-labels mine.nrrd --liver 3 --gallbladder 4 -o out/patient");
@@ -156,7 +160,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
           "window that trocar anatomy images suggests)")
       ->type_name("CENTRE,WIDTH");
   build->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 100000))
+      ->check(CLI::Range(1, 999999999))
       ->type_name("N");
   build->add_option("-o,--output", arguments->output, "Patient folder to write")
       ->required()

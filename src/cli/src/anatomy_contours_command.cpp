@@ -66,7 +66,7 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome) {
           "Only pictures with such names, where a folder holds several stacks: image-{slice:04}.jpeg")
       ->type_name("NAME");
   command->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 100000))
+      ->check(CLI::Range(1, 999999999))
       ->type_name("N");
   command
       ->add_option(

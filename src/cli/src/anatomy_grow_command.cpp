@@ -78,7 +78,7 @@ void AddAnatomyGrowCommand(CLI::App& anatomy, Outcome& outcome) {
   command
       ->add_option("--series", arguments->options.series.series,
                    "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 100000))
+      ->check(CLI::Range(1, 999999999))
       ->type_name("N");
   command->footer(
       "Correct what grew in the window: trocar anatomy contours. How it grows: docs/contours.md.\n"

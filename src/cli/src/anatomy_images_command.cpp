@@ -14,6 +14,7 @@
 #include "image_options.h"
 #include "trocar/core/printable.h"
 #include "trocar/core/text_table.h"
+#include "trocar/core/translate.h"
 #include "trocar/images/contact_sheet.h"
 #include "trocar/images/image_series.h"
 #include "trocar/images/png_file.h"
@@ -69,6 +70,7 @@ void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWi
                                                                   core::FormatNumber(window.width)}));
   }
   if (info.ignored_files > 0) add(Translate("other files, ignored"), std::to_string(info.ignored_files));
+  for (const std::string& note : info.notes) add(Translate("note"), core::TranslateComposed(note));
   PrintTable(rows);
 }
 
@@ -91,6 +93,11 @@ void PrintJson(const images::ImageSeriesInfo& info, const images::DisplayWindow&
   json["grey_range"] = info.grey_range;
   json["window"] = {{"centre", window.centre}, {"width", window.width}};
   json["ignored_files"] = info.ignored_files;
+  if (info.series > 0) {
+    json["series"] = info.series;
+    json["series_id"] = info.series_id;
+  }
+  json["notes"] = info.notes;
   // names come from a folder and may hold any bytes
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
@@ -163,7 +170,7 @@ void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome) {
       ->type_name("NAME");
   images
       ->add_option("--series", arguments->options.series, "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 100000))
+      ->check(CLI::Range(1, 999999999))
       ->type_name("N");
   images
       ->add_option("--window", arguments->window,

@@ -214,6 +214,7 @@ core::Result<report::AttemptReport> ReportRecording(const std::string& path, con
   facts.task_key = TaskKey(facts.task_key);
   facts.person = person;
   facts.recording = std::filesystem::path(path).filename().string();
+  facts.is_as_recorded = replay.IsEndingSame();
   return watch.MakeReport(std::move(facts));
 }
 

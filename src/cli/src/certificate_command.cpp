@@ -12,6 +12,7 @@
 #include "console.h"
 #include "judgement_text.h"
 #include "passphrase.h"
+#include "pseudonym_option.h"
 #include "trocar/assessment/certificate.h"
 #include "trocar/assessment/exam.h"
 #include "trocar/core/safe_file.h"
@@ -128,6 +129,7 @@ void AddCertificateCommand(CLI::App& app, Outcome& outcome) {
   issue->add_option("recording", a->recording, "Recording of it")->required()->type_name("RECORDING");
   issue->add_option("--examinee", a->examinee, "Pseudonym of who was examined")
       ->required()
+      ->check(ComplainOfPseudonym)
       ->type_name("PSEUDONYM");
   issue
       ->add_option("--key", a->key,

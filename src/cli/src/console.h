@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "trocar/core/console.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/core/progress_bar.h"
 #include "trocar/core/text_table.h"
 #include "trocar/core/translate.h"

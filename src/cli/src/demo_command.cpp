@@ -22,6 +22,7 @@
 #include "device_input.h"
 #include "haptic_input.h"
 #include "igtl_option.h"
+#include "own_json.h"
 #include "part_folder.h"
 #include "picture_size.h"
 #include "trocar/core/safe_file.h"
@@ -72,11 +73,11 @@ std::string FormatDemoMetrics(const training::AttemptMetrics& metrics, const sce
                                  {"ticks", played.ticks},
                                  {"state_hash", core::HashText(played.state_hash)},
                                  {"disclaimer", training::MetricsDisclaimer()}};
-  json["metrics"] = nlohmann::ordered_json::parse(training::FormatMetricsJson(metrics), nullptr, false);
+  json["metrics"] = ParseOwnJson(training::FormatMetricsJson(metrics));
   json["haptics"] = nullptr;
   if (haptics != nullptr) {
     const std::string summary = session::FormatSummaryJson(haptics->Record().CalcSummary());
-    json["haptics"] = nlohmann::ordered_json::parse(summary, nullptr, false);
+    json["haptics"] = ParseOwnJson(summary);
   }
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

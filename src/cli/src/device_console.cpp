@@ -8,6 +8,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include "console.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/device/ports.h"
 
 namespace trocar::cli {
@@ -83,8 +85,13 @@ core::Result<WatchReport> WatchDevice(device::Driver& driver, double seconds,
     clock.Sleep(kReadPeriod);
   }
   report.held_back = driver.DescribeHeldBack();
+  report.received = driver.DescribeReceived();
   driver.Finalize();
   return report;
+}
+
+void PrintHeldBack(const WatchReport& report) {
+  for (const std::string& sentence : report.held_back) Say("Not used: {1}\n", TranslateComposed(sentence));
 }
 
 namespace {
@@ -138,12 +145,14 @@ void HandPlot::Show(const HandSamples& samples, double time) {
     return;
   }
   // back over the last drawing, and wipe each line to its end
-  if (is_drawn_) std::printf("\033[%zuA", samples.size());
+  if (is_drawn_) core::WriteControl(stdout, "\033[" + std::to_string(samples.size()) + "A");
   is_drawn_ = true;
-  std::string text = FormatHands(samples);
-  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 4))
-    text.insert(at, "\033[K");
-  Print(text);
+  const std::string text = FormatHands(samples);
+  for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
+    Print(text.substr(at, end - at));
+    core::WriteControl(stdout, "\033[K");
+    Print("\n");
+  }
   std::fflush(stdout);
 }
 

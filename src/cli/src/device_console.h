@@ -6,6 +6,7 @@
 #include <atomic>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "trocar/core/result.h"
 #include "trocar/device/driver.h"
@@ -34,7 +35,8 @@ struct WatchReport {
   std::array<int, device::kChannelCount> fresh{};   ///< samples of each hand
   std::array<int, device::kChannelCount> unseen{};  ///< times that a hand went out of sight
   bool is_lost = false;
-  std::string held_back;  ///< Driver::DescribeHeldBack()
+  std::vector<std::string> held_back;  ///< Driver::DescribeHeldBack()
+  std::string received;                ///< Driver::DescribeReceived()
 };
 
 /// Configures and activates a driver and reads it 500 times a second.
@@ -46,6 +48,9 @@ struct WatchReport {
 core::Result<WatchReport> WatchDevice(device::Driver& driver, double seconds,
                                       const std::function<void(const HandSamples&, double)>& on_sample,
                                       const std::function<void(const HandSamples&, double)>& on_idle = {});
+
+/// What came and did not count, a line for each reason; nothing where all did.
+void PrintHeldBack(const WatchReport& report);
 
 /// Three lines, one a hand: numbers and bars. Ends with a newline.
 std::string FormatHands(const HandSamples& samples);

@@ -24,9 +24,14 @@ core::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& 
 }
 
 DeviceInput::~DeviceInput() {
-  if (driver_ == nullptr) return;
-  if (const std::string held_back = driver_->DescribeHeldBack(); !held_back.empty())
-    core::Log(core::LogLevel::kWarning, driver_->GetName() + ": " + held_back);
+  if (driver_ != nullptr) TellHeldBack();
+}
+
+/// Each reason once, though its counts go on.
+void DeviceInput::TellHeldBack() {
+  const std::vector<std::string> reasons = driver_->DescribeHeldBack();
+  for (; told_ < reasons.size(); ++told_)
+    core::Log(core::LogLevel::kWarning, driver_->GetName() + ": " + reasons[told_]);
 }
 
 void DeviceInput::Apply(double time, scene::Input& input) {
@@ -35,8 +40,13 @@ void DeviceInput::Apply(double time, scene::Input& input) {
   } else {
     clock_->Sleep(start_ + time - clock_->Now());
   }
+  if (time >= next_look_) {
+    next_look_ = time + 1.0;
+    TellHeldBack();
+  }
   if (!is_lost_ && driver_->Read(samples_) == device::ReadStatus::kLost) {
     is_lost_ = true;
+    TellHeldBack();
     buttons_.ReleaseAll();
     core::Log(core::LogLevel::kWarning, Check().error().Text());
   }

@@ -19,7 +19,7 @@ class DeviceInput {
   /// \return the device's error
   static core::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec, const scene::Scene& scene);
 
-  /// Says in the log what came in and was not used.
+  /// Says in the log what came in and was not used, as Apply() does as soon as it is so.
   ~DeviceInput();
 
   /// Replaces the hands that the device sees, presses its pedals and changes tools. A hand that it does not see, and all once
@@ -32,6 +32,7 @@ class DeviceInput {
 
  private:
   explicit DeviceInput(const scene::Scene& scene) : hands_(scene) {}
+  void TellHeldBack();
 
   device::ManualClock simulated_;
   device::Clock* clock_ = nullptr;
@@ -43,6 +44,8 @@ class DeviceInput {
   scene::Input held_;
   bool has_held_ = false;
   bool is_lost_ = false;
+  double next_look_ = 0;  // at what was held back [s]
+  std::size_t told_ = 0;  // reasons of it
 };
 
 }  // namespace trocar::cli

@@ -50,6 +50,7 @@ core::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int han
   });
   progress.Finish();
   if (!report) return report.error();
+  PrintHeldBack(*report);
   if (report->is_lost)
     return core::Error{core::ErrorCode::kDeviceLost,
                        driver.GetName() + " was lost; check plug and power, and repeat"};

@@ -26,6 +26,7 @@ constexpr const char* kSpecHelp =
 
 constexpr const char* kButtonKinds[] = {"gamepad", "spacemouse", "haptics", "play"};
 constexpr const char* kHands[] = {"left", "right"};
+constexpr const char* kChannels[] = {"left", "right", "laparoscope"};
 
 /// The acts of a hand's buttons up to the last that has one.
 std::vector<std::string> ActNames(const std::array<device::HandAct, device::kMostButtons>& acts) {
@@ -80,7 +81,7 @@ void List(bool is_json) {
   }
   Say("Found:\n");
   for (const device::FoundDevice& one : found)
-    Print("  " + one.spec + "   " + TranslateComposed(one.description) + "\n");
+    Print(core::PrintableLine("  " + one.spec + "   " + TranslateComposed(one.description)) + "\n");
   if (found.empty()) Say("  nothing but mouse and keyboard\n");
   Say("\nKinds of device (write KIND:ADDRESS):\n");
   std::vector<std::vector<std::string>> rows;
@@ -97,30 +98,42 @@ core::Result<std::unique_ptr<device::Driver>> OpenDevice(const std::string& spec
 }
 
 void PrintReport(const WatchReport& report) {
-  static constexpr const char* kNames[] = {"left", "right", "laparoscope"};
   std::vector<std::vector<std::string>> rows = {{"hand", "samples", "a second", "out of sight"}};
   for (std::size_t i = 0; i < report.fresh.size(); ++i) {
-    rows.push_back({Translate(kNames[i]), std::to_string(report.fresh[i]),
+    rows.push_back({Translate(kChannels[i]), std::to_string(report.fresh[i]),
                     ShownNumber(report.seconds > 0 ? report.fresh[i] / report.seconds : 0, 3),
                     std::to_string(report.unseen[i])});
   }
   Print("\n" + FormatShownTable(rows));
-  if (!report.held_back.empty()) Say("Not used: {1}\n", TranslateComposed(report.held_back));
+  if (!report.received.empty()) Say("Received: {1}\n", report.received);
+  PrintHeldBack(report);
+}
+
+/// The same for programs.
+void PrintReportJson(const std::string& spec, const WatchReport& report) {
+  nlohmann::ordered_json json = {{"device", spec}, {"seconds", report.seconds}, {"is_lost", report.is_lost}};
+  for (std::size_t i = 0; i < report.fresh.size(); ++i)
+    json["hands"][kChannels[i]] = {{"samples", report.fresh[i]}, {"times_out_of_sight", report.unseen[i]}};
+  json["received"] = report.received;
+  json["not_used"] = report.held_back;
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 core::Status LostError(const device::Driver& driver) {
   return core::Error{core::ErrorCode::kDeviceLost, driver.GetName() + " was lost; check plug and power"};
 }
 
-core::Status Test(const std::string& spec, double seconds) {
+core::Status Test(const std::string& spec, double seconds, bool is_json = false) {
   const auto driver = OpenDevice(spec);
   if (!driver) return driver.error();
   HandPlot plot;
   const auto report = WatchDevice(
       **driver, seconds, [](const HandSamples&, double) {},
-      [&](const HandSamples& samples, double time) { plot.Show(samples, time); });
+      [&](const HandSamples& samples, double time) {
+        if (!is_json) plot.Show(samples, time);
+      });
   if (!report) return report.error();
-  PrintReport(*report);
+  is_json ? PrintReportJson(spec, *report) : PrintReport(*report);
   return report->is_lost ? LostError(**driver) : core::Status{};
 }
 
@@ -138,6 +151,7 @@ core::Status Record(const std::string& spec, const std::string& path, double sec
       [&](const HandSamples& samples, double time) { plot.Show(samples, time); });
   if (!report) return report.error();
   if (frames.empty()) {
+    PrintHeldBack(*report);
     return core::Error{core::ErrorCode::kDeviceStale, (*driver)->GetName() +
                                                           " sent nothing to record; try trocar devices "
                                                           "test first"};
@@ -203,7 +217,9 @@ void AddDevicesCommand(CLI::App& app, Outcome& outcome) {
 
   CLI::App* test = AddWatching(*devices, "test", "Show what a device says, live", *options);
   test->add_option("device", options->spec, kSpecHelp)->required()->type_name("DEVICE");
-  test->callback([options, &outcome] { outcome.status = Test(options->spec, options->seconds); });
+  test->add_flag("--json", options->is_json, "Machine-readable, at the end, without what it shows live");
+  test->callback(
+      [options, &outcome] { outcome.status = Test(options->spec, options->seconds, options->is_json); });
 
   CLI::App* record = AddWatching(*devices, "record", "Keep what a device says in a file (CSV)", *options);
   record->add_option("device", options->spec, kSpecHelp)->required()->type_name("DEVICE");

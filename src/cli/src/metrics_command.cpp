@@ -13,6 +13,7 @@
 #include "command.h"
 #include "console.h"
 #include "metric_text.h"
+#include "own_json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
 #include "trocar/record/trace.h"
@@ -80,7 +81,7 @@ std::string FormatMetricsFile(const TracedFile& traced, const AttemptMetrics& me
                        {"program", core::VersionText()},
                        {"disclaimer", training::MetricsDisclaimer()},
                        {"attempt", traced.of}};
-  json["metrics"] = ordered_json::parse(training::FormatMetricsJson(metrics), nullptr, false);
+  json["metrics"] = ParseOwnJson(training::FormatMetricsJson(metrics));
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -18,6 +18,7 @@
 #include "part_folder.h"
 #include "picture_size.h"
 #include "play_operation.h"
+#include "pseudonym_option.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/assessment/play_state.h"
 #include "trocar/core/safe_file.h"
@@ -25,6 +26,7 @@
 #include "trocar/core/statistics.h"
 #include "trocar/core/version.h"
 #include "trocar/scene/task.h"
+#include "trocar/simulation/attempt_end.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/demo.h"
 #include "validity_note.h"
@@ -116,7 +118,7 @@ nlohmann::ordered_json ErrorJson(const scene::Scene& scene, const scene::TaskErr
 }
 
 void PrintJson(const scene::Scene& scene, const PlayReport& report) {
-  nlohmann::ordered_json json = {{"completed", report.task.phase == TaskPhase::kCompleted},
+  nlohmann::ordered_json json = {{"completed", simulation::HasCompleted(report.task.phase, false)},
                                  {"critical_view", nullptr},
                                  {"critical_errors", nlohmann::ordered_json::array()},
                                  {"errors", nlohmann::ordered_json::array()}};
@@ -406,6 +408,7 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
                    "Write what it came to: .html (one file, no network), .pdf, .csv or .json")
       ->type_name("FILE");
   command->add_option("--person", arguments->person, "Pseudonym that stands in the report")
+      ->check(ComplainOfPseudonym)
       ->type_name("PSEUDONYM");
   command->add_flag("--json", arguments->is_json,
                     "Machine-readable; of an operation also how it ended (\"end\": completed, conversion or\n"

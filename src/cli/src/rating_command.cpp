@@ -13,6 +13,7 @@
 #include "attempt_page.h"
 #include "command.h"
 #include "console.h"
+#include "pseudonym_option.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/report/rating.h"
 
@@ -158,6 +159,7 @@ void AddEnter(CLI::App& rating, Outcome& outcome) {
       ->type_name("FILE");
   command->add_option("--rater", arguments->rating.rater, "Pseudonym of the rater")
       ->required()
+      ->check(ComplainOfPseudonym)
       ->type_name("PSEUDONYM");
   command->add_option("--date", arguments->rating.rated, "When, such as 2026-11-24T22:50:20+01:00")
       ->type_name("DATE");

@@ -12,6 +12,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "trocar/core/json.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/replay.h"
@@ -46,7 +47,8 @@ ordered_json InfoJson(const Recording& recording) {
                        {"finished", recording.ending.has_value()},
                        {"events", ordered_json::array()},
                        {"marks", ordered_json::array()},
-                       {"outcome", nullptr}};
+                       {"outcome", nullptr},
+                       {"outcome_verified", false}};
   if (!d.branched_from.empty()) {
     json["branched"] = {{"from", d.branched_from},
                         {"id", core::HashText(d.branched_id)},
@@ -63,7 +65,13 @@ ordered_json InfoJson(const Recording& recording) {
   for (const record::TextMark& mark : recording.marks)
     json["marks"].push_back(
         {{"time_s", static_cast<double>(mark.tick) * d.tick_seconds}, {"text", mark.text}});
-  if (recording.ending) json["outcome"] = ordered_json::parse(recording.ending->outcome, nullptr, false);
+  if (!recording.ending) return json;
+  auto outcome = core::ParseJson<ordered_json>(recording.ending->outcome, "outcome", core::kSmallJson);
+  if (outcome.ok()) {
+    json["outcome"] = std::move(*outcome);
+  } else {
+    json["outcome_unreadable"] = outcome.error().Text();
+  }
   return json;
 }
 
@@ -113,11 +121,14 @@ void PrintInfo(const Recording& recording) {
   std::size_t shown = 0;
   for (const record::EventMark& event : recording.events) {
     if (!event.is_error || ++shown > kShownErrors) continue;
-    Print(At(event.tick, d) + Translate(event.kind) +
-          (event.about.empty() ? "" : ": " + TranslateComposed(event.about)) + "\n");
+    Print(At(event.tick, d) +
+          core::PrintableLine(Translate(event.kind) +
+                              (event.about.empty() ? "" : ": " + TranslateComposed(event.about))) +
+          "\n");
   }
   if (shown > kShownErrors) Say("  and {1} more (--json)\n", shown - kShownErrors);
-  for (const record::TextMark& mark : recording.marks) Print(At(mark.tick, d) + "\"" + mark.text + "\"\n");
+  for (const record::TextMark& mark : recording.marks)
+    Print(At(mark.tick, d) + "\"" + core::PrintableLine(mark.text) + "\"\n");
 }
 
 void AddInfo(CLI::App& record, Outcome& outcome) {
@@ -156,7 +167,7 @@ void AddVerify(CLI::App& record, Outcome& outcome) {
         return;
       }
     }
-    Print(*path + ": " + HowItEnded(*recording) + "\n");
+    Print(core::PrintableLine(*path + ": " + HowItEnded(*recording)) + "\n");
     outcome.has_finding = !recording->damage.empty();
   });
 }

@@ -15,10 +15,12 @@
 #include "attempt_recording.h"
 #include "command.h"
 #include "console.h"
+#include "own_json.h"
 #include "picture_size.h"
 #include "replay_video.h"
 #include "trocar/agent/taking_over.h"
 #include "trocar/core/clock.h"
+#include "trocar/core/printable.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/translate.h"
 #include "trocar/core/version.h"
@@ -73,7 +75,7 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
         {"same_outcome", verified->is_outcome_same},
         {"hash", core::HashText(replay.GetSimulation().Hash())},
         {"replay_seconds", watch.Seconds()},
-        {"outcome", ordered_json::parse(verified->outcome, nullptr, false)}};
+        {"outcome", ParseOwnJson(verified->outcome)}};
     if (verified->divergence) json["diverged_at_s"] = static_cast<double>(verified->divergence->tick) * tick;
     std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
     return {};
@@ -83,8 +85,10 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
         ShownFixed(static_cast<double>(verified->divergence->tick) * tick, 2),
         core::HashText(verified->divergence->computed), core::HashText(verified->divergence->recorded));
   } else if (!verified->is_outcome_same) {
-    Say("DIVERGED in the outcome: computed {1}, recorded was {2}\n", verified->outcome,
-        recording.ending->outcome);
+    constexpr std::size_t kMostShown = 2000;  // a recording of a stranger may hold megabytes
+    Say("DIVERGED in the outcome: computed {1}, recorded was {2}\n",
+        core::Printable(verified->outcome, kMostShown),
+        core::Printable(recording.ending->outcome, kMostShown));
   } else {
     Say(recording.ending
             ? "VERIFIED: {1} ticks, {2} hashes and the outcome are those that were recorded\n"
@@ -206,7 +210,7 @@ core::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
   ordered_json json = {{"at_s", arguments.at},
                        {"surgeon", arguments.surgeon},
                        {"hash", core::HashText(simulation.Hash())},
-                       {"outcome", ordered_json::parse(record::CalcOutcome(simulation), nullptr, false)}};
+                       {"outcome", ParseOwnJson(record::CalcOutcome(simulation))}};
   std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
   return {};
 }

@@ -15,6 +15,7 @@
 #include "command.h"
 #include "console.h"
 #include "group_values.h"
+#include "pseudonym_option.h"
 #include "trocar/assessment/learning.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/report/report_files.h"
@@ -94,7 +95,7 @@ core::Status Report(ReportArguments arguments) {
     written = WriteReport(trainee, arguments.output);
   }
   if (!written.ok()) return written;
-  if (reports.size() == 1) Print(TranslateComposed(reports[0].outcome) + "\n");
+  if (reports.size() == 1) Print(core::PrintableLine(TranslateComposed(reports[0].outcome)) + "\n");
   Say("Wrote {1}\n", arguments.output);
   return {};
 }
@@ -115,6 +116,7 @@ void AddReportCommand(CLI::App& app, Outcome& outcome) {
                    "with .html]")
       ->type_name("FILE");
   command->add_option("--person", arguments->person, "Pseudonym of whose attempt it is")
+      ->check(ComplainOfPseudonym)
       ->type_name("PSEUDONYM");
   command
       ->add_option(

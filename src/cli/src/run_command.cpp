@@ -4,9 +4,12 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <string>
 #include <vector>
@@ -14,6 +17,7 @@
 #include "command.h"
 #include "help_language.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/core/translate.h"
 #include "trocar/core/version.h"
 
@@ -47,9 +51,12 @@ constexpr const char* kExamples =
 
 int Fail(const core::Error& error, int exit_status) {
   std::fflush(stdout);
-  const std::string text = core::ShownText(error), meaning = core::TranslatedMeaning(error.code);
+  // one error is one line, whatever the names in it
+  const std::string text = core::PrintableLine(core::ShownText(error)),
+                    meaning = core::TranslatedMeaning(error.code);
   // the catalogue has the messages that a window can show; of others it says at least what the code means
-  if (!meaning.empty() && text == error.Text()) std::fprintf(stderr, "trocar: %s\n", meaning.c_str());
+  if (!meaning.empty() && core::ShownText(error) == error.Text())
+    std::fprintf(stderr, "trocar: %s\n", meaning.c_str());
   std::fprintf(stderr, "trocar: %s\n", text.c_str());
   return exit_status;
 }
@@ -125,6 +132,23 @@ int ParseAndRun(int argc, char** argv) {
   return outcome.has_finding ? kExitError : kExitGood;
 }
 
+/// What was printed and did not arrive is no success, whichever command printed it.
+int CheckOutput(int exit_status) {
+  errno = 0;
+  const bool is_flushed = std::fflush(stdout) == 0;
+  const int why = errno;
+  std::cout.flush();
+  if (is_flushed && std::ferror(stdout) == 0 && std::cout.good()) return exit_status;
+  std::clearerr(stdout);
+  std::cout.clear();
+  const int failed =
+      Fail({core::ErrorCode::kFileUnwritable,
+            "standard output" + (why == 0 ? std::string() : std::string(": ") + std::strerror(why)) +
+                "; not all of the output was written: free space, or write it elsewhere"},
+           kExitError);
+  return exit_status == kExitGood ? failed : exit_status;
+}
+
 /// Without a conversion that would need memory.
 constexpr const char* kNoMemory =
     "trocar: E-SIM-005 the system refused memory; close other programs, raise the limit (ulimit -v), or ask "
@@ -147,7 +171,27 @@ constexpr const char* kNoMemory =
   std::abort();
 }
 
+void ListBelow(const CLI::App& app, std::vector<std::string>& words,
+               std::vector<std::vector<std::string>>& all) {
+  all.push_back(words);
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    words.push_back(command->get_name());
+    ListBelow(*command, words, all);
+    words.pop_back();
+  }
+}
+
 }  // namespace
+
+std::vector<std::vector<std::string>> ListCommands() {
+  CLI::App app(kDescription, "trocar");
+  Outcome outcome;
+  AddCommands(app, outcome);
+  std::vector<std::string> words;
+  std::vector<std::vector<std::string>> all;
+  ListBelow(app, words, all);
+  return all;
+}
 
 void ListHelpTexts(const TextVisitor& visit) {
   CLI::App app(kDescription, "trocar");
@@ -157,12 +201,13 @@ void ListHelpTexts(const TextVisitor& visit) {
 }
 
 int RunCommand(int argc, char** argv) {
+  const core::PrintableOutput fence;
   core::RemovePartialPathsOnSignals();
   std::set_terminate(OnTerminate);
   core::UseLanguage(core::FindLocaleFolder());
   // the last fence: nothing below should throw, and if memory ends the person still gets a line
   try {
-    return ParseAndRun(argc, argv);
+    return CheckOutput(ParseAndRun(argc, argv));
   } catch (const std::bad_alloc&) {
     std::fputs(kNoMemory, stderr);
     return kExitError;

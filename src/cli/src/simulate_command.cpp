@@ -19,6 +19,7 @@
 #include "device_input.h"
 #include "haptic_input.h"
 #include "igtl_option.h"
+#include "own_json.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/log.h"
 #include "trocar/core/state_hash.h"
@@ -181,7 +182,7 @@ void PrintJson(const SimulateReport& report) {
   if (!report.gpu.empty()) json["gpu"] = report.gpu;
   if (report.haptics) {
     const std::string summary = session::FormatSummaryJson(*report.haptics);
-    json["haptics"] = nlohmann::ordered_json::parse(summary, nullptr, false);
+    json["haptics"] = ParseOwnJson(summary);
   }
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }

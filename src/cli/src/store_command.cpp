@@ -8,7 +8,6 @@
 #include "command.h"
 #include "console.h"
 #include "store_console.h"
-#include "trocar/assessment/judge_recording.h"
 #include "trocar/core/log.h"
 #include "trocar/record/recording.h"
 #include "trocar/store/attempts.h"
@@ -78,9 +77,31 @@ void AddInfo(CLI::App& parent, const Options& options, Outcome& outcome) {
 }
 
 std::string Result(const store::Attempt& attempt) {
+  // an outcome that its file made up is none
+  if (attempt.mark.state == store::Verification::kRefused) return Translate("refused");
   if (!attempt.is_completed) return Translate("not completed");
   if (!attempt.is_passed) return Translate("completed");
   return *attempt.is_passed ? Translate("passed") : Translate("not passed");
+}
+
+ordered_json MarkJson(const store::VerificationMark& mark) {
+  return {{"state", store::VerificationName(mark.state)},
+          {"why", store::WhyName(mark.why)},
+          {"program", JsonText(mark.program)},
+          {"time_ms", mark.time_ms ? ordered_json(*mark.time_ms) : ordered_json()},
+          {"claim", mark.claim.empty() ? ordered_json() : JsonText(mark.claim)}};
+}
+
+/// The same as a word of a table.
+std::string MarkWord(const store::VerificationMark& mark) {
+  switch (mark.state) {
+    case store::Verification::kVerified:
+      return Translate("replayed");
+    case store::Verification::kRecordedHere:
+      return Translate("recorded here");
+    default:
+      return Translate(store::DescribeMark(mark));
+  }
 }
 
 ordered_json AttemptJson(const store::StoredAttempt& stored) {
@@ -97,6 +118,9 @@ ordered_json AttemptJson(const store::StoredAttempt& stored) {
           {"completed", a.is_completed},
           {"passed", a.is_passed ? ordered_json(*a.is_passed) : ordered_json()},
           {"score", a.score ? ordered_json(*a.score) : ordered_json()},
+          {"verified", a.mark.IsVerified()},
+          {"counts", a.mark.Counts()},
+          {"verification", MarkJson(a.mark)},
           {"recording", JsonText(a.recording)}};
 }
 
@@ -128,18 +152,22 @@ void AddAttempts(CLI::App& parent, const Options& options, Outcome& outcome) {
       return {};
     }
     std::vector<std::vector<std::string>> rows = {
-        {"started", "trainee", "task", "level", "s", "score", "result"}};
+        {"started", "trainee", "task", "level", "s", "score", "result", "verified"}};
+    bool is_all_verified = true;
     for (const store::StoredAttempt& stored : page->attempts) {
       const store::Attempt& a = stored.attempt;
       rows.push_back({Shown(a.started), a.trainee.empty() ? "-" : Shown(a.trainee), Shown(a.task),
                       Shown(a.level), ShownNumber(a.seconds, 4), a.score ? ShownNumber(*a.score, 3) : "-",
-                      Result(a)});
+                      Result(a), MarkWord(a.mark)});
+      is_all_verified = is_all_verified && a.mark.IsVerified();
     }
     if (page->attempts.empty())
       Say("no attempts\n");
     else
       PrintTable(rows);
     if (!page->next.empty()) Say("more: --page {1}\n", page->next);
+    if (!is_all_verified)
+      Say("what is not verified is as its file says; trocar store verify --attempts replays it\n");
     return {};
   });
 }
@@ -197,49 +225,63 @@ void AddPercentile(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
 }
 
-/// What the attempt's recording is measured to; an attempt that does not replay is kept without it.
-void Measure(record::Recording recording, store::Attempt& attempt) {
-  assessment::ReplaySettings settings;
-  ProgressBar progress("measuring", 1.0);
-  settings.progress = [&progress](double share) { return progress.Show(share), true; };
-  auto measured = assessment::MakeAttempt(std::move(recording), settings);
-  if (!measured.ok()) {
-    core::Log(core::LogLevel::kWarning, "kept without metrics: " + measured.error().Text());
-    return;
-  }
-  attempt.metrics = std::move(measured->result.metrics.values);
-  attempt.score = measured->score;
-}
-
 void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
   CLI::App* command =
       parent.add_subcommand("add", "Keep a recorded attempt; it waits where the store is away");
   struct Arguments {
     std::string file, trainee;
+    bool is_unverified = false, moves = false;
+    int threads = 1;
   };
   auto arguments = std::make_shared<Arguments>();
   command->add_option("recording", arguments->file, "Recording")->required()->type_name("FILE");
   command->add_option("--trainee", arguments->trainee, "Whose attempt it is")->type_name("PSEUDONYM");
+  command->add_flag("--unverified", arguments->is_unverified,
+                    "Do not replay it now: it counts nowhere until trocar store verify --attempts did");
+  command
+      ->add_flag("--move", arguments->moves,
+                 "It is in the store as somebody else's attempt, and is this trainee's")
+      ->needs(command->get_option("--trainee"));
+  command->add_option("--threads", arguments->threads, "Of the solver; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
   AddStoreOptions(*command, options);
   command->callback([options, arguments, &outcome] {
     outcome.status = [&]() -> core::Status {
+      const auto place = store::FindPlace(options->url);
+      if (!place.ok()) return place.error();
       auto recording = record::ReadRecording(arguments->file);
       if (!recording.ok()) return recording.error();
-      auto attempt = store::DescribeAttempt(*recording, arguments->file);
+      auto attempt = arguments->is_unverified ? store::DescribeAttempt(*recording, arguments->file)
+                                              : ReplayHere(std::move(*recording), arguments->file,
+                                                           arguments->threads, "measuring");
       if (!attempt.ok()) return attempt.error();
       attempt->trainee = arguments->trainee;
-      Measure(std::move(*recording), *attempt);
-      const auto kept = store::KeepAttempt(store::FindPlace(options->url), *attempt);
+      if (arguments->moves) {
+        auto session = OpenSession(*options);
+        if (!session.ok()) return session.error();
+        if (auto moved = MoveAttempt(session->store, session->viewer, attempt->recording_id, attempt->started,
+                                     attempt->trainee);
+            !moved.ok())
+          return moved;
+      }
+      const auto kept = store::KeepAttempt(*place, *attempt);
       if (!kept.ok()) return kept.error();
       if (!kept->rebuilt.empty()) core::Log(core::LogLevel::kWarning, kept->rebuilt);
       if (options->is_json)
         PrintStoreJson({{"in_store", kept->is_in_store},
+                        {"completed", attempt->is_completed},
+                        {"verified", attempt->mark.IsVerified()},
+                        {"verification", MarkJson(attempt->mark)},
                         {"why_not", kept->failure ? ordered_json(kept->failure->Text()) : ordered_json()}});
       else
         Say(kept->is_in_store ? "the attempt is in the store\n" : "the attempt waits in the spool\n");
+      if (!options->is_json && !attempt->mark.IsVerified())
+        Say("{1}\n", Translate(store::DescribeMark(attempt->mark)));
       // a store that is away is no failure: the attempt is safe; one that is refused wants a person
       if (kept->failure) std::fprintf(stderr, "trocar: %s\n", core::ShownText(*kept->failure).c_str());
-      outcome.has_finding = !kept->is_in_store;
+      outcome.has_finding = !kept->is_in_store || attempt->mark.state == store::Verification::kRefused;
       return {};
     }();
   });
@@ -263,7 +305,9 @@ void AddDeliver(CLI::App& parent, const Options& options, Outcome& outcome) {
       Say("{1} attempts are new in the store, {2} were there already, {3} wait\n", report.added, report.known,
           spool.CountWaiting());
       if (report.held > 0)
-        Say("{1} are of trainees that the store does not know: add them, then use --held\n", report.held);
+        Say("{1} are held: their trainee is not known here (add them, then use --held), or the recording is "
+            "somebody else's attempt\n",
+            report.held);
       if (report.damaged > 0)
         Say("{1} are damaged and lie in {2}\n", report.damaged,
             session.store.GetPlace().SpoolFolder() / "damaged");
@@ -290,18 +334,27 @@ void AddTransfer(CLI::App& parent, const Options& options, Outcome& outcome) {
   CLI::App* importing = parent.add_subcommand(
       "import", "Add what an export or a backup of another store holds; what is here stays as it is");
   importing->add_option("file", *file, "Export (JSON) or backup (SQLite)")->required()->type_name("FILE");
-  OnStore(*importing, options, outcome, [file, options](StoreSession& session) -> core::Status {
-    const auto report = Import(session.store, session.viewer, *file);
+  auto is_trusted = std::make_shared<bool>(false);
+  importing->add_flag("--trusted", *is_trusted,
+                      "It is your own backup: attempts that it says are verified count at once");
+  OnStore(*importing, options, outcome, [file, options, is_trusted](StoreSession& session) -> core::Status {
+    const auto report = Import(session.store, session.viewer, *file,
+                               *is_trusted ? store::Trust::kAsItSays : store::Trust::kNone);
     if (!report.ok()) return report.error();
     if (options->is_json) {
       PrintStoreJson({{"people", report->people},
                       {"groups", report->groups},
                       {"courses", report->courses},
                       {"attempts", report->attempts},
-                      {"known", report->known}});
+                      {"known", report->known},
+                      {"conflicts", report->conflicts}});
     } else {
       Say("new: {1} people, {2} groups, {3} courses, {4} attempts; {5} attempts were here already\n",
           report->people, report->groups, report->courses, report->attempts, report->known);
+      if (report->conflicts > 0)
+        Say("{1} of these are another person's here, and stay theirs\n", report->conflicts);
+      if (report->attempts > 0 && !*is_trusted)
+        Say("the new attempts count when trocar store verify --attempts has replayed them\n");
     }
     return {};
   });
@@ -322,11 +375,33 @@ void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
     return {};
   });
   auto checked = std::make_shared<std::string>();
-  CLI::App* verify =
-      parent.add_subcommand("verify", "Check every page, reference and sum of the store, or of a backup");
-  verify->add_option("backup", *checked, "A backup in place of the store")->type_name("FILE");
+  auto replaying = std::make_shared<ReplayArguments>();
+  CLI::App* verify = parent.add_subcommand(
+      "verify", "Check every page, reference and sum of the store, or of a backup; or replay attempts");
+  auto* of_backup =
+      verify->add_option("backup", *checked, "A backup in place of the store")->type_name("FILE");
+  auto* of_attempts =
+      verify
+          ->add_flag("--attempts", replaying->is_wanted,
+                     "Replay each attempt that no replay has verified, where its recording is here; may be "
+                     "interrupted, and goes on where it was")
+          ->excludes(of_backup);
+  verify
+      ->add_flag("--accept", replaying->accepts,
+                 "Let those that cannot be replayed count as they are, and say so wherever they show")
+      ->needs(of_attempts);
+  verify->add_option("--threads", replaying->threads, "Of the solver; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
   AddStoreOptions(*verify, options);
-  verify->callback([checked, options, &outcome] {
+  verify->callback([checked, replaying, options, &outcome] {
+    if (replaying->is_wanted) {
+      auto session = OpenSession(*options);
+      outcome.status = session.ok() ? ReplayAttempts(*session, *replaying, options->is_json, outcome)
+                                    : core::Status(session.error());
+      return;
+    }
     if (!checked->empty()) {
       outcome.status = store::VerifyBackup(*checked);
     } else {
@@ -359,27 +434,41 @@ void AddKeeping(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
   CLI::App* tidy = parent.add_subcommand(
       "tidy", "Remove attempts that are older than they may be, with their recordings, and make a backup");
-  OnStore(*tidy, options, outcome, [options](StoreSession& session) -> core::Status {
-    const auto report = Tidy(session.store, session.viewer, NowMilliseconds());
+  auto is_sure = std::make_shared<bool>(false);
+  tidy->add_flag(
+      "--yes", *is_sure,
+      "The clock is right, and so is the number of attempts that are too old: asked for where it looks "
+      "wrong");
+  OnStore(*tidy, options, outcome, [options, is_sure](StoreSession& session) -> core::Status {
+    const auto report = Tidy(session.store, session.viewer, NowMilliseconds(), *is_sure);
     if (!report.ok()) return report.error();
     if (options->is_json)
       PrintStoreJson({{"attempts", report->attempts},
                       {"recordings", report->recordings},
+                      {"due", report->due},
                       {"left", report->left},
                       {"backup", report->backup.string()}});
     else
       Say("{1} attempts and {2} recordings are removed; backup: {3}\n", report->attempts, report->recordings,
           report->backup);
-    if (!options->is_json)
+    if (!options->is_json) {
+      if (report->due > 0)
+        Say("{1} attempts are too old, and go {2} days after they were found so; trocar store retain keeps "
+            "them "
+            "longer\n",
+            report->due, store::kGraceDays);
       for (const std::string& left : report->left) Say("not removed here: {1}\n", left);
-    return {};
+    }
+    return report->unsure ? core::Status(*report->unsure) : core::Status();
   });
 }
 
 }  // namespace
 
 core::Result<StoreSession> OpenSession(const StoreOptions& options, store::StoreSettings settings) {
-  auto opened = store::Store::Open(store::FindPlace(options.url), settings);
+  const auto place = store::FindPlace(options.url);
+  if (!place.ok()) return place.error();
+  auto opened = store::Store::Open(*place, settings);
   if (!opened.ok()) return opened.error();
   if (!opened->Rebuilt().empty()) core::Log(core::LogLevel::kWarning, opened->Rebuilt());
   store::Viewer viewer = store::Viewer::Owner();

@@ -10,6 +10,8 @@
 
 #include "command.h"
 #include "trocar/core/printable.h"
+#include "trocar/record/recording.h"
+#include "trocar/store/attempts.h"
 #include "trocar/store/people.h"
 #include "trocar/store/store.h"
 
@@ -39,6 +41,17 @@ void OnStore(CLI::App& command, const std::shared_ptr<StoreOptions>& options, Ou
 
 /// `trainee` and `group`.
 void AddStorePeopleCommands(CLI::App& parent, const std::shared_ptr<StoreOptions>& options, Outcome& outcome);
+
+/// How `trocar store verify --attempts` goes about it.
+struct ReplayArguments {
+  bool is_wanted = false, accepts = false;
+  int threads = 1;
+};
+core::Status ReplayAttempts(StoreSession& session, const ReplayArguments& arguments, bool is_json,
+                            Outcome& outcome);
+/// A recording as an attempt, replayed with a progress bar.
+core::Result<store::Attempt> ReplayHere(record::Recording recording, const std::string& file, int threads,
+                                        const char* label);
 
 void PrintStoreJson(const nlohmann::ordered_json& json);
 

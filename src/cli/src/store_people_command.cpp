@@ -32,6 +32,9 @@ void AddAdd(CLI::App& trainee, const Options& options, Outcome& outcome) {
   OnStore(*command, options, outcome, [options, arguments](StoreSession& session) -> core::Status {
     const auto role = store::ParseRole(arguments->role);
     if (!role.ok()) return role.error();
+    if (!arguments->name.empty()) {
+      if (auto sound = store::CheckName(arguments->name); !sound.ok()) return sound;
+    }
     const auto person = AddPerson(session.store, session.viewer, *role, arguments->pseudonym);
     if (!person.ok()) return person.error();
     if (!arguments->name.empty()) {
@@ -113,6 +116,12 @@ void AddChange(CLI::App& trainee, const Options& options, Outcome& outcome) {
   OnStore(*rename, options, outcome, [arguments](StoreSession& session) -> core::Status {
     const auto names = session.store.GetPlace().NamesFile();
     if (auto may = MayManage(session.viewer); !may.ok()) return may;
+    if (!arguments->name.empty()) {
+      if (auto sound = store::CheckName(arguments->name); !sound.ok()) return sound;
+    }
+    if (!arguments->to.empty()) {
+      if (auto sound = store::CheckPseudonym(arguments->to); !sound.ok()) return sound;
+    }
     if (const auto person = FindPerson(session.store, arguments->pseudonym); !person.ok())
       return person.error();
     if (!arguments->role.empty()) {

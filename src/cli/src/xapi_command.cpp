@@ -11,6 +11,7 @@
 #include "attempt_page.h"
 #include "command.h"
 #include "console.h"
+#include "pseudonym_option.h"
 #include "trocar/report/xapi.h"
 #include "trocar/report/xapi_delivery.h"
 
@@ -104,6 +105,7 @@ void AddXapiCommand(CLI::App& app, Outcome& outcome) {
   queue->add_option("file", arguments->file, "Recording")->required()->type_name("FILE");
   queue->add_option("--person", arguments->person, "Pseudonym of whose attempt it is; no name ever leaves")
       ->required()
+      ->check(ComplainOfPseudonym)
       ->type_name("PSEUDONYM");
   queue->add_option("--home-page", arguments->home_page, "Of the accounts: an address of the training centre")
       ->required()

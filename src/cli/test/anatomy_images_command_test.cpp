@@ -12,6 +12,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/images/image_stack.h"
 #include "trocar/images/png_file.h"
+#include "trocar_test/made_images.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
@@ -96,12 +97,15 @@ TEST_F(ImagesCommand, DamagedFilesAreOneLineAndNoPreview) {
     EXPECT_FALSE(fs::exists(Path("preview.png")));
   };
   refuses("noise.nii", "nothing", "E-IMG-004");
-  refuses("bomb.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 16000 16000 16000\nencoding: raw\n\n",
+  refuses("bomb.nrrd",
+          "NRRD0004\ntype: short\ndimension: 3\nsizes: 16000 16000 16000\nendian: little\nencoding: raw\n\n",
           "E-IMG-010");
-  refuses("short.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n",
+  refuses("short.nrrd",
+          "NRRD0004\ntype: short\ndimension: 3\nsizes: 16 16 16\nendian: little\nencoding: raw\n\n",
           "E-IMG-011");
   refuses("path.nhdr",
-          "NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: ../../x\n",
+          "NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nendian: little\nencoding: raw\ndata file: "
+          "../../x\n",
           "E-IMG-013");
   const std::string whole = *core::ReadFile(Path("stack/s5.png"));
   refuses("stack/s5.png", whole.substr(0, whole.size() / 2), "E-IMG-011");
@@ -110,6 +114,37 @@ TEST_F(ImagesCommand, DamagedFilesAreOneLineAndNoPreview) {
   ExpectRefused(gap, "E-IMG-007");
   EXPECT_THAT(gap.err, HasSubstr("missing: 5;"));
   ExpectRefused(Run({"/dev/zero"}), "E-IMG-013");
+}
+
+TEST_F(ImagesCommand, ListsThePhasesOfADicomSeriesAndSaysWhatItPassedOver) {
+  for (int slice = 1; slice <= 4; ++slice) {
+    for (const int acquisition : {1, 2}) {
+      test::DicomFields fields;
+      fields.instance = slice + 10 * acquisition;
+      fields.acquisition = std::to_string(acquisition);
+      fields.position = "0\\0\\" + std::to_string(5 * slice);
+      ASSERT_TRUE(core::WriteFile(folder_.Path() / "ct" / ("IM" + std::to_string(fields.instance)),
+                                  test::MakeDicom(fields))
+                      .ok());
+    }
+  }
+  test::DicomFields report;
+  report.sop_class = "1.2.840.10008.5.1.4.1.1.88.22";
+  ASSERT_TRUE(core::WriteFile(folder_.Path() / "ct" / "report", test::MakeDicom(report)).ok());
+  const Printed asked = Run({Path("ct")});
+  ExpectRefused(asked, "E-IMG-006");
+  EXPECT_THAT(asked.err, HasSubstr("2 (CT, acquisition 2: 4 slices)"));
+  const Printed printed = Run({Path("ct"), "--series", "2"});
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_THAT(printed.out, HasSubstr("4, number 21 to 24"));
+  EXPECT_THAT(printed.out, HasSubstr("passed over: reports (SR) (1)"));
+  const auto json = nlohmann::json::parse(Run({Path("ct"), "--series", "2", "--json"}).out);
+  EXPECT_EQ(json["series"], 2);
+  EXPECT_EQ(json["notes"].size(), 1u);
+  // the id chooses the same, whatever else comes into the folder
+  const auto same = nlohmann::json::parse(
+      Run({Path("ct"), "--series", std::to_string(json["series_id"].get<int>()), "--json"}).out);
+  EXPECT_EQ(same["slice_numbers"], json["slice_numbers"]);
 }
 
 }  // namespace

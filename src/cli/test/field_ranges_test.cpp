@@ -382,6 +382,7 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnPatientsAndDevices) {
   json["parameters"] = {{{"name", "volume"}, {"value", 1}, {"unit", "ml"}, {"source", "a test"}}};
   json["ports"] = {{{"for", "laparoscope"}, {"position", {0.0, 0.0, 0.1}}, {"reason", "a test"}}};
   json["table"] = {{"head_up_deg", 12.0}, {"right_up_deg", 8.0}, {"reason", "a test"}};
+  json["labels"] = {{{"label", 1}, {"taken_as", "liver"}, {"reason", "a test"}}};
   ExpectAgreement("patient", {json}, [&](const Json& one) {
     Written("patient/patient.json", one);
     return ErrorOf(anatomy::ReadPatient(folder_.Path() / "patient"));

@@ -79,9 +79,12 @@ TEST_F(ReportCommand, OfARunIsThatOfItsRecording) {
   Play("novice", "a.trocar", {"--report", File("live.json")});
   ASSERT_EQ(RunTrocar({"report", File("a.trocar"), "-o", File("replayed.json")}).status, 0);
   json live = json::parse(Read("live.json")), replayed = json::parse(Read("replayed.json"));
+  EXPECT_EQ(live["attempt"]["as_recorded"], nullptr) << "no file says anything of it";
+  EXPECT_EQ(replayed["attempt"]["as_recorded"], true);
   for (json* one : {&live, &replayed}) {
     (*one)["attempt"].erase("started");
     (*one)["attempt"].erase("recording");
+    (*one)["attempt"].erase("as_recorded");
   }
   EXPECT_EQ(live, replayed);
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "run_trocar.h"
+#include "trocar/core/safe_file.h"
 #include "trocar_test/process.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -84,6 +85,50 @@ TEST_F(StoreCommand, LeadsATraineeFromTheFirstAttemptToErasure) {
   EXPECT_THAT(erased.out, HasSubstr(Path("b.sqlite")));
   EXPECT_FALSE(fs::exists(Path("a.trocar")));
   EXPECT_THAT(Run({"trainee", "list"}).out, Not(HasSubstr("Lovelace")));
+}
+
+// Each output that shows an attempt; a new one joins this list.
+TEST_F(StoreCommand, EachSaysWhetherAnAttemptIsVerified) {
+  const std::string ada = Word(Run({"trainee", "add"}));
+  const Printed played = RunTrocar(
+      {"play", "expert", "--task", "instrument_navigation", "--seed", "3", "--record", Path("a.trocar")});
+  ASSERT_EQ(played.status, 0) << played.err;
+  ASSERT_EQ(Run({"add", Path("a.trocar"), "--trainee", ada, "--unverified"}).status, 0);
+  int exports = 0;
+  const auto read = [&](const std::vector<std::string>& words, const std::string& file) {
+    const Printed run = Run(words);
+    EXPECT_EQ(run.status, 0) << words[0] << ": " << run.err;
+    return file.empty() ? run.out : core::ReadFile(file).ok() ? *core::ReadFile(file) : std::string();
+  };
+  const auto show = [&]() -> std::vector<std::pair<std::string, std::string>> {
+    const std::string n = std::to_string(++exports);
+    return {
+        {"table", read({"attempts"}, "")},
+        {"json", read({"attempts", "--json"}, "")},
+        {"export", read({"export", Path(n + ".json")}, Path(n + ".json"))},
+        {"csv", read({"export", Path(n + ".csv")}, Path(n + ".csv"))},
+        {"person", read({"trainee", "export", ada, "-o", Path("p" + n)}, Path("p" + n + "/person.json"))}};
+  };
+  for (const auto& [where, text] : show())
+    EXPECT_THAT(text, testing::AnyOf(HasSubstr("not verified"), HasSubstr("unverified"))) << where;
+  const std::vector<std::string> percentile = {"percentile", "--task", "instrument_navigation", "--trainee",
+                                               ada};
+  EXPECT_EQ(Run(percentile).status, 1) << "what a file says compares with nobody";
+  const Json replayed = RunJson({"verify", "--attempts"});
+  EXPECT_EQ(replayed["verified"], 1);
+  EXPECT_EQ(RunJson({"verify", "--attempts"})["verified"], 0) << "again does nothing";
+  for (const auto& [where, text] : show()) {
+    EXPECT_THAT(text, Not(testing::AnyOf(HasSubstr("not verified"), HasSubstr("unverified")))) << where;
+    EXPECT_THAT(text, testing::AnyOf(HasSubstr("verified"), HasSubstr("replayed"))) << where;
+  }
+  EXPECT_EQ(RunJson({"attempts"})["attempts"][0]["counts"], true);
+  // another store does not believe this one's file
+  const std::string other = Path("other.sqlite");
+  EXPECT_EQ(RunTrocar({"store", "import", Path("2.json"), "--store", other}).status, 0);
+  EXPECT_THAT(RunTrocar({"store", "attempts", "--store", other}).out,
+              HasSubstr("not verified: it came with a file"));
+  EXPECT_EQ(RunTrocar({"store", "verify", "--attempts", "--store", other}).status, 0);
+  EXPECT_THAT(RunTrocar({"store", "attempts", "--store", other}).out, Not(HasSubstr("not verified")));
 }
 
 TEST_F(StoreCommand, ShowsUnderARoleWhatTheRoleMaySee) {

@@ -222,7 +222,7 @@ std::array<std::array<double, 3>, 3> AxisDirections(const ControlPoints& points)
 
 core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::string_view source,
                                                Completeness completeness) {
-  auto document = core::JsonDocument::Parse(text, std::string(source));
+  auto document = core::JsonDocument::Parse(text, std::string(source), core::kLargeJson);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly(
@@ -290,7 +290,7 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
 }
 
 core::Result<ControlPoints> ReadControlPoints(const std::filesystem::path& path, Completeness completeness) {
-  const auto text = core::ReadFile(path);
+  const auto text = core::ReadFile(path, core::kLargeJson.bytes);
   if (!text.ok()) return text.error();
   return ParseControlPoints(*text, path.string(), completeness);
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "trocar/core/printable_output.h"
 #include "trocar/core/text_table.h"
 #include "trocar/core/translate.h"
 
@@ -49,7 +50,10 @@ std::string SaidText(std::string_view pattern, std::initializer_list<std::string
   constexpr const char* kSpace = " \n";
   const std::size_t begin = std::min(pattern.find_first_not_of(kSpace), pattern.size());
   const std::size_t end = std::max(pattern.find_last_not_of(kSpace) + 1, begin);
-  const std::vector<std::string_view> views(values.begin(), values.end());
+  // a value that somebody chose must not forge a line of its own
+  std::vector<std::string> lines;
+  for (const std::string& value : values) lines.push_back(PrintableLine(value));
+  const std::vector<std::string_view> views(lines.begin(), lines.end());
   return std::string(pattern.substr(0, begin)) + TranslateWith(pattern.substr(begin, end - begin), views) +
          std::string(pattern.substr(end));
 }

@@ -126,7 +126,7 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kKeyLocked, "E-EXM-009", "an encrypted private key was not opened"},
     {ErrorCode::kActionInvalid, "E-ENV-001", "an action for an environment has a wrong shape or value"},
     {ErrorCode::kEnvironmentState, "E-ENV-002",
-     "an environment or pool was called out of turn, or is closed"},
+     "a simulation, environment, pool or camera was called out of turn or in a fork, or is closed"},
     {ErrorCode::kDatasetInvalid, "E-DAT-001",
      "a data set is unfinished or damaged, or is not what its card says"},
     {ErrorCode::kStudyInvalid, "E-STU-001", "the plan of a study cannot be used"},

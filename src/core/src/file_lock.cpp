@@ -12,6 +12,7 @@
 #include <string>
 
 #include "trocar/core/printable.h"
+#include "trocar/core/user_folder.h"
 
 namespace trocar::core {
 namespace {
@@ -38,7 +39,7 @@ bool IsStillThere(int descriptor, const std::filesystem::path& path) {
 
 Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
+  if (path.has_parent_path()) ignored = MakeFolders(path.parent_path());
   for (int tries = 0; tries < kMostTries; ++tries) {
     const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor < 0) {

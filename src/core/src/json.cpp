@@ -3,9 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <istream>
+#include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <streambuf>
+#include <type_traits>
+#include <unordered_set>
+#include <utility>
 
+#include "trocar/core/printable.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::core {
@@ -18,75 +26,270 @@ struct JsonDocument::Content {
 
 namespace {
 
-/// Deeper files are refused before the recursive parser can exhaust the stack.
-constexpr int kMaxDepth = 64;
-
 const nlohmann::json* Node(const void* node) {
   return static_cast<const nlohmann::json*>(node);
 }
 
-bool IsTooDeep(std::string_view text) {
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      if (c == '"') quoted = false;
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kMaxDepth) return true;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return false;
+/// Longer ones say no more than a double holds.
+constexpr std::size_t kMostDigits = 128;
+/// Fields of an object that are searched one by one for a second of the same name.
+constexpr std::size_t kFewFields = 16;
+
+/// What a stranger wrote, for a message.
+std::string Excerpt(std::string_view text) {
+  constexpr std::size_t kEnd = 400;  // what is longer loses its middle in any case
+  if (text.size() <= 2 * kEnd) return Printable(text);
+  return Printable(std::string(text.substr(0, kEnd)).append(text.substr(text.size() - kEnd)));
 }
 
-/// Notices the first field that an object gives twice: the parser that builds the document keeps the last of them.
-///
-/// A pass of its own, because a callback of the building parser would make it search each list anew at each element.
-class TwiceWatch : public nlohmann::json_sax<nlohmann::json> {
+/// Passes on the events of the library's parser, which builds and recurses nothing by itself, while they keep the limits.
+template <class Sink>
+class Watch {
  public:
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-  bool start_object(std::size_t) override {
-    open_.emplace_back();
+  Watch(Sink& sink, std::string_view source, const JsonLimits& limits)
+      : sink_(sink), source_(source), limits_(limits) {}
+
+  const std::optional<Error>& Failure() const { return failure_; }
+  bool Refuse(ErrorCode code, std::string message) {
+    if (!failure_) failure_ = Error{code, std::move(message)};
+    return false;
+  }
+  /// Whether a value has ended or begun since this was asked before.
+  bool HasMoved() { return std::exchange(has_moved_, false); }
+
+  bool null() { return Count() && sink_.null(); }
+  bool boolean(bool value) { return Count() && sink_.boolean(value); }
+  bool number_integer(std::int64_t value) { return Count() && sink_.number_integer(value); }
+  bool number_unsigned(std::uint64_t value) { return Count() && sink_.number_unsigned(value); }
+  bool number_float(double value, const std::string& digits) {
+    if (!Count()) return false;
+    if (digits.size() > kMostDigits)
+      return Refuse(ErrorCode::kFileTooLarge, Source() + ": at " + Path() + ": a number of more than " +
+                                                  std::to_string(kMostDigits) + " digits");
+    if (digits.find_first_of(".eE") == std::string::npos)
+      return Refuse(ErrorCode::kJsonSyntax, Source() + ": at " + Path() + ": the whole number " + digits +
+                                                " does not fit into 64 bits; write it with a decimal point");
+    return sink_.number_float(value, digits);
+  }
+  bool string(std::string& text) { return Count() && CheckText(text) && sink_.string(text); }
+  bool binary(nlohmann::json::binary_t&) { return false; }  // text has none
+  bool start_array(std::size_t) { return Open(false) && sink_.start_array(std::size_t(-1)); }
+  bool start_object(std::size_t) { return Open(true) && sink_.start_object(std::size_t(-1)); }
+  bool end_array() { return Close() && sink_.end_array(); }
+  bool end_object() { return Close() && sink_.end_object(); }
+  bool key(std::string& name) {
+    has_moved_ = true;
+    Level& object = levels_[depth_ - 1];
+    if (object.count == limits_.fields)
+      return Refuse(ErrorCode::kFileTooLarge, Source() + ": at " + Path() + ": an object of more than " +
+                                                  std::to_string(limits_.fields) + " fields");
+    if (!CheckText(name)) return false;
+    if (!Note(object, name)) {
+      return Refuse(ErrorCode::kJsonSyntax,
+                    Source() + ": the field " + Path() + " is given twice in one object; keep one of them");
+    }
+    return sink_.key(name);
+  }
+  bool parse_error(std::size_t, const std::string& token, const nlohmann::detail::exception& why) {
+    constexpr int kNumberOverflow = 406;
+    if (why.id == kNumberOverflow) {
+      (void)Count();
+      return Refuse(ErrorCode::kJsonSyntax,
+                    Source() + ": at " + Path() + ": the number " + Excerpt(token) + " is beyond 1.8e308");
+    }
+    // "[json.exception.parse_error.101] parse error at line 3, column 7: syntax error while parsing value - ..."
+    std::string_view what = why.what();
+    constexpr std::string_view kBefore = "] parse error at ";
+    const std::size_t at = what.find(kBefore);
+    if (at != std::string_view::npos) what.remove_prefix(at + kBefore.size());
+    return Refuse(ErrorCode::kJsonSyntax, Source() + ": not valid JSON: " + Excerpt(what));
+  }
+
+  /// "slices[3].contours"
+  std::string Path() const {
+    std::string path;
+    for (std::size_t i = 0; i < depth_ && path.size() < kLongPath; ++i) {
+      const Level& level = levels_[i];
+      if (!level.is_object) {
+        path += '[' + std::to_string(level.count == 0 ? 0 : level.count - 1) + ']';
+      } else if (level.count > 0) {
+        path += (path.empty() ? "" : ".") + level.name;
+      }
+    }
+    return path.empty() ? "the top" : Excerpt(path);
+  }
+
+ private:
+  static constexpr std::size_t kLongPath = 1000;
+
+  /// A list or an object that is not closed yet; kept for the next one of its depth.
+  struct Level {
+    bool is_object = false;
+    std::size_t count = 0;                 // of its values or fields so far
+    std::string name;                      // of the last field
+    std::vector<std::string> few;          // the first fields
+    std::unordered_set<std::string> many;  // the others
+  };
+
+  std::string Source() const { return std::string(source_); }
+  bool Count() {
+    has_moved_ = true;
+    if (depth_ > 0 && !levels_[depth_ - 1].is_object) ++levels_[depth_ - 1].count;
+    if (++values_ <= limits_.values) return true;
+    return Refuse(ErrorCode::kFileTooLarge,
+                  Source() + ": at " + Path() + ": more than " + std::to_string(limits_.values) + " values");
+  }
+  bool CheckText(const std::string& text) {
+    if (text.size() > limits_.text)
+      return Refuse(ErrorCode::kFileTooLarge, Source() + ": at " + Path() + ": a text of more than " +
+                                                  std::to_string(limits_.text) + " bytes");
+    if (text.find('\0') == std::string::npos) return true;
+    return Refuse(ErrorCode::kJsonSyntax,
+                  Source() + ": at " + Path() + ": a text holds the character U+0000; leave it out");
+  }
+  bool Open(bool is_object) {
+    if (!Count()) return false;
+    if (depth_ == limits_.depth)
+      return Refuse(ErrorCode::kFileTooLarge, Source() + ": at " + Path() + ": nested deeper than " +
+                                                  std::to_string(limits_.depth) + " levels");
+    if (levels_.size() == depth_) levels_.emplace_back();
+    Level& level = levels_[depth_++];
+    level.is_object = is_object;
+    level.count = 0;
+    level.many.clear();
     return true;
   }
-  bool end_object() override {
+  bool Close() {
+    has_moved_ = true;
+    --depth_;
+    return true;
+  }
+  /// \return false where the object has this field already
+  static bool Note(Level& object, const std::string& name) {
+    object.name = name;
+    const auto few_end = object.few.begin() + static_cast<std::ptrdiff_t>(std::min(object.count, kFewFields));
+    bool is_new = std::find(object.few.begin(), few_end, name) == few_end;
+    if (object.count >= kFewFields) {
+      is_new = is_new && object.many.insert(name).second;
+    } else if (is_new) {
+      if (object.few.size() == object.count) object.few.emplace_back();
+      object.few[object.count] = name;
+    }
+    ++object.count;
+    return is_new;
+  }
+
+  Sink& sink_;
+  std::string_view source_;
+  const JsonLimits& limits_;
+  std::vector<Level> levels_;
+  std::size_t depth_ = 0;
+  std::size_t values_ = 0;
+  bool has_moved_ = false;
+  std::optional<Error> failure_;
+};
+
+/// Builds the library's value. \pre what comes has passed a Watch: no name twice, of bounded depth
+template <class Json>
+class Builder {
+ public:
+  explicit Builder(Json& root) : next_(&root) {}
+
+  bool null() { return Put(nullptr) != nullptr; }
+  bool boolean(bool value) { return Put(value) != nullptr; }
+  bool number_integer(std::int64_t value) { return Put(value) != nullptr; }
+  bool number_unsigned(std::uint64_t value) { return Put(value) != nullptr; }
+  bool number_float(double value, const std::string&) { return Put(value) != nullptr; }
+  bool string(std::string& text) { return Put(std::move(text)) != nullptr; }
+  bool start_array(std::size_t) { return Open(Json::value_t::array); }
+  bool start_object(std::size_t) { return Open(Json::value_t::object); }
+  bool end_array() { return Close(); }
+  bool end_object() { return Close(); }
+  bool key(std::string& name) {
+    auto& fields = *open_.back()->template get_ptr<typename Json::object_t*>();
+    if constexpr (std::is_same_v<Json, nlohmann::ordered_json>) {
+      // its own way of adding a field searches all those before
+      using Fields = typename Json::object_t::Container;
+      next_ = &static_cast<Fields&>(fields).emplace_back(std::move(name), nullptr).second;
+    } else {
+      next_ = &fields.emplace(std::move(name), nullptr).first->second;
+    }
+    return true;
+  }
+
+ private:
+  template <class Value>
+  Json* Put(Value&& value) {
+    if (!open_.empty() && open_.back()->is_array()) {
+      auto& elements = *open_.back()->template get_ptr<typename Json::array_t*>();
+      return &elements.emplace_back(std::forward<Value>(value));
+    }
+    *next_ = Json(std::forward<Value>(value));
+    return next_;
+  }
+  bool Open(typename Json::value_t kind) {
+    open_.push_back(Put(kind));
+    return true;
+  }
+  bool Close() {
     open_.pop_back();
     return true;
   }
-  bool key(string_t& name) override {
-    open_.back().key = name;
-    if (open_.back().seen.insert(name).second) return true;
-    twice_.emplace();
-    for (const Object& object : open_) *twice_ += (twice_->empty() ? "" : ".") + object.key;
-    return false;
-  }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
-    return false;  // the parser that builds the document says it better
-  }
 
-  /// "settings.tolerance"
-  const std::optional<std::string>& Twice() const { return twice_; }
+  Json* next_;  // the root, or the value of the field whose name came last
+  std::vector<Json*> open_;
+};
+
+Error ZeroByte(const std::string& source) {
+  return Error{ErrorCode::kJsonSyntax, source + ": not valid JSON: it holds a zero byte"};
+}
+
+Error TooLong(const std::string& source, std::size_t most_bytes) {
+  return Error{ErrorCode::kFileTooLarge, source + ": longer than " + std::to_string(most_bytes) +
+                                             " bytes, which is the most that is read here"};
+}
+
+/// The bytes of a stream for the library's parser, which would gather a token of any length and end at a zero byte.
+struct StreamBytes {
+  std::streambuf& buffer;
+  std::size_t most_bytes, most_token;
+  std::function<bool()> has_moved;  // to another token
+  std::size_t bytes = 0, token = 0;
+  bool has_zero = false, is_long = false;
+
+  std::optional<char> Peek() {
+    constexpr std::size_t kAtLeast = 4096;  // white space, and numbers
+    const int next = buffer.sgetc();
+    if (next == std::char_traits<char>::eof()) return {};
+    has_zero = has_zero || next == 0;
+    if (token > most_token + kAtLeast && has_moved()) token = 0;
+    is_long = is_long || bytes > most_bytes || token > most_token + kAtLeast;
+    if (has_zero || is_long) return {};
+    return static_cast<char>(next);
+  }
+  void Skip() {
+    buffer.sbumpc();
+    ++bytes, ++token;
+  }
+};
+
+class StreamIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = char;
+
+  explicit StreamIterator(StreamBytes* bytes = nullptr) : bytes_(bytes) {}
+  char operator*() const { return *bytes_->Peek(); }
+  StreamIterator& operator++() { return bytes_->Skip(), *this; }
+  bool operator==(const StreamIterator& other) const { return IsAtEnd() == other.IsAtEnd(); }
+  bool operator!=(const StreamIterator& other) const { return !(*this == other); }
 
  private:
-  struct Object {
-    std::set<std::string> seen;
-    std::string key;
-  };
-  std::vector<Object> open_;
-  std::optional<std::string> twice_;
+  bool IsAtEnd() const { return bytes_ == nullptr || !bytes_->Peek(); }
+  StreamBytes* bytes_;
 };
 
 std::string NumberText(double value) {
@@ -100,8 +303,8 @@ std::string NumberText(double value) {
 void JsonView::Complain(std::string_view text, ErrorCode code) const {
   auto& content = *document_->content_;
   if (content.complaint) return;
-  content.complaint =
-      Error{code, content.source + ": at " + (path_.empty() ? "the top" : path_) + ": " + std::string(text)};
+  content.complaint = Error{code, content.source + ": at " + (path_.empty() ? "the top" : Excerpt(path_)) +
+                                      ": " + std::string(text)};
 }
 
 JsonView JsonView::Child(std::string_view key) const {
@@ -255,31 +458,55 @@ Status JsonDocument::Check() const {
   return {};
 }
 
-Result<JsonDocument> JsonDocument::Parse(std::string_view text, std::string source) {
-  if (IsTooDeep(text)) {
-    return Error{ErrorCode::kJsonSyntax,
-                 source + ": nested deeper than " + std::to_string(kMaxDepth) + " levels"};
-  }
+Result<JsonDocument> JsonDocument::Parse(std::string_view text, std::string source,
+                                         const JsonLimits& limits) {
+  auto root = ParseJson<nlohmann::json>(text, source, limits);
+  if (!root.ok()) return root.error();
   auto content = std::make_unique<Content>();
+  content->root = std::move(*root);
   content->source = std::move(source);
-  TwiceWatch watch;
-  try {
-    content->root = nlohmann::json::parse(text);
-    (void)nlohmann::json::sax_parse(text, &watch);
-  } catch (const nlohmann::json::exception& failure) {
-    return Error{ErrorCode::kJsonSyntax, content->source + ": not valid JSON: " + failure.what()};
-  }
-  if (watch.Twice()) {
-    return Error{ErrorCode::kJsonSyntax, content->source + ": the field " + *watch.Twice() +
-                                             " is given twice in one object; keep one of them"};
-  }
   return JsonDocument(std::move(content));
 }
 
-Result<JsonDocument> JsonDocument::Read(const std::filesystem::path& path) {
-  auto text = ReadFile(path);
+Result<JsonDocument> JsonDocument::Read(const std::filesystem::path& path, const JsonLimits& limits) {
+  auto text = ReadFile(path, limits.bytes);
   if (!text.ok()) return text.error();
-  return Parse(*text, path.string());
+  return Parse(*text, path.string(), limits);
 }
+
+// --- the reader
+
+template <class Json>
+Result<Json> ParseJson(std::string_view text, std::string_view source, const JsonLimits& limits) {
+  if (text.size() > limits.bytes) return TooLong(std::string(source), limits.bytes);
+  // the library would take it for the end
+  if (text.find('\0') != std::string_view::npos) return ZeroByte(std::string(source));
+  Json root;
+  Builder<Json> builder(root);
+  Watch<Builder<Json>> watch(builder, source, limits);
+  (void)Json::sax_parse(text.begin(), text.end(), &watch);
+  if (watch.Failure()) return *watch.Failure();
+  return root;
+}
+
+template Result<nlohmann::json> ParseJson(std::string_view, std::string_view, const JsonLimits&);
+template Result<nlohmann::ordered_json> ParseJson(std::string_view, std::string_view, const JsonLimits&);
+
+template <class Sax>
+Status ParseJsonEvents(std::istream& stream, std::string_view source, Sax& events, const JsonLimits& limits) {
+  Watch<Sax> watch(events, source, limits);
+  constexpr std::size_t kEscape = 6;  // \uNNNN for one byte
+  StreamBytes bytes{*stream.rdbuf(),
+                    limits.bytes == 0 ? std::numeric_limits<std::size_t>::max() : limits.bytes,
+                    kEscape * limits.text, [&] { return watch.HasMoved(); }};
+  (void)nlohmann::json::sax_parse(StreamIterator(&bytes), StreamIterator(), &watch);
+  if (bytes.has_zero) return ZeroByte(std::string(source));
+  if (bytes.is_long) return TooLong(std::string(source), std::min(bytes.most_bytes, bytes.most_token));
+  if (watch.Failure()) return *watch.Failure();
+  return {};
+}
+
+template Status ParseJsonEvents(std::istream&, std::string_view, nlohmann::json_sax<nlohmann::json>&,
+                                const JsonLimits&);
 
 }  // namespace trocar::core

@@ -4,6 +4,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "trocar/core/printable_output.h"
+
 namespace trocar::core {
 namespace {
 
@@ -37,7 +39,7 @@ void SetLogLevel(LogLevel level) {
 }
 
 void Log(LogLevel level, std::string_view text) {
-  GetLogger().log(ToSpdlog(level), "{}", text);
+  GetLogger().log(ToSpdlog(level), "{}", PrintableLine(text));
 }
 
 }  // namespace trocar::core

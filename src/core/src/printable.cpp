@@ -6,16 +6,11 @@
 #include <cstdio>
 #include <vector>
 
+#include "letter.h"
+
 namespace trocar::core {
-namespace {
 
-struct Letter {
-  std::uint32_t code = 0;
-  std::size_t bytes = 0;  // 0: no UTF-8
-};
-
-/// The first letter of `text`, refusing overlong forms, surrogates and what lies beyond U+10FFFF.
-Letter Decode(std::string_view text) {
+Letter DecodeLetter(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return {byte(0), 1};
   const std::size_t length = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : byte(0) >= 0xC2 ? 2 : 0;
@@ -38,13 +33,11 @@ bool IsHarmful(std::uint32_t code) {
          (code >= 0x2066 && code <= 0x2069) || code == 0xFEFF || code >= 0xE0000;  // isolates, tags
 }
 
-}  // namespace
-
 std::string Printable(std::string_view text, std::size_t most_characters) {
   most_characters = std::max<std::size_t>(most_characters, 16);
   std::vector<std::string> letters;
   while (!text.empty()) {
-    const Letter letter = Decode(text);
+    const Letter letter = DecodeLetter(text);
     char escaped[16];
     if (letter.bytes == 0) {
       std::snprintf(escaped, sizeof(escaped), "\\x%02X", static_cast<unsigned>(text[0]) & 0xFFu);

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "trocar/core/clock.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/core/translate.h"
 
 namespace trocar::core {
@@ -35,13 +36,15 @@ void ProgressBar::Show(double done) {
   const int full = static_cast<int>(fraction * kBarCells);
   const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                           std::string(static_cast<std::size_t>(kBarCells - full), '.');
-  std::fprintf(stderr, "\r%s [%s] %3.0f %%\033[K", TranslateComposed(label_).c_str(), bar.c_str(),
+  WriteControl(stderr, "\r");
+  std::fprintf(stderr, "%s [%s] %3.0f %%", PrintableLine(TranslateComposed(label_)).c_str(), bar.c_str(),
                100 * fraction);
+  WriteControl(stderr, "\033[K");
   std::fflush(stderr);
 }
 
 void ProgressBar::Finish() {
-  if (is_drawn_) std::fprintf(stderr, "\r\033[K");
+  if (is_drawn_) WriteControl(stderr, "\r\033[K");
   is_drawn_ = false;
 }
 

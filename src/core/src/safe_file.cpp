@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "trocar/core/partial_path.h"
+#include "trocar/core/user_folder.h"
 
 namespace trocar::core {
 namespace {
@@ -87,7 +88,7 @@ Result<std::string> ReadFile(const fs::path& path, std::size_t limit_bytes) {
 
 Status WriteFile(const fs::path& path, std::string_view content) {
   std::error_code failure;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
+  if (path.has_parent_path()) failure = MakeFolders(path.parent_path());
   if (failure) return Unwritable(path.parent_path(), failure.message());
   const PartialPath part(path);
   const fs::path& partial = part.Path();

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "trocar/core/printable_output.h"
+
 namespace trocar::core {
 namespace {
 
@@ -36,7 +38,12 @@ bool IsNumberText(std::string text) {
   return end == text.c_str() + text.size();
 }
 
-std::string FormatTable(const std::vector<std::vector<std::string>>& rows) {
+std::string FormatTable(const std::vector<std::vector<std::string>>& given) {
+  // a cell that somebody chose must not forge a line of its own
+  std::vector<std::vector<std::string>> rows = given;
+  for (std::vector<std::string>& row : rows) {
+    for (std::string& cell : row) cell = PrintableLine(cell);
+  }
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/core/user_folder.h"
 
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <string>
 
@@ -21,6 +25,12 @@ std::filesystem::path FindFolder(const char* own, const char* shared, const char
   return std::filesystem::path(ReadVariable("HOME")) / below_home / "trocar";
 }
 
+/// Whether `path` is `folder`, or below it.
+bool IsInside(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const auto [end, unused] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return end == folder.end();
+}
+
 }  // namespace
 
 std::filesystem::path FindConfigFolder() {
@@ -33,6 +43,28 @@ std::filesystem::path FindUserDataFolder() {
 
 std::filesystem::path FindCacheFolder() {
   return FindFolder("TROCAR_CACHE_HOME", "XDG_CACHE_HOME", ".cache");
+}
+
+std::error_code MakePrivateFolders(const std::filesystem::path& folder) {
+  std::error_code failure;
+  if (folder.empty() || std::filesystem::is_directory(folder, failure)) return {};
+  if (folder.has_parent_path() && folder.parent_path() != folder) {
+    if (const auto above = MakePrivateFolders(folder.parent_path())) return above;
+  }
+  // another program may have been first
+  if (::mkdir(folder.c_str(), S_IRWXU) == 0 || std::filesystem::is_directory(folder, failure)) return {};
+  return {errno == 0 ? EIO : errno, std::generic_category()};
+}
+
+std::error_code MakeFolders(const std::filesystem::path& folder) {
+  std::error_code failure;
+  const auto whole = std::filesystem::absolute(folder, failure).lexically_normal();
+  for (const auto& own : {FindConfigFolder(), FindUserDataFolder(), FindCacheFolder()}) {
+    if (IsInside(whole, std::filesystem::absolute(own, failure).lexically_normal()))
+      return MakePrivateFolders(folder);
+  }
+  std::filesystem::create_directories(folder, failure);
+  return failure;
 }
 
 }  // namespace trocar::core

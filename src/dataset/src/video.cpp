@@ -9,13 +9,14 @@
 #include "trocar/core/sha256.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
+#include "trocar/simulation/attempt_end.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::dataset {
 namespace {
 
 std::string NameOutcome(const Plan& plan, const simulation::Snapshot& last, bool has_finished) {
-  if (last.operation.is_completed || last.task.phase == scene::TaskPhase::kCompleted) return "completed";
+  if (simulation::HasCompleted(last)) return "completed";
   if (last.task.phase == scene::TaskPhase::kTimeOver) return "time over";
   if (last.task.phase == scene::TaskPhase::kEnded) return "ended by an error";
   if (!plan.recordings.empty() && has_finished) return "end of the recording";

@@ -81,4 +81,8 @@ SupervisedWire ForceDriver::GetSupervisedWire(int /*channel*/) const noexcept {
   return {};
 }
 
+SupervisedLibrary ForceDriver::GetSupervisedLibrary() const {
+  return {};
+}
+
 }  // namespace trocar::device

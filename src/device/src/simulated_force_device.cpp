@@ -89,7 +89,9 @@ ReadStatus SimulatedForceDevice::DoReadForceSamples(std::span<ForceSample> sampl
         sample.position[axis] = step * std::floor(sample.position[axis] / step);
     }
     if (fault == SimulatedFault::kNotFinite) sample.position.x = std::numeric_limits<double>::quiet_NaN();
-    if (fault == SimulatedFault::kJumped) sample.position.z -= 0.05;
+    const bool has_jumped =
+        fault == SimulatedFault::kJumped || (fault == SimulatedFault::kAlternating && sequence_ % 2 == 0);
+    if (has_jumped) sample.position.z -= 0.05;
     sample.velocity = {};
     sample.orientation = {};
     sample.buttons = buttons_[channel].load(std::memory_order_relaxed);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -148,18 +149,165 @@ TEST(Igtl, ReadsManyToolsAndNamesAMessageOfTooMany) {
   IgtlReader reader;
   std::size_t poses = 0;
   const auto count = [&](const IgtlPose&) { ++poses; };
-  EXPECT_EQ(reader.DescribeLarge(), "");
+  EXPECT_TRUE(reader.DescribeRefused().empty());
   ASSERT_TRUE(reader.Feed(tools(600) + tools(2), count));
   EXPECT_EQ(poses, 2u) << "the stream goes on";
-  EXPECT_EQ(reader.Counts().large, 1u);
   EXPECT_EQ(reader.Counts().bad, 1u);
-  EXPECT_NE(reader.DescribeLarge().find("TDATA \"Theatre\" of 42000 bytes"), std::string::npos)
-      << reader.DescribeLarge();
+  ASSERT_EQ(reader.DescribeRefused().size(), 1u);
+  EXPECT_TRUE(reader.DescribeRefused()[0].starts_with(
+      "TDATA \"Theatre\": 1 of 1 do not count, because they have more than 256 tools (42000 bytes)"))
+      << reader.DescribeRefused()[0];
   // a name may be anything
   std::string nasty = tools(600);
   nasty.replace(14, 7, "\x1b[2Jxyz");
   ASSERT_TRUE(reader.Feed(nasty, count));
-  EXPECT_EQ(reader.DescribeLarge().find('\x1b'), std::string::npos);
+  EXPECT_EQ(reader.DescribeRefused()[0].find('\x1b'), std::string::npos);
+  EXPECT_EQ(reader.DescribeReceived().find('\x1b'), std::string::npos);
+}
+
+/// Twelve numbers as a TRANSFORM's body.
+std::string Matrix(const std::vector<float>& numbers) {
+  std::string body;
+  for (const float number : numbers) body += Big(std::bit_cast<std::uint32_t>(number), 4);
+  return body;
+}
+
+std::vector<float> Turned(double x, double y, double z) {
+  std::vector<float> numbers;
+  const double lengths[] = {x, y, z};
+  for (int column = 0; column < 3; ++column) {
+    math::Vec3 unit;
+    unit[column] = 1;
+    const math::Vec3 axis = math::Rotate(MakePose().rotation, unit) * lengths[column];
+    for (int row = 0; row < 3; ++row) numbers.push_back(static_cast<float>(axis[row]));
+  }
+  numbers.insert(numbers.end(), {10, 20, 30});
+  return numbers;
+}
+
+// each reason for which something does not count is named with its figures and a remedy
+TEST(Igtl, SaysWhyWhatCameDoesNotCount) {
+  const auto transform = [](const std::vector<float>& numbers) {
+    return Message("TRANSFORM", Matrix(numbers), 4 * numbers.size());
+  };
+  const auto with_checksum = [](std::string bytes, std::uint64_t checksum) {
+    return bytes.replace(50, 8, Big(checksum, 8));
+  };
+  const std::string good = FormatIgtlTransform("left", MakePose(), 0);
+  std::vector<float> skewed = Turned(1, 1, 1);
+  for (int row = 0; row < 3; ++row)
+    skewed[3 + static_cast<std::size_t>(row)] =
+        0.8f * skewed[3 + static_cast<std::size_t>(row)] + 0.6f * skewed[static_cast<std::size_t>(row)];
+  std::vector<float> unbounded = Turned(1, 1, 1);
+  unbounded[4] = std::numeric_limits<float>::quiet_NaN();
+  std::string swapped;
+  for (const float number : Turned(1, 1, 1)) {
+    std::string word = Big(std::bit_cast<std::uint32_t>(number), 4);
+    swapped.append(word.rbegin(), word.rend());
+  }
+  const struct {
+    IgtlFault fault;
+    std::string bytes, says;
+  } cases[] = {
+      {IgtlFault::kNoChecksum, with_checksum(good, 0), "their checksum is 0"},
+      {IgtlFault::kChecksum, with_checksum(good, 0x123), "0000000000000123 instead of"},
+      {IgtlFault::kSize, transform({1, 2, 3}), "a body of 12 bytes"},
+      {IgtlFault::kExtendedHeader, Message("TRANSFORM", std::string(48, '\x7f'), 48, 2), "extended header"},
+      {IgtlFault::kNoRotation, Message("POSITION", Matrix({1, 2, 3}), 12), "a place without a rotation"},
+      {IgtlFault::kZero, transform(std::vector<float>(12, 0.0f)), "all zeros"},
+      {IgtlFault::kNumbers, transform(unbounded), "not finite"},
+      {IgtlFault::kByteOrder, Message("TRANSFORM", swapped, 48), "wrong byte order"},
+      {IgtlFault::kMirror, transform(Turned(1, 1, -1)), "mirrors (its determinant is negative)"},
+      {IgtlFault::kSkew, transform(skewed), "36.87 degrees off a right angle"},
+      {IgtlFault::kScale, transform(Turned(1.1, 1, 1)), "1.1, 1 and 1 instead of 1, a scale"},
+      {IgtlFault::kScale, transform(Turned(0.1, 0.1, 0.1)), "0.1, 0.1 and 0.1"},
+      {IgtlFault::kScale, Message("POSITION", Matrix({1, 2, 3, 0, 0, 0, 2}), 28), "2, 2 and 2"},
+      {IgtlFault::kManyTools, Message("TDATA", std::string(70 * 300, 'x'), 70 * 300), "more than 256 tools"},
+  };
+  for (const auto& one : cases) {
+    IgtlReader reader;
+    int poses = 0;
+    ASSERT_TRUE(reader.Feed(one.bytes + good, [&](const IgtlPose&) { ++poses; })) << one.says;
+    EXPECT_EQ(poses, 1) << one.says << ": the good one behind it counts";
+    EXPECT_EQ(reader.Counts().bad, 1u);
+    ASSERT_GE(reader.Seen().size(), 1u);
+    EXPECT_EQ(reader.Seen()[0].fault, one.fault) << one.says;
+    EXPECT_EQ(reader.Seen()[0].refused, 1u);
+    // out of sight now and then is no fault of a tool that is seen otherwise
+    if (one.fault == IgtlFault::kZero) {
+      EXPECT_TRUE(reader.DescribeRefused().empty());
+      reader = {};
+      ASSERT_TRUE(reader.Feed(one.bytes, [](const IgtlPose&) {}));
+    }
+    ASSERT_EQ(reader.DescribeRefused().size(), 1u) << one.says;
+    const std::string said = reader.DescribeRefused()[0];
+    EXPECT_NE(said.find(" do not count, because "), std::string::npos) << said;
+    EXPECT_NE(said.find(one.says), std::string::npos) << said;
+  }
+}
+
+TEST(Igtl, PutsRightWhatRoundingLeavesAndNothingMore) {
+  const auto read = [](double length) {
+    return Read(Message("TRANSFORM", Matrix(Turned(length, 1, 1)), 48));
+  };
+  for (const double length : {0.997, 1.0, 1.003}) {
+    const Got got = read(length);
+    ASSERT_EQ(got.poses.size(), 1u) << length;
+    EXPECT_LT(math::Distance(got.poses[0] * math::Vec3{1, 0, 0},
+                             math::Rotate(MakePose().rotation, {1, 0, 0}) + math::Vec3{0.01, 0.02, 0.03}),
+              1e-6);
+  }
+  for (const double length : {0.99, 1.01}) EXPECT_TRUE(read(length).poses.empty()) << length;
+}
+
+TEST(Igtl, ReadsPlacesWithQuaternions) {
+  const math::Pose pose = MakePose();
+  const math::Quaternion& q = pose.rotation;
+  std::vector<float> numbers;
+  for (const double number :
+       {1e3 * pose.translation.x, 1e3 * pose.translation.y, 1e3 * pose.translation.z, q.x, q.y, q.z, q.w})
+    numbers.push_back(static_cast<float>(number));
+  const std::string element = std::string("right") + std::string(15, '\0') + "\x02" + std::string(1, '\0');
+  const Got got = Read(Message("POSITION", Matrix(numbers), 28) +
+                       Message("QTDATA", element + Matrix(numbers) + element + Matrix(numbers), 100));
+  ASSERT_EQ(got.names, (std::vector<std::string>{"left", "right", "right"}));
+  for (const math::Pose& one : got.poses)
+    EXPECT_LT(math::Distance(one * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-6);
+}
+
+TEST(Igtl, CountsWhatCameByKindAndName) {
+  IgtlReader reader;
+  const IgtlTool tools[] = {{"left", MakePose()}, {"Reference", MakePose()}};
+  std::string bytes = Message("STATUS", std::string(30, '\0'), 30) +
+                      FormatIgtlTrackingData("Tracker", tools, 0) + FormatIgtlTrackingData("Tracker", {}, 0) +
+                      Message("IMAGE", std::string(5000, 'x'), 5000);
+  ASSERT_TRUE(reader.Feed(bytes + bytes, [](const IgtlPose&) {}));
+  EXPECT_EQ(reader.DescribeReceived(),
+            "STATUS \"left\" (2), TDATA \"left\" (2), TDATA \"Reference\" (2), TDATA \"Tracker\" (2), IMAGE "
+            "\"left\" (2)");
+  EXPECT_TRUE(reader.DescribeRefused().empty());
+  // a sender of ever new names costs no memory
+  for (int i = 0; i < 1000; ++i)
+    ASSERT_TRUE(reader.Feed(FormatIgtlTransform(std::to_string(i), MakePose(), 0), [](const IgtlPose&) {}));
+  EXPECT_EQ(reader.Seen().size(), kMostIgtlSeen);
+  EXPECT_NE(reader.DescribeReceived().find(", ... (981)"), std::string::npos) << reader.DescribeReceived();
+}
+
+TEST(Igtl, SaysWhatIsNoHeader) {
+  const auto said = [](const std::string& bytes) {
+    IgtlReader reader;
+    EXPECT_FALSE(reader.Feed(bytes, [](const IgtlPose&) {}));
+    EXPECT_FALSE(reader.Feed(bytes, [](const IgtlPose&) {})) << "it has to be restarted";
+    return reader.DescribeBadHeader();
+  };
+  EXPECT_NE(said("HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\nServer: a long one\r\n\r\n")
+                .find("\"HTTP/1.1 400 Bad\""),
+            std::string::npos);
+  EXPECT_NE(said(Message("TRANSFORM", "", 0, 4)).find("version 4"), std::string::npos);
+  EXPECT_NE(said(Message("TRANSFORM", "", 0, 0x0100)).find("byte order"), std::string::npos);
+  EXPECT_NE(said(Message("TRANSFORM", "", std::uint64_t{1} << 40)).find("1099511627776 bytes"),
+            std::string::npos);
+  EXPECT_EQ(said("\x1b[2J" + std::string(60, '\x9b')).find('\x1b'), std::string::npos);
 }
 
 // faults D6: in this protocol nothing numbers a message, so what is sent twice is taken twice; it only says again where a hand
@@ -331,6 +479,64 @@ TEST_F(IgtlTrackerTest, SaysWhichNamesItWants) {
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kDeviceStale);
   EXPECT_NE(status.error().message.find("starboard"), std::string::npos);
+  EXPECT_NE(status.error().message.find("This came: TRANSFORM \"LeftToTracker\" ("), std::string::npos)
+      << status.error().message;
+}
+
+/// A server that says the same again and again.
+class Repeater : public Emulator {
+ public:
+  explicit Repeater(std::string bytes) : bytes_(std::move(bytes)) {}
+  void Receive(std::string_view) override {}
+  std::string Advance(double) override { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+// what came stands in the error where no hand can be seen, and among what was held back where one can
+TEST_F(IgtlTrackerTest, SaysWhatCameInsteadOfPoses) {
+  std::string unchecked = FormatIgtlTransform("LeftTool", MakePose(), 0);
+  unchecked.replace(50, 8, 8, '\0');
+  const std::string mirrored = Message("TRANSFORM", Matrix(Turned(1, 1, -1)), 48);
+  const std::string right = FormatIgtlTransform("RightTool", MakePose(), 0);
+  const struct {
+    std::string bytes, error, held_back;
+  } cases[] = {
+      {unchecked, "TRANSFORM \"LeftTool\": ", ""},
+      {unchecked + Message("TRANSFORM", Matrix(Turned(0.1, 0.1, 0.1)), 48),
+       "; also, TRANSFORM \"left\": ", ""},
+      {mirrored + right, "", "TRANSFORM \"left\": "},
+      {Message("STATUS", std::string(30, '\0'), 30), "This came: STATUS \"left\" (", ""},
+      {"", "nothing came", ""},
+      {"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\nServer: a long one\r\n\r\n", "it is no OpenIGTLink",
+       ""},
+  };
+  for (const auto& one : cases) {
+    const auto host = *EmulatorHost::MakeTcp(std::make_unique<Repeater>(one.bytes), 0, {});
+    EmulatorClock clock;
+    clock.Add(*host);
+    const std::string address = host->Address();
+    const int port = std::stoi(address.substr(address.find(':') + 1));
+    IgtlTracker driver(
+        settings_, [port] { return ConnectTcp("localhost", port); }, clock);
+    const core::Status status = driver.Configure();
+    EXPECT_EQ(status.ok(), one.error.empty()) << one.error;
+    if (!status.ok()) {
+      EXPECT_NE(status.error().message.find(one.error), std::string::npos) << status.error().message;
+    }
+    if (one.held_back.empty()) continue;
+    ASSERT_TRUE(status.ok());
+    ASSERT_TRUE(driver.Activate().ok());
+    for (int i = 0; i < 50; ++i) {
+      clock.Sleep(0.01);
+      (void)driver.Read(samples_);
+    }
+    EXPECT_TRUE(samples_[kRightHand].is_valid);
+    EXPECT_FALSE(samples_[kLeftHand].is_valid);
+    ASSERT_EQ(driver.DescribeHeldBack().size(), 1u);
+    EXPECT_TRUE(driver.DescribeHeldBack()[0].starts_with(one.held_back)) << driver.DescribeHeldBack()[0];
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 /// \file stand_in_hd.cpp  Takes the place of the maker's libHD in tests: two devices, one scheduler thread of about 1 kHz,
 /// errors on demand. Built as a library of its own and loaded by name.
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -38,6 +39,30 @@ StandInState& FindState() {
   return memory == MAP_FAILED ? own : *static_cast<StandInState*>(memory);
 }
 StandInState& state = FindState();
+
+/// As a driver of the system: the devices are one process's until it gives them back or is gone.
+int device_file = -1;
+bool TakeDevices() {
+  const char* path = std::getenv(kStandInPage);
+  if (path == nullptr || device_file >= 0) return true;
+  const int file = ::open(path, O_RDWR | O_CLOEXEC);
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+    ::close(file);
+    return false;
+  }
+  device_file = file;
+  return true;
+}
+void GiveDevicesBack() {
+  if (device_file >= 0) ::close(device_file);
+  device_file = -1;
+}
+/// Of the scheduler's thread.
+void NoteCall() {
+  const long long now = std::chrono::steady_clock::now().time_since_epoch().count();
+  const long long last = state.last_call.exchange(now);
+  if (last != 0 && now - last > state.longest_gap) state.longest_gap = now - last;
+}
 
 std::atomic<int> open_frames{0}, callbacks{0}, drops{0};
 auto& pending_error = state.pending_error;
@@ -154,6 +179,10 @@ STAND_IN unsigned int hdInitDevice(const char* name) {
     pending_error = 0x0300;
     return 0xffffffff;
   }
+  if (!TakeDevices()) {
+    pending_error = 0x0305;
+    return 0xffffffff;
+  }
   // the system has taken them from a process that is gone
   if (state.process.exchange(::getpid()) != ::getpid()) devices = 0;
   const int number = devices++;
@@ -163,7 +192,7 @@ STAND_IN unsigned int hdInitDevice(const char* name) {
 STAND_IN void hdDisableDevice(unsigned int) {
   Suffer();
   if (is_running) ++misuses;
-  --devices;
+  if (--devices == 0) GiveDevicesBack();
 }
 STAND_IN void hdMakeCurrentDevice(unsigned int device) {
   Suffer();
@@ -239,6 +268,7 @@ STAND_IN void hdSetDoublev(unsigned int what, const double* values) {
   const bool is_rising = std::sqrt(size) > std::sqrt(SquaredSize(force)) && rise > 0.5001 * 0.5001;
   if (!(std::sqrt(size) <= state.limits[0] * 1.0001) || is_rising) ++state.bad_forces;
   for (std::size_t i = 0; i < 3; ++i) force[i] = values[i];
+  if (std::sqrt(size) > state.largest) state.largest = std::sqrt(size);
 }
 STAND_IN unsigned int hdCheckCalibration() {
   return 0x5000;
@@ -261,10 +291,12 @@ STAND_IN void hdUnschedule(unsigned long) {
 STAND_IN void hdStartScheduler() {
   is_running = true;
   if (state.is_stepped == 1) return;
+  state.last_call = 0;
   scheduler = std::thread([] {
     while (is_running) {
       if (HasFault(StandInFault::kCrash)) std::raise(SIGSEGV);
       const bool is_silent = HasFault(StandInFault::kSilentScheduler);
+      if (!is_silent) NoteCall();
       if (!is_silent && callback != nullptr && callback(callback_data) == 0) {
         is_scheduled = false;
         break;

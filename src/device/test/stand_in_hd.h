@@ -21,8 +21,10 @@ struct StandInState {
   std::atomic<unsigned int> pending_error{0};
   std::atomic<int> devices{0};  ///< open
   std::atomic<int> misuses{0};
-  std::atomic<int> process{0};  ///< that has the library
-  std::atomic<int> is_led{0};   ///< 1: styluses in the middle of their reach, buttons as below
+  std::atomic<int> process{0};  ///< that has the devices; they open for one at a time
+  /// When the scheduler last called, and the longest time between two calls since a test set it to 0 [ns].
+  std::atomic<long long> last_call{0}, longest_gap{0};
+  std::atomic<int> is_led{0};  ///< 1: styluses in the middle of their reach, buttons as below
   std::array<std::atomic<int>, 2> buttons{};
   /// What the devices say of themselves: largest force [N], continuous force [N], stiffness [N/mm].
   std::array<std::atomic<double>, 3> limits{3.3, 0.88, 1.02};
@@ -35,5 +37,6 @@ struct StandInState {
   std::atomic<StandInFault> fault{StandInFault::kNone};
   std::atomic<int> fault_process{0};  ///< in which it happens; another process's library is well
   std::atomic<int> bad_forces{0};     ///< not finite, above the clamp, or with too fast a rise
+  std::atomic<double> largest{0};     ///< force so far [N]
   std::array<std::array<std::atomic<double>, 3>, 2> forces{};  ///< on the hands, as the motors give them [N]
 };

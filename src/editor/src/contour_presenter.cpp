@@ -113,6 +113,7 @@ void ContourPresenter::UseWorkspace(contours::ContourWorkspace workspace) {
   screen_->UseEditor(editor_.get());
   page_.has_reference = workspace_->HasReference() && options_.run.IsAttended();
   page_.series = SeriesText(workspace_->Series());
+  if (const std::string notes = SeriesNotes(workspace_->Series()); !notes.empty()) ShowHint(notes);
   if (is_kept) StartAutosave();
   shown_revision_ = workspace_->Document().Revision();
   RequestSurfaces(true);

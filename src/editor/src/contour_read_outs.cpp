@@ -110,6 +110,13 @@ std::string PointerText(const ContourEditor& editor) {
   return text;
 }
 
+std::string SeriesNotes(const images::ImageSeriesInfo& series) {
+  std::string text;
+  for (const std::string& note : series.notes)
+    text += (text.empty() ? "" : " \u00b7 ") + core::TranslateComposed(note);
+  return text;
+}
+
 std::string SeriesText(const images::ImageSeriesInfo& series) {
   std::string text =
       core::TranslateWith("{1}, {2} x {3} pixels of {4} mm, slices of {5} mm",
@@ -120,6 +127,7 @@ std::string SeriesText(const images::ImageSeriesInfo& series) {
                                             core::Translate(series.axes[2])});
   if (!series.file_frame.empty())
     text += " \u00b7 " + core::TranslateWith("file in {1}", {series.file_frame});
+  if (const std::string notes = SeriesNotes(series); !notes.empty()) text += " \u00b7 " + notes;
   return text;
 }
 

@@ -2,6 +2,8 @@
 #include "action_layout.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
@@ -22,6 +24,16 @@ constexpr std::array<double, 5> kTipRates = {kMaxTipSpeed, kMaxTipSpeed, kMaxTip
 constexpr std::size_t kMoves = 10;  // to and fro along each of five, in a discrete action
 constexpr std::size_t kCameraMoves = 8;
 constexpr std::size_t kCommands = 4;  // of the assistant
+
+/// What a policy's single precision adds to a bound at most; so far beyond it an action is cut and not refused [-].
+constexpr double kRounding = 1e-6;
+
+/// With as many digits as tell it from any other.
+std::string InFull(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
 
 bool HasKind(const scene::InstrumentSetup& setup, std::initializer_list<instrument::ToolKind> kinds) {
   return std::any_of(setup.tray.begin(), setup.tray.end(), [&](const instrument::Tool& tool) {
@@ -104,9 +116,9 @@ core::Status ActionLayout::Check(std::span<const double> action) const {
     if (!std::isfinite(value))
       return wrong("\"" + field.name + "\" of the action is NaN or infinite; look at what the policy gives");
     if (field.choices == 0
-            ? std::abs(value) > 1
+            ? std::abs(value) > 1 + kRounding
             : value < 0 || value >= static_cast<double>(field.choices) || value != std::floor(value)) {
-      return wrong("\"" + field.name + "\" of the action is " + std::to_string(value) + "; it goes from " +
+      return wrong("\"" + field.name + "\" of the action is " + InFull(value) + "; it goes from " +
                    (field.choices == 0 ? "-1 to 1: clip it"
                                        : "0 to " + std::to_string(field.choices - 1) + ", in whole numbers"));
     }
@@ -119,12 +131,13 @@ Motion ActionLayout::Read(std::span<const double> action, scene::Input& input) c
   if (kind_ == ActionKind::kDiscrete) return ReadDiscrete(action, input);
   Motion motion;
   std::size_t next = 0;
+  const auto take = [&] { return std::clamp(action[next++], -1.0, 1.0); };
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto& rates = kind_ == ActionKind::kTip ? kTipRates : kJointRates;
-    for (std::size_t i = 0; i < rates.size(); ++i) motion.rates[hand][i] = rates[i] * action[next++];
+    for (std::size_t i = 0; i < rates.size(); ++i) motion.rates[hand][i] = rates[i] * take();
     scene::HandControls& controls = input.controls[hand];
     for (const Pedal pedal : pedals_[hand]) {
-      const double value = action[next++];
+      const double value = take();
       switch (pedal) {
         case Pedal::kCut:
           controls.cut = value > 0;
@@ -145,11 +158,9 @@ Motion ActionLayout::Read(std::span<const double> action, scene::Input& input) c
     }
   }
   if (moves_camera_) {
-    for (std::size_t i = 0; i < 4; ++i)
-      motion.camera[i] = (i == 3 ? kMaxTipSpeed : kMaxTurn) * action[next++];
+    for (std::size_t i = 0; i < 4; ++i) motion.camera[i] = (i == 3 ? kMaxTipSpeed : kMaxTurn) * take();
   }
-  if (has_assistant_)
-    input.assistant = static_cast<scene::AssistantCommand>(PartOf(action[next++], kCommands));
+  if (has_assistant_) input.assistant = static_cast<scene::AssistantCommand>(PartOf(take(), kCommands));
   return motion;
 }
 

@@ -14,6 +14,7 @@
 #include "trocar/core/assert.h"
 #include "trocar/math/random.h"
 #include "trocar/scene/find_scene.h"
+#include "trocar/simulation/attempt_end.h"
 
 namespace trocar::environment {
 namespace {
@@ -242,8 +243,8 @@ Outcome Environment::EndStep() {
   const EnvironmentSettings& settings = now.model->Settings();
   for (std::size_t i = 0; i < kFeatureCount; ++i) outcome.reward += settings.weights[i] * outcome.features[i];
   const simulation::Snapshot& seen = now.simulation.GetSnapshot();
-  outcome.is_success = seen.task.phase == scene::TaskPhase::kCompleted || seen.operation.is_completed;
-  outcome.is_terminated = seen.task.IsOver() || seen.operation.is_completed;
+  outcome.is_success = simulation::HasCompleted(seen);
+  outcome.is_terminated = outcome.is_success || seen.task.IsOver();
   // half a tick: the last action may end a rounding error before the time
   outcome.is_truncated = !outcome.is_terminated &&
                          seen.time + 0.5 * now.simulation.GetScene().tick_seconds >= settings.most_seconds;

@@ -57,6 +57,7 @@ struct Pool::Content {
   core::Status DoStep(std::int32_t id);
   std::optional<std::int32_t> TakeJob(std::size_t thread);
   void Serve(std::size_t thread);
+  core::Status CheckProcess() const;
   core::Result<std::vector<std::int32_t>> Choose(std::span<const std::int32_t> ids) const;
   void HandOver(std::span<const std::int32_t> ids);
 };
@@ -71,6 +72,7 @@ core::Status Pool::Content::DoReset(std::int32_t id, std::optional<std::uint64_t
   const auto row = static_cast<std::size_t>(id);
   Slot& slot = slots[row];
   if (const auto reset = slot.environment->Reset(seed); !reset) return reset;
+  rows.layout[row] = slot.environment->Layout();
   return Observe(id, rows.state, false);
 }
 
@@ -146,14 +148,16 @@ void Pool::Content::Serve(std::size_t thread) {
   }
 }
 
+/// Before `mutex` is taken: in a fork a thread that did not come along may hold it for ever.
+core::Status Pool::Content::CheckProcess() const {
+  if (::getpid() == process) return {};
+  return WrongState(
+      "this pool was made by another process: its threads do not live on after a fork; make the pool in the "
+      "process that uses it");
+}
+
 /// All of them where none is named. With `mutex` held.
 core::Result<std::vector<std::int32_t>> Pool::Content::Choose(std::span<const std::int32_t> ids) const {
-  if (::getpid() != process) {
-    return WrongState(
-        "this pool was made by another process: its threads do not live on after a fork; make the pool in "
-        "the process that "
-        "uses it");
-  }
   std::vector<std::int32_t> chosen(ids.begin(), ids.end());
   if (chosen.empty()) {
     for (int id = 0; id < settings.count; ++id) chosen.push_back(id);
@@ -223,6 +227,7 @@ core::Result<std::unique_ptr<Pool>> Pool::Make(std::shared_ptr<EnvironmentModel>
   made.rows.state.resize(count * made.model->StateSize());
   made.rows.final_state.resize(made.rows.state.size());
   made.rows.reward.resize(count);
+  made.rows.layout.resize(count);
   made.rows.features.resize(count * kFeatureCount);
   for (auto* flags : {&made.rows.terminated, &made.rows.truncated, &made.rows.success, &made.rows.was_reset})
     flags->resize(count);
@@ -247,16 +252,31 @@ const PoolRows& Pool::Rows() const {
 }
 
 core::Status Pool::Reset(std::span<const std::int32_t> ids, std::optional<std::uint64_t> seed) {
+  std::vector<std::optional<std::uint64_t>> seeds(ids.empty() ? static_cast<std::size_t>(Count())
+                                                              : ids.size());
+  for (std::size_t i = 0; seed && i < seeds.size(); ++i)
+    seeds[i] = *seed + (ids.empty() ? i : static_cast<std::uint64_t>(ids[i]));
+  return ResetEach(ids, seeds);
+}
+
+core::Status Pool::ResetEach(std::span<const std::int32_t> ids,
+                             std::span<const std::optional<std::uint64_t>> seeds) {
   Content& now = *content_;
+  if (const auto checked = now.CheckProcess(); !checked) return checked;
   const std::lock_guard lock(now.mutex);
   const auto chosen = now.Choose(ids);
   if (!chosen) return chosen.error();
-  for (const std::int32_t id : *chosen) {
+  if (seeds.size() != chosen->size()) {
+    return core::Error{core::ErrorCode::kUsage, std::to_string(chosen->size()) +
+                                                    " environments are reset with as many seeds, not " +
+                                                    std::to_string(seeds.size())};
+  }
+  for (std::size_t i = 0; i < chosen->size(); ++i) {
+    const std::int32_t id = (*chosen)[i];
     Content::Slot& slot = now.slots[static_cast<std::size_t>(id)];
     slot.work = Content::Work::kReset;
-    slot.seed.reset();
-    if (seed || !slot.has_begun)
-      slot.seed = seed.value_or(now.settings.seed) + static_cast<std::uint64_t>(id);
+    slot.seed = seeds[i];
+    if (!slot.seed && !slot.has_begun) slot.seed = now.settings.seed + static_cast<std::uint64_t>(id);
     slot.has_begun = true;
   }
   now.HandOver(*chosen);
@@ -265,6 +285,7 @@ core::Status Pool::Reset(std::span<const std::int32_t> ids, std::optional<std::u
 
 core::Status Pool::Send(std::span<const double> actions, std::span<const std::int32_t> ids) {
   Content& now = *content_;
+  if (const auto checked = now.CheckProcess(); !checked) return checked;
   const std::size_t size = now.model->ActionSize();
   const std::lock_guard lock(now.mutex);
   const auto chosen = now.Choose(ids);
@@ -300,8 +321,9 @@ core::Status Pool::Send(std::span<const double> actions, std::span<const std::in
 core::Status Pool::Receive(std::size_t count, std::vector<std::int32_t>& ids) {
   Content& now = *content_;
   ids.clear();
+  if (const auto checked = now.CheckProcess(); !checked) return checked;
   std::unique_lock lock(now.mutex);
-  if (::getpid() != now.process || count == 0 || count > now.at_work) {
+  if (count == 0 || count > now.at_work) {
     return WrongState(std::to_string(now.at_work) + " environments are at work, and results of " +
                       std::to_string(count) + " were asked for; send actions first");
   }
@@ -321,6 +343,7 @@ core::Status Pool::Receive(std::size_t count, std::vector<std::int32_t>& ids) {
 }
 
 std::size_t Pool::AtWork() const {
+  if (!content_->CheckProcess()) return 0;
   const std::lock_guard lock(content_->mutex);
   return content_->at_work;
 }

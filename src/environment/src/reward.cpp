@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "trocar/simulation/attempt_end.h"
+
 namespace trocar::environment {
 namespace {
 
@@ -81,7 +83,6 @@ void StandInTask(const scene::Scene& scene, const Snapshot& now, Standing& stand
   }
   standing.goals = static_cast<double>(goals) / static_cast<double>(task.goals.size());
   standing.steps = static_cast<double>(steps) / static_cast<double>(std::max<std::size_t>(all_steps, 1));
-  standing.is_completed = now.task.phase == scene::TaskPhase::kCompleted;
   for (std::size_t i = 0; i < task.errors.size(); ++i) {
     auto& count =
         task.errors[i].severity == training::Severity::kCritical ? standing.critical_errors : standing.errors;
@@ -95,11 +96,11 @@ Standing CalcStanding(const simulation::Simulation& simulation) {
   const scene::Scene& scene = simulation.GetScene();
   const Snapshot& now = simulation.GetSnapshot();
   Standing standing;
+  standing.is_completed = simulation::HasCompleted(now);
   if (scene.task) StandInTask(scene, now, standing);
   // a task's tissue has neither triangle nor bed: there these are whole from the first tick on
   if (scene.operation && scene.HasPatient()) {
     const simulation::OperationSnapshot& operation = now.operation;
-    standing.is_completed = standing.is_completed || operation.is_completed;
     if (!scene.task) {
       standing.critical_errors = operation.critical_errors;
       standing.errors = operation.errors - operation.critical_errors;

@@ -113,6 +113,31 @@ TEST(Environment, RefusesWrongActions) {
   EXPECT_EQ(environment.ActionCount(), 1u);
 }
 
+// The number after 1 in single precision is what a policy gives that means 1.
+TEST(Environment, CutsWhatLiesBeyondABoundByRounding) {
+  for (const ActionKind kind : {ActionKind::kJoints, ActionKind::kTip}) {
+    const auto model = MakeModel({.task = "camera_navigation_30", .actions = kind});
+    Environment exact = std::move(*Environment::Make(model)), rounded = std::move(*Environment::Make(model));
+    ASSERT_TRUE(exact.Reset(1).ok() && rounded.Reset(1).ok());
+    std::vector<double> one(model->ActionSize()), more(one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      one[i] = i % 2 == 0 ? 1 : -1;
+      more[i] =
+          static_cast<double>(std::nextafter(static_cast<float>(one[i]), 2 * static_cast<float>(one[i])));
+      ASSERT_GT(std::abs(more[i]), 1);
+    }
+    ASSERT_TRUE(exact.Step(one).ok());
+    ASSERT_TRUE(rounded.Step(more).ok());
+    EXPECT_EQ(exact.GetSimulation().Hash(), rounded.GetSimulation().Hash());
+    one[2] = -1.00001;
+    const auto refused = rounded.Step(one);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, core::ErrorCode::kActionInvalid);
+    EXPECT_NE(refused.error().message.find(model->ActionFields()[2].name), std::string::npos);
+    EXPECT_NE(refused.error().message.find("-1.00001;"), std::string::npos) << refused.error().message;
+  }
+}
+
 // A surgeon's step changes no bit of what the surgeon does, and the action that it is said to amount to does the same.
 TEST(Environment, IsPlayedByASurgeon) {
   const auto model = MakeModel({.task = "lift_and_grasp", .actions = ActionKind::kTip});

@@ -77,6 +77,25 @@ TEST_F(PoolTest, IsAsManyEnvironments) {
                          pool->Rows().state.begin() + static_cast<std::ptrdiff_t>(state.size())));
 }
 
+TEST_F(PoolTest, TakesASeedForEach) {
+  const auto pool = MakePool({.count = 3}), same = MakePool({.count = 3});
+  ResetAll(*pool, 4);
+  ResetAll(*same, 4);
+  std::vector<std::int32_t> ids;
+  // the second goes on with its row of episodes
+  const std::vector<std::optional<std::uint64_t>> seeds = {9, {}, 5}, few = {1, 2};
+  ASSERT_TRUE(pool->ResetEach({}, seeds).ok());
+  ASSERT_TRUE(pool->Receive(3, ids).ok());
+  EXPECT_EQ(pool->ResetEach({}, few).error().code, core::ErrorCode::kUsage);
+  EXPECT_EQ(pool->AtWork(), 0u);
+  const std::vector<std::int32_t> first = {0}, second = {1}, third = {2};
+  ASSERT_TRUE(same->Reset(first, 9).ok());
+  ASSERT_TRUE(same->Reset(second, {}).ok());
+  ASSERT_TRUE(same->Reset(third, 3).ok());  // and its own number
+  ASSERT_TRUE(same->Receive(3, ids).ok());
+  EXPECT_EQ(pool->Rows().state, same->Rows().state);
+}
+
 TEST_F(PoolTest, WorksOnSomeWhileOthersWait) {
   const auto pool = MakePool({.count = 3, .threads = 2});
   ResetAll(*pool, 1);
@@ -147,8 +166,15 @@ TEST_F(PoolTest, SaysAfterAForkThatItsThreadsStayedBehind) {
   const pid_t child = fork();
   if (child == 0) {
     const std::vector<double> still(pool->Model().ActionSize());
-    const auto sent = pool->Send(still, {});
-    _exit(!sent.ok() && sent.error().code == core::ErrorCode::kEnvironmentState ? 0 : 1);
+    std::vector<std::int32_t> ids;
+    const auto is_refused = [](const core::Status& status) {
+      return !status.ok() && status.error().code == core::ErrorCode::kEnvironmentState &&
+             status.error().message.find("fork") != std::string::npos;
+    };
+    const bool holds = is_refused(pool->Send(still, {})) && is_refused(pool->Receive(1, ids)) &&
+                       is_refused(pool->Reset({}, 1)) && pool->AtWork() == 0;
+    pool.reset();
+    _exit(holds ? 0 : 1);
   }
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);

@@ -40,9 +40,14 @@ void DeviceGuard::Accept(const device::ForceSample& sample, double elapsed) noex
   held_.temperature = sample.temperature;
   held_.is_warm = sample.status == device::ForceDeviceStatus::kWarm;
   held_.is_calibrated = sample.is_calibrated;
-  bad_in_row_ = 0;
   jumps_in_row_ = 0;
   ++counts_.good;
+}
+
+/// A report that is not believed counts against the device for the next kWindow.
+void DeviceGuard::Refuse(Fault why) noexcept {
+  window_ |= 1;
+  last_refusal_ = why;
 }
 
 /// A report that has not been seen before.
@@ -50,9 +55,7 @@ void DeviceGuard::Take(const device::ForceSample& sample, double now) noexcept {
   window_ <<= 1;
   if (IsOn(Guard::kBadSamples) && !IsPlausible(sample, settings_.max_reach)) {
     ++counts_.bad;
-    window_ |= 1;
-    if (++bad_in_row_ >= settings_.max_bad_in_row) held_.fault = Fault::kBadSamples;
-    return;
+    return Refuse(Fault::kBadSamples);
   }
   const double elapsed = std::max(now - last_good_, kShortestGap);
   if (IsOn(Guard::kJump) && held_.has_pose) {
@@ -61,10 +64,9 @@ void DeviceGuard::Take(const device::ForceSample& sample, double now) noexcept {
     if (moved > settings_.max_speed * elapsed + kSmallStep ||
         turned > settings_.max_turn_rate * elapsed + kSmallTurn) {
       ++counts_.jumps;
-      window_ |= 1;
-      if (++jumps_in_row_ < settings_.max_jumps_in_row) return;
+      Refuse(Fault::kJump);
+      if (++jumps_in_row_ < settings_.max_refused) return;
       // it stays there: that is where it is, and what it came through is not known
-      held_.fault = Fault::kJump;
       held_.has_pose = false;
       held_.velocity = {};
     }
@@ -82,16 +84,14 @@ GuardedDevice DeviceGuard::Step(const device::ForceSample& sample, double now) n
   }
   const bool is_back = std::exchange(was_lost_, false);
   if (is_back) {
-    bad_in_row_ = jumps_in_row_ = 0;
+    jumps_in_row_ = 0;
     window_ = 0;
   }
   // of a device that is back what it reported before is taken, too; 0 is no report yet
   const bool is_new = is_back ? sample.sequence > 0 : sample.sequence != sequence_;
   sequence_ = sample.sequence;
   if (is_new) Take(sample, now);
-  if (IsOn(Guard::kBadSamples) && held_.fault == Fault::kNone &&
-      std::popcount(window_) >= settings_.max_bad_in_window)
-    held_.fault = Fault::kBadSamples;
+  if (std::popcount(window_) >= settings_.max_refused) held_.fault = last_refusal_;
   // bad reports and jumps do not count as signs of life, so a device that only sends those goes silent
   const double age = IsOn(Guard::kSilence) ? now - last_good_ : 0.0;
   held_.scale =

@@ -79,11 +79,24 @@ std::string Ramp() {
   return rig.complaint;
 }
 
+/// At the nominal force of a small device, a Touch, a Phantom and the strongest that is believed.
 std::string Clamp() {
-  HapticRig rig;
-  rig.ArmAndPress(30.0);
-  if (std::fabs(rig.Size() - HapticRig::kMaxForce) > 0.01) rig.Complain("not at the clamp");
-  return rig.complaint;
+  for (const double nominal : {0.1, 3.3, 8.0, 50.0}) {
+    device::ForceLimits limits = HapticRig::MakeLimits();
+    limits.max_force = limits.max_continuous_force = nominal;
+    HapticRig rig(limits);
+    // into the clamp along each axis and askew; the rig watches that nothing above it is ever sent
+    for (const Vec3& way : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{-0.6, 0.64, -0.48}}) {
+      if (rig.output.gate.state != ArmState::kArmed) rig.ArmAndPress(0.5 * nominal);
+      rig.patch.force = 15.0 * nominal * way;
+      rig.is_patch_new = true;
+      rig.Run(300);
+      if (!(rig.Size() >= 0.999 * nominal)) rig.Complain("not at the clamp");
+      if ((rig.output.gate.limits & kClamped) == 0) rig.Complain("the clamp is not told");
+    }
+    if (!rig.complaint.empty()) return rig.complaint + ", " + std::to_string(nominal) + " N";
+  }
+  return {};
 }
 
 std::string Rise() {
@@ -200,6 +213,29 @@ std::string D5Jump() {
   if (!wrong.empty()) return wrong;
   rig.patch.X_world_tool.translation = rig.sample.position;
   return CheckNeverArmsItself(rig);
+}
+
+/// To and fro between two places, in each n-th report: no force of a jump, and none at all from the third on.
+std::string D5Alternating() {
+  for (int period = 2; period <= 10; ++period) {
+    HapticRig rig;
+    rig.patch.jacobian[0] = {-300, 0, 0};
+    rig.ArmAndPress(1.0);
+    const double before = rig.Size();
+    int ticks = 0;
+    for (; ticks < 60 && rig.output.gate.state == ArmState::kArmed; ++ticks) {
+      if (std::fabs(rig.Size() - before) > 1e-9) rig.Complain("a jump made a force");
+      rig.sample.position = {ticks % period == 0 ? -0.05 : 0.0, 0, 0};
+      rig.Tick();
+    }
+    if (ticks != 2 * period + 1) rig.Complain("force after " + std::to_string(ticks) + " ticks of jumps");
+    const std::string wrong = CheckStaysOff(rig, Fault::kJump);
+    if (!wrong.empty()) return wrong;
+    rig.sample.position = {};
+    const std::string later = CheckNeverArmsItself(rig);
+    if (!later.empty()) return later;
+  }
+  return {};
 }
 
 std::string D8NotFinite() {
@@ -438,6 +474,7 @@ constexpr CampaignRow kRows[] = {
     {"D2 not reported yet", D2NotReportedYet},
     {"D4 nonsense", D4Nonsense},
     {"D5 jump", D5Jump},
+    {"D5 alternating", D5Alternating},
     {"D8 not finite", D8NotFinite},
     {"D8 implausible", D8Implausible},
     {"any limits", AnyLimits},

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "reader.h"
@@ -34,8 +35,13 @@ bool IsGzip(const InputFile& file);
 /// What kind of file it is; looks into gzip.
 FileKind FindKind(const InputFile& file);
 
-/// The file's header as text, at most `most` bytes.
+/// The file's first bytes, at most `most`.
 std::string ReadBegin(const InputFile& file, std::size_t most);
+/// The same of what gzip has packed, where it has.
+std::string ReadUnpacked(const InputFile& file, std::size_t most);
+
+/// Bytes of the file, of one that gzip has packed those of what it holds; counts no further than `most`.
+std::uint64_t CountUnpacked(const InputFile& file, std::uint64_t most);
 
 /// Type of a sample in a file.
 enum class StoredType {
@@ -53,20 +59,35 @@ enum class StoredType {
 std::size_t StoredBytes(StoredType type);
 SampleKind HandedOverAs(StoredType type);
 
+/// How the bytes of samples are written down.
+enum class Packing { kPlain, kDeflated, kText, kHex };
+
 /// Where and how a volume's samples stand in a file.
 struct StoredSamples {
   StoredType type = StoredType::kUint8;
   bool is_big_endian = false;
-  bool is_deflated = false;
-  std::uint64_t begin = 0;  ///< in the file, or where `is_whole_file_deflated`, in the unpacked bytes
-  bool is_whole_file_deflated = false;
+  Packing packing = Packing::kPlain;
+  std::uint64_t begin = 0;    ///< in the file, of what is packed
+  std::uint64_t skipped = 0;  ///< bytes of the unpacked stream before the first sample
+  /// Where set, the samples end so many bytes before the unpacked stream does, wherever that makes them begin.
+  std::optional<std::uint64_t> bytes_after{};
+  /// Samples of a channel that lie side by side before the next channel's: 1 where the channels of a voxel are neighbours.
+  std::uint64_t run = 1;
 };
+
+/// Bytes that the samples take unpacked. \throw Failure kImageTooLarge
+std::uint64_t BytesOfSamples(const ImageHeader& header, const StoredSamples& stored);
+
+/// Where byte `begin` of a file gets to, when so many lines from there on are left out.
+/// \throw Failure kImageTruncated
+std::uint64_t SkipLines(const InputFile& file, std::uint64_t begin, std::uint64_t lines);
 
 /// Compares what the samples need with the bytes present. \throw Failure kImageTruncated
 void CheckBytesPresent(const ImageHeader& header, const StoredSamples& stored, const InputFile& file,
                        const ImportRequest& request);
 
-/// Reads, converts and writes header.SampleCount() samples to `to`.
+/// Reads, converts and writes header.SampleCount() samples to `to`, the channels of a voxel side by side.
+/// \throw Failure kImageTruncated, or kImageUndecodable for what is no sample
 void ReadSamples(const ImageHeader& header, const StoredSamples& stored, const InputFile& file,
                  std::byte* to);
 

@@ -56,9 +56,16 @@ void CheckSize(const ImageHeader& header, const ImportRequest& request) {
 void CheckGeometry(const ImageHeader& header) {
   for (int axis = 0; axis < 3; ++axis) {
     const double spacing = header.spacing[axis];
-    if (!std::isfinite(spacing) || (spacing != 0 && !(spacing >= 0.001 && spacing <= 200.0))) {
+    if (!std::isfinite(spacing)) {
       throw Failure{ErrorCode::kImageGeometryInvalid,
-                    "a pixel or slice distance in its header is not between 0.001 and 200 mm"};
+                    "a pixel or slice distance in its header is not a finite number"};
+    }
+    if (spacing != 0 && !(spacing >= 0.001 && spacing <= 200.0)) {
+      char text[32];
+      std::snprintf(text, sizeof(text), "%.4g", spacing);
+      throw Failure{ErrorCode::kImageGeometryInvalid, "a pixel or slice distance in its header is " +
+                                                          std::string(text) +
+                                                          " mm, not between 0.001 and 200 mm"};
     }
     bool is_finite = std::isfinite(header.origin[axis]);
     for (const double part : header.direction[axis]) is_finite = is_finite && std::isfinite(part);
@@ -113,7 +120,10 @@ InputFile Measure(const Descriptor& descriptor) {
 }
 
 void Read(const Job& job, ImportReply& reply) {
-  switch (FindKind(job.file)) {
+  const FileKind kind = FindKind(job.file);
+  if (job.request.operation == ImportOperation::kProbeFrames && kind != FileKind::kDicom)
+    throw Failure{ErrorCode::kImageChanged, "it is no longer a DICOM file"};
+  switch (kind) {
     case FileKind::kJpeg:
       return ReadPicture(job, FileKind::kJpeg, reply);
     case FileKind::kPng:
@@ -131,6 +141,16 @@ void Read(const Job& job, ImportReply& reply) {
     case FileKind::kUnknown:
       break;
   }
+  constexpr std::size_t kAnalyzeBytes = 348;
+  if (const std::string begin = ReadUnpacked(job.file, kAnalyzeBytes); IsAnalyze(begin)) {
+    if (begin.size() < kAnalyzeBytes)
+      throw Failure{ErrorCode::kImageUndecodable, "it begins like NIfTI and ends within its header"};
+    throw Failure{
+        ErrorCode::kImageGeometryInvalid,
+        "its header has no NIfTI mark, as those of ANALYZE 7.5, which leave open which side is left"};
+  }
+  if (IsGzip(job.file))
+    throw Failure{ErrorCode::kImageUndecodable, "what gzip has packed in it is no NIfTI file"};
   throw Failure{ErrorCode::kImageUndecodable,
                 "it is no DICOM, NIfTI, NRRD, MetaImage, PNG, JPEG or TIFF file"};
 }
@@ -141,10 +161,11 @@ void Answer(const ImportRequest& request, std::span<const Descriptor> descriptor
   job.file = Measure(descriptors[0]);
   if (request.has_data_file != 0) job.data_file = Measure(descriptors[1]);
   std::optional<SampleMemory> memory;
-  if (request.operation == ImportOperation::kDecode) {
+  if (request.operation != ImportOperation::kProbe) {
     memory.emplace(descriptors[request.has_data_file != 0 ? 2 : 1].Get(), request.offset, request.capacity);
     job.samples = memory->Samples();
-    job.request.most_bytes = std::min(request.most_bytes, request.capacity);
+    if (request.operation == ImportOperation::kDecode)
+      job.request.most_bytes = std::min(request.most_bytes, request.capacity);
   }
   Read(job, reply);
 }
@@ -165,7 +186,7 @@ ImportReply MakeReply(const ImportRequest& request, std::span<const Descriptor> 
   } catch (const std::length_error&) {
     fail(ErrorCode::kImportOutOfMemory, "it needs more memory than its reader may have");
   } catch (const std::exception&) {
-    fail(ErrorCode::kImageUndecodable, "its decoder finds it damaged");
+    fail(ErrorCode::kImageUndecodable, "its decoder refuses it as damaged or of an unknown kind");
   }
   return reply;
 }

@@ -4,6 +4,8 @@
 #include <gdcmImageReader.h>
 #include <gdcmMediaStorage.h>
 #include <gdcmReader.h>
+#include <gdcmSequenceOfItems.h>
+#include <gdcmSmartPointer.h>
 #include <gdcmTag.h>
 #include <gdcmTrace.h>
 
@@ -13,10 +15,14 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <memory>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "dicom_content.h"
 #include "dicom_structure.h"
 #include "header_text.h"
 #include "reader.h"
@@ -44,9 +50,9 @@ std::string_view FindText(const gdcm::DataSet& data, Tag tag) {
 }
 
 /// Decimal strings, parted by backslashes.
-std::vector<double> FindNumbers(const gdcm::DataSet& data, Tag tag, const char* name) {
+std::vector<double> ToNumbers(std::string_view texts, const char* name) {
   std::vector<double> numbers;
-  for (const std::string_view word : Words(FindText(data, tag), "\\")) {
+  for (const std::string_view word : Words(texts, "\\")) {
     const std::string_view text = Trimmed(word);
     numbers.push_back(ParseNumber(text, name));
     if (!std::isfinite(numbers.back()))
@@ -54,6 +60,19 @@ std::vector<double> FindNumbers(const gdcm::DataSet& data, Tag tag, const char* 
                     std::string(name) + " in its header is not a finite number"};
   }
   return numbers;
+}
+
+/// The first of them; nothing where there is none that makes sense. For what an image can do without.
+std::optional<double> ToNumber(std::string_view texts) {
+  const auto words = Words(texts, "\\");
+  if (words.empty()) return std::nullopt;
+  std::string_view text = Trimmed(words[0]);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size() || !(std::fabs(number) < 1e12))
+    return std::nullopt;
+  return number;
 }
 
 /// Unsigned short; nothing when it is missing, of another length or another type.
@@ -84,13 +103,17 @@ Palette ReadPalette(const gdcm::DataSet& data) {
     const std::string_view about = FindBytes(data, Tag(0x0028, static_cast<std::uint16_t>(0x1101 + c)));
     const std::string_view table = FindBytes(data, Tag(0x0028, static_cast<std::uint16_t>(0x1201 + c)));
     std::array<std::uint16_t, 3> descriptor{};  // entries, first stored value, bits of an entry
-    if (about.size() != sizeof(descriptor))
-      throw Failure{ErrorCode::kImageUnsupported, "its palette is missing or segmented"};
+    if (data.FindDataElement(Tag(0x0028, static_cast<std::uint16_t>(0x1221 + c))))
+      throw Failure{ErrorCode::kImageUnsupported, "its palette is segmented, which is not read"};
+    if (about.size() != sizeof(descriptor) || table.empty())
+      throw Failure{ErrorCode::kImageUnsupported, "its palette is missing"};
     std::memcpy(descriptor.data(), about.data(), sizeof(descriptor));
     const std::size_t count = descriptor[0] == 0 ? 65536 : descriptor[0];
     const std::size_t bytes = table.size() >= 2 * count ? 2 : 1;
-    if ((descriptor[2] != 8 && descriptor[2] != 16) || (descriptor[2] == 16 && bytes == 1) ||
-        table.size() < bytes * count || (c > 0 && count != palette.colors.size()))
+    if ((descriptor[2] != 8 && descriptor[2] != 16) || (c > 0 && count != palette.colors.size()))
+      throw Failure{ErrorCode::kImageUndecodable,
+                    "its palette's tables are neither of 8 nor 16 bits, or not alike"};
+    if ((descriptor[2] == 16 && bytes == 1) || table.size() < bytes * count)
       throw Failure{ErrorCode::kImageUndecodable, "its palette is shorter than it announces"};
     palette.first = static_cast<std::int16_t>(descriptor[1]);
     palette.colors.resize(count);
@@ -117,14 +140,70 @@ std::uint64_t Hash(std::string_view text, std::uint64_t hash = 14695981039346656
   return hash;
 }
 
-void ReadGeometry(const gdcm::DataSet& data, ImageHeader& header) {
-  const auto spacing = FindNumbers(data, Tag(0x0028, 0x0030), "Pixel Spacing");
+/// Elements of one picture: enhanced files say most of them in functional groups, of each frame or of all (PS3.3 section C.7.6.16).
+class FrameElements {
+ public:
+  FrameElements(const gdcm::DataSet& data, std::size_t frame) : data_(data) {
+    per_frame_ = Item(data, Tag(0x5200, 0x9230), frame);
+    shared_ = Item(data, Tag(0x5200, 0x9229), 0);
+  }
+
+  /// The bytes of `tag` within the functional group `group`; empty where no group has them.
+  std::string_view FindBytesInGroup(Tag group, Tag tag) {
+    for (const gdcm::DataSet* groups : {per_frame_, shared_}) {
+      if (groups == nullptr) continue;
+      const gdcm::DataSet* inside = Item(*groups, group, 0);
+      if (inside != nullptr && inside->FindDataElement(tag)) return FindBytes(*inside, tag);
+    }
+    return {};
+  }
+  /// Likewise as text, else that of the file.
+  std::string_view Text(Tag group, Tag tag) {
+    for (const gdcm::DataSet* groups : {per_frame_, shared_}) {
+      if (groups == nullptr) continue;
+      const gdcm::DataSet* inside = Item(*groups, group, 0);
+      if (inside != nullptr && inside->FindDataElement(tag)) return FindText(*inside, tag);
+    }
+    return FindText(data_, tag);
+  }
+  std::string_view FileText(Tag tag) const { return FindText(data_, tag); }
+  /// Floating point of 64 bits, in a group or of the file; or a decimal string of the file.
+  std::optional<double> FindDouble(Tag group, Tag tag) {
+    std::string_view bytes = FindBytesInGroup(group, tag);
+    if (bytes.empty()) bytes = FindBytes(data_, tag);
+    double number = 0;
+    if (bytes.size() != sizeof(number)) return ToNumber(FindText(data_, tag));
+    std::memcpy(&number, bytes.data(), sizeof(number));
+    return std::fabs(number) < 1e12 ? std::optional(number) : std::nullopt;
+  }
+
+ private:
+  /// Item `index` of a sequence; null where there is none.
+  const gdcm::DataSet* Item(const gdcm::DataSet& data, Tag tag, std::size_t index) {
+    if (!data.FindDataElement(tag)) return nullptr;
+    kept_.push_back(data.GetDataElement(tag).GetValueAsSQ());
+    const auto& items = kept_.back();
+    if (items == nullptr || index >= items->GetNumberOfItems()) return nullptr;
+    return &items->GetItem(index + 1).GetNestedDataSet();
+  }
+
+  const gdcm::DataSet& data_;
+  std::vector<gdcm::SmartPointer<gdcm::SequenceOfItems>> kept_;
+  const gdcm::DataSet *per_frame_ = nullptr, *shared_ = nullptr;
+};
+
+void ReadGeometry(FrameElements& elements, std::uint32_t frames, ImageHeader& header) {
+  const auto spacing = ToNumbers(elements.Text(Tag(0x0028, 0x9110), Tag(0x0028, 0x0030)), "Pixel Spacing");
   if (spacing.size() >= 2) header.spacing[0] = spacing[1], header.spacing[1] = spacing[0];
   for (const double length : spacing) {
     if (!(length > 0)) throw Failure{ErrorCode::kImageGeometryInvalid, "Pixel Spacing is not greater than 0"};
   }
-  const auto position = FindNumbers(data, Tag(0x0020, 0x0032), "Image Position");
-  const auto orientation = FindNumbers(data, Tag(0x0020, 0x0037), "Image Orientation");
+  const Tag position_group(0x0020, 0x9113), position_tag(0x0020, 0x0032);
+  // where the file says one place, that is of one of its frames
+  if (frames > 1 && elements.FindBytesInGroup(position_group, position_tag).empty()) return;
+  const auto position = ToNumbers(elements.Text(position_group, position_tag), "Image Position");
+  const auto orientation =
+      ToNumbers(elements.Text(Tag(0x0020, 0x9116), Tag(0x0020, 0x0037)), "Image Orientation");
   if (position.size() != 3 || orientation.size() != 6) return;
   header.has_position = 1;
   header.frame = FileFrame::kLps;
@@ -149,31 +228,126 @@ void ReadGeometry(const gdcm::DataSet& data, ImageHeader& header) {
     header.direction[2][k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-void ReadGreyValues(const gdcm::DataSet& data, ImageHeader& header) {
-  const auto slope = FindNumbers(data, Tag(0x0028, 0x1053), "Rescale Slope");
-  const auto intercept = FindNumbers(data, Tag(0x0028, 0x1052), "Rescale Intercept");
+void ReadGreyValues(FrameElements& elements, ImageHeader& header) {
+  const Tag rescale(0x0028, 0x9145), window(0x0028, 0x9132);
+  const auto slope = ToNumbers(elements.Text(rescale, Tag(0x0028, 0x1053)), "Rescale Slope");
+  const auto intercept = ToNumbers(elements.Text(rescale, Tag(0x0028, 0x1052)), "Rescale Intercept");
   if (!slope.empty()) header.slope = slope[0];
   if (!intercept.empty()) header.intercept = intercept[0];
   if (header.slope == 0) throw Failure{ErrorCode::kImageGeometryInvalid, "Rescale Slope is 0"};
-  const auto centre = FindNumbers(data, Tag(0x0028, 0x1050), "Window Center");
-  const auto width = FindNumbers(data, Tag(0x0028, 0x1051), "Window Width");
-  if (!centre.empty() && !width.empty() && width[0] >= 1) {
+  const auto centre = ToNumber(elements.Text(window, Tag(0x0028, 0x1050)));
+  const auto width = ToNumber(elements.Text(window, Tag(0x0028, 0x1051)));
+  if (centre && width && *width >= 1) {
     header.has_window = 1;
-    header.window_centre = centre[0];
-    header.window_width = width[0];
+    header.window_centre = *centre;
+    header.window_width = *width;
   }
+}
+
+/// Milliseconds of a date (YYYYMMDD) and a time (HHMMSS.ffffff), for order and distance only.
+std::int64_t ToMilliseconds(std::string_view date, std::string_view time) {
+  std::string digits;
+  for (const char c : time.substr(0, time.find('.'))) {
+    if (c >= '0' && c <= '9') digits += c;
+  }
+  if (digits.size() < 2) return kKeyNotSaid;
+  digits.resize(6, '0');
+  const auto number = [](std::string_view text) {
+    std::int64_t value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+  };
+  const std::string_view d = digits;
+  const std::int64_t seconds =
+      number(d.substr(0, 2)) * 3600 + number(d.substr(2, 2)) * 60 + number(d.substr(4, 2));
+  std::int64_t thousandths = 0;
+  if (const auto dot = time.find('.'); dot != std::string_view::npos) {
+    std::string part(time.substr(dot + 1, 3));
+    part.resize(3, '0');
+    thousandths = number(part);
+  }
+  const std::int64_t days = date.size() >= 8 ? number(date.substr(0, 4)) * 372 +
+                                                   number(date.substr(4, 2)) * 31 + number(date.substr(6, 2))
+                                             : 0;
+  return (days * 86400 + seconds) * 1000 + thousandths;
+}
+
+/// What may tell the volumes of one series apart.
+void ReadKeys(FrameElements& elements, ImageHeader& header) {
+  const auto set = [&](DicomKey key, std::optional<double> value, double scale) {
+    header.keys[static_cast<std::size_t>(key)] = value ? std::llround(*value * scale) : kKeyNotSaid;
+  };
+  const auto set_text = [&](DicomKey key, std::string_view text) {
+    // half the hash: its sign says nothing
+    header.keys[static_cast<std::size_t>(key)] =
+        text.empty() ? kKeyNotSaid : static_cast<std::int64_t>(Hash(text) >> 1);
+  };
+  const Tag content(0x0020, 0x9111);
+  const auto whole_in_content = [&](Tag tag) -> std::optional<double> {
+    const std::string_view bytes = elements.FindBytesInGroup(content, tag);
+    if (bytes.size() == 2) {
+      std::uint16_t value = 0;
+      std::memcpy(&value, bytes.data(), 2);
+      return value;
+    }
+    std::uint32_t value = 0;
+    if (bytes.size() != sizeof(value)) return std::nullopt;
+    std::memcpy(&value, bytes.data(), sizeof(value));
+    return value;
+  };
+  const auto either = [](std::optional<double> first, std::optional<double> second) {
+    return first ? first : second;
+  };
+  set(DicomKey::kTemporalPosition,
+      either(whole_in_content(Tag(0x0020, 0x9128)), ToNumber(elements.FileText(Tag(0x0020, 0x0100)))), 1);
+  set(DicomKey::kAcquisition,
+      either(whole_in_content(Tag(0x0020, 0x9156)), ToNumber(elements.FileText(Tag(0x0020, 0x0012)))), 1);
+  set(DicomKey::kEcho, ToNumber(elements.FileText(Tag(0x0018, 0x0086))), 1);
+  set(DicomKey::kEchoTime,
+      either(elements.FindDouble(Tag(0x0018, 0x9114), Tag(0x0018, 0x9082)),
+             ToNumber(elements.FileText(Tag(0x0018, 0x0081)))),
+      1000);
+  set(DicomKey::kDiffusion, elements.FindDouble(Tag(0x0018, 0x9117), Tag(0x0018, 0x9087)), 1000);
+  set(DicomKey::kTriggerTime,
+      either(elements.FindDouble(Tag(0x0018, 0x9118), Tag(0x0020, 0x9153)),
+             ToNumber(elements.FileText(Tag(0x0018, 0x1060)))),
+      1000);
+  set(DicomKey::kVoltage, ToNumber(elements.Text(Tag(0x0018, 0x9325), Tag(0x0018, 0x0060))), 1000);
+  set_text(DicomKey::kStack, elements.Text(content, Tag(0x0020, 0x9056)));
+  std::string_view type = elements.Text(Tag(0x0018, 0x9329), Tag(0x0008, 0x9007));
+  if (type.empty()) type = elements.Text(Tag(0x0018, 0x9226), Tag(0x0008, 0x9007));
+  if (type.empty()) type = elements.FileText(Tag(0x0008, 0x0008));
+  set_text(DicomKey::kImageType, type);
+  header.is_localizer = type.find("LOCALIZER") != std::string_view::npos ? 1 : 0;
+  set_text(DicomKey::kKernel, elements.Text(Tag(0x0018, 0x9314), Tag(0x0018, 0x1210)));
+  set_text(DicomKey::kAgent, elements.FileText(Tag(0x0018, 0x0010)));
+  const auto moment = [&](std::string_view date_time, Tag date, Tag time) {
+    if (date_time.size() > 8) return ToMilliseconds(date_time.substr(0, 8), date_time.substr(8));
+    return ToMilliseconds(elements.FileText(date), elements.FileText(time));
+  };
+  std::string_view acquired = elements.Text(content, Tag(0x0018, 0x9074));
+  if (acquired.empty()) acquired = elements.FileText(Tag(0x0008, 0x002A));
+  header.keys[static_cast<std::size_t>(DicomKey::kAcquisitionTime)] =
+      moment(acquired, Tag(0x0008, 0x0022), Tag(0x0008, 0x0032));
+  header.keys[static_cast<std::size_t>(DicomKey::kContentTime)] =
+      moment({}, Tag(0x0008, 0x0023), Tag(0x0008, 0x0033));
 }
 
 /// \return bits that a pixel has in the file
 unsigned ReadPixelKind(const gdcm::DataSet& data, ImageHeader& header) {
-  const std::string_view shown = FindText(data, Tag(0x0028, 0x0004));
+  std::string_view shown = FindText(data, Tag(0x0028, 0x0004));
   const unsigned channels = FindShort(data, Tag(0x0028, 0x0002)).value_or(1);
+  // from before it had to be said
+  if (shown.empty() && channels == 1) shown = "MONOCHROME2";
   const auto allocated = FindShort(data, Tag(0x0028, 0x0100));
   const auto stored = FindShort(data, Tag(0x0028, 0x0101));
   const auto high = FindShort(data, Tag(0x0028, 0x0102));
   const bool is_signed = FindShort(data, Tag(0x0028, 0x0103)).value_or(0) == 1;
   const bool is_grey = shown == "MONOCHROME1" || shown == "MONOCHROME2";
   const bool has_palette = shown == kPalette;
+  if (shown.empty())
+    throw Failure{ErrorCode::kImageUndecodable,
+                  "it does not say how its colours are stored (Photometric Interpretation)"};
   if (!is_grey && !has_palette && shown != "RGB" && shown != "YBR_FULL" && shown != "YBR_FULL_422" &&
       shown != "YBR_RCT" && shown != "YBR_ICT") {
     throw Failure{ErrorCode::kImageUnsupported,
@@ -183,8 +357,12 @@ unsigned ReadPixelKind(const gdcm::DataSet& data, ImageHeader& header) {
   header.channels = is_grey ? 1 : 3;
   if (channels != (has_palette ? 1 : header.channels))
     throw Failure{ErrorCode::kImageUndecodable, "Samples per Pixel does not fit its colours"};
-  if (!allocated || (*allocated != 8 && *allocated != 16) || (channels == 3 && *allocated != 8))
+  if (!allocated)
+    throw Failure{ErrorCode::kImageUndecodable, "Bits Allocated is missing or no unsigned short"};
+  if (*allocated != 8 && *allocated != 16)
     throw Failure{ErrorCode::kImageUnsupported, "it has neither 8 nor 16 bits allocated"};
+  if (channels == 3 && *allocated != 8)
+    throw Failure{ErrorCode::kImageUnsupported, "its colours have 16 bits each; those of 8 bits are read"};
   if (!stored || !high || *stored == 0 || *stored > *allocated || *high >= *allocated || *high + 1 < *stored)
     throw Failure{ErrorCode::kImageUndecodable, "Bits Stored, High Bit and Bits Allocated do not agree"};
   header.bits = has_palette ? 8 : *stored;
@@ -196,55 +374,137 @@ unsigned ReadPixelKind(const gdcm::DataSet& data, ImageHeader& header) {
   return *allocated * channels;
 }
 
-/// All but the pixels.
-void ReadHeader(const Job& job, ImageHeader& header) {
+/// The part of a header that tells where a file belongs, also where it is refused.
+void Identify(const DicomStructure& structure, ImageHeader& header) {
+  header.content = FindContent(structure.sop_class, structure.modality);
+  if (!structure.series.empty()) header.series_hash = Hash(structure.series);
+}
+
+[[noreturn]] void RefuseContent(DicomContent content) {
+  throw Failure{ErrorCode::kImageSliceMissing,
+                std::string(DescribeContent(content)) + " and holds no slices"};
+}
+
+/// An image's elements, with GDCM.
+struct DicomFile {
+  DicomFile(const Job& job, ImageHeader& header) : bytes(job.file, job.request.most_bytes + kMostElements) {
+    if (job.request.is_size_believed == 0) {
+      std::optional<Failure> damage;
+      try {
+        CheckStructure(bytes.Get(), structure);
+      } catch (const Failure& failure) {
+        damage = failure;
+      }
+      Identify(structure, header);
+      // of what is no image in any case it does not matter whether it is whole
+      if (header.content != DicomContent::kPictures) RefuseContent(header.content);
+      if (damage) throw *damage;
+      if (!structure.has_pixels) {
+        const auto storage = gdcm::MediaStorage::GetMSType(structure.sop_class.c_str());
+        if (structure.has_rows || gdcm::MediaStorage::IsImage(storage))
+          throw Failure{ErrorCode::kImageTruncated, "it ends before its pixels"};
+        header.content = DicomContent::kOther;
+        RefuseContent(header.content);
+      }
+    }
+    stream = Open(job);
+    reader.SetStream(*stream);
+    if (!reader.ReadUpToTag(kPixelData))
+      throw Failure{ErrorCode::kImageUndecodable, "its DICOM elements are damaged"};
+  }
+  /// Another look at the file from its beginning.
+  std::unique_ptr<std::istream> Open(const Job& job) const {
+    // without the filling, which GDCM would take for elements
+    if (bytes.IsRewritten() || structure.end < bytes.Get().size())
+      return std::make_unique<std::istringstream>(std::string(bytes.Get().substr(0, structure.end)));
+    return std::make_unique<std::ifstream>(job.file.Path(), std::ios::binary);
+  }
+  const gdcm::DataSet& Data() const { return reader.GetFile().GetDataSet(); }
+
+  static constexpr std::uint64_t kMostElements = 64u << 20;  // beside the pixels
+  DicomBytes bytes;
   DicomStructure structure;
-  if (job.request.is_size_believed == 0) structure = CheckStructure(job.file);
-  std::ifstream stream(job.file.Path(), std::ios::binary);
+  std::unique_ptr<std::istream> stream;
   gdcm::Reader reader;
-  reader.SetStream(stream);
-  if (!reader.ReadUpToTag(kPixelData))
-    throw Failure{ErrorCode::kImageUndecodable, "its DICOM elements are damaged"};
-  const gdcm::DataSet& data = reader.GetFile().GetDataSet();
+};
+
+/// What differs from frame to frame.
+void ReadFrame(const gdcm::DataSet& data, std::size_t frame, std::uint32_t frames, ImageHeader& header) {
+  FrameElements elements(data, frame);
+  ReadGreyValues(elements, header);
+  ReadGeometry(elements, frames, header);
+  CheckGeometry(header);
+  ReadKeys(elements, header);
+  const auto instance = ToNumber(elements.FileText(Tag(0x0020, 0x0013)));
+  if (frames > 1)
+    header.instance_number = static_cast<std::int32_t>(frame) + 1;
+  else if (instance && std::fabs(*instance) < 1e6)
+    header.instance_number = static_cast<std::int32_t>(*instance);
+}
+
+/// All but the pixels.
+void ReadHeader(const Job& job, const DicomFile& file, ImageHeader& header) {
+  const gdcm::DataSet& data = file.Data();
+  const DicomStructure& structure = file.structure;
   const auto rows = FindShort(data, Tag(0x0028, 0x0010)), columns = FindShort(data, Tag(0x0028, 0x0011));
-  gdcm::MediaStorage storage;
-  storage.SetFromFile(reader.GetFile());
-  if (!rows && !columns && !gdcm::MediaStorage::IsImage(storage))
-    throw Failure{ErrorCode::kImageUnsupported, kWithoutPicture};
-  if (job.request.is_size_believed == 0 && !structure.has_pixels)
-    throw Failure{ErrorCode::kImageTruncated, "it ends before its pixels"};
   if (!rows || !columns)
     throw Failure{ErrorCode::kImageUndecodable, "Rows or Columns is missing or no unsigned short"};
   header.width = *columns;
   header.height = *rows;
   header.depth = 1;
-  const auto frames = FindNumbers(data, Tag(0x0028, 0x0008), "Number of Frames");
-  if (!frames.empty() && frames[0] != 1)
-    throw Failure{ErrorCode::kImageUnsupported,
-                  "it holds several frames; split it into one file a slice, or convert it to NIfTI"};
+  const auto frames = ToNumbers(FindText(data, Tag(0x0028, 0x0008)), "Number of Frames");
+  if (!frames.empty()) {
+    if (!(frames[0] >= 1) || frames[0] != std::floor(frames[0]))
+      throw Failure{ErrorCode::kImageUndecodable, "Number of Frames is not 1, 2, ..."};
+    if (frames[0] > job.request.most_side)
+      throw Failure{ErrorCode::kImageTooLarge,
+                    "it has more than " + std::to_string(job.request.most_side) + " frames"};
+    header.depth = static_cast<std::uint32_t>(frames[0]);
+  }
   const std::uint64_t pixel_bytes = ReadPixelKind(data, header) / 8;
-  ReadGreyValues(data, header);
-  ReadGeometry(data, header);
-  CheckGeometry(header);
+  ReadFrame(data, 0, header.depth, header);
   CheckSize(header, job.request);
   header.series_hash = Hash(FindText(data, Tag(0x0020, 0x000E)));
+  if (const auto instance = FindText(data, Tag(0x0008, 0x0018)); !instance.empty())
+    header.instance_hash = Hash(instance);
   header.frame_hash = Hash(FindText(data, Tag(0x0020, 0x0052)));
   header.patient_hash = Hash(FindText(data, Tag(0x0010, 0x0020)), Hash(FindText(data, Tag(0x0010, 0x0010))));
   const std::string_view modality = FindText(data, Tag(0x0008, 0x0060));
+  header.is_ct = modality == "CT" ? 1 : 0;
   std::string description(modality);
   if (const auto name = FindText(data, Tag(0x0008, 0x103E)); !name.empty())
     description += (description.empty() ? "" : ", ") + std::string(name);
   description.copy(header.description, sizeof(header.description) - 1);
-  const auto instance = FindNumbers(data, Tag(0x0020, 0x0013), "Instance Number");
-  if (!instance.empty() && std::fabs(instance[0]) < 1e6)
-    header.instance_number = static_cast<std::int32_t>(instance[0]);
 
   if (job.request.is_size_believed != 0) return;
   const std::uint64_t needed = header.SampleCount() / header.channels * pixel_bytes;
-  if (!structure.is_encapsulated && structure.pixel_bytes < needed) {
+  if (structure.is_encapsulated) return;
+  if (FindText(data, Tag(0x0028, 0x0004)) == "YBR_FULL_422")
+    throw Failure{ErrorCode::kImageUnsupported,
+                  "its colours are stored as YBR_FULL_422 without being packed, which is not read"};
+  if (structure.pixel_bytes < needed) {
     throw Failure{ErrorCode::kImageTruncated, "its header announces " + std::to_string(needed) +
                                                   " bytes of pixels, and it holds " +
                                                   std::to_string(structure.pixel_bytes)};
+  }
+}
+
+/// A header of each frame, one after the other, to where samples would go.
+void ReadFrames(const Job& job, const DicomFile& file, const ImageHeader& header) {
+  if (job.request.capacity / sizeof(ImageHeader) < header.depth)
+    throw Failure{ErrorCode::kImageChanged, "it has more frames than before"};
+  const gdcm::Tag per_frame(0x5200, 0x9230);
+  if (file.Data().FindDataElement(per_frame)) {
+    const auto items = file.Data().GetDataElement(per_frame).GetValueAsSQ();
+    if (items == nullptr || items->GetNumberOfItems() < header.depth)
+      throw Failure{ErrorCode::kImageUndecodable, "it describes fewer frames than it holds"};
+  }
+  for (std::uint32_t frame = 0; frame < header.depth; ++frame) {
+    ImageHeader one = header;
+    one.depth = 1;
+    one.has_position = 0;
+    ReadFrame(file.Data(), frame, header.depth, one);
+    std::memcpy(job.samples + frame * sizeof(one), &one, sizeof(one));
   }
 }
 
@@ -269,16 +529,17 @@ class PixelReader : public gdcm::ImageReader {
   bool has_palette_ = false;
 };
 
-void ReadPixels(const Job& job, const ImageHeader& header) {
-  std::ifstream stream(job.file.Path(), std::ios::binary);
+void ReadPixels(const Job& job, const DicomFile& file, const ImageHeader& header) {
+  const auto stream = file.Open(job);
   PixelReader reader;
-  reader.SetStream(stream);
+  reader.SetStream(*stream);
   if (!reader.Read()) throw Failure{ErrorCode::kImageUndecodable, "its pixels are damaged or missing"};
   const gdcm::Image& image = reader.GetImage();
   const std::size_t sample_bytes = image.GetPixelFormat().GetBitsAllocated() / 8;
   const auto shown = image.GetPhotometricInterpretation();  // after decoding
   const std::uint64_t expected = header.SampleCount() * sample_bytes / (reader.HasPalette() ? 3 : 1);
-  if (image.GetNumberOfDimensions() != 2 || image.GetDimension(0) != header.width ||
+  const unsigned depth = image.GetNumberOfDimensions() == 3 ? image.GetDimension(2) : 1;
+  if (depth != header.depth || image.GetDimension(0) != header.width ||
       image.GetDimension(1) != header.height || image.GetBufferLength() != expected) {
     throw Failure{ErrorCode::kImageUndecodable, "its pixels are not as many as its header says"};
   }
@@ -300,16 +561,18 @@ void ReadPixels(const Job& job, const ImageHeader& header) {
     return;
   }
   if (header.channels == 3) {
-    const std::uint64_t plane = expected / 3;
+    const std::uint64_t plane = std::uint64_t{header.width} * header.height;
     const bool is_planar = image.GetPlanarConfiguration() == 1;
-    for (std::uint64_t i = 0; i < plane; ++i) {
+    for (std::uint64_t i = 0; i < plane * header.depth; ++i) {
+      const std::uint64_t frame = i / plane, pixel = i % plane;
       for (std::uint64_t c = 0; c < 3; ++c)
-        job.samples[3 * i + c] = static_cast<std::byte>(raw[is_planar ? c * plane + i : 3 * i + c]);
+        job.samples[3 * i + c] =
+            static_cast<std::byte>(raw[is_planar ? (3 * frame + c) * plane + pixel : 3 * i + c]);
     }
     if (shown != gdcm::PhotometricInterpretation::YBR_FULL &&
         shown != gdcm::PhotometricInterpretation::YBR_FULL_422)
       return;
-    for (std::byte* p = job.samples; p != job.samples + 3 * plane; p += 3) {
+    for (std::byte* p = job.samples; p != job.samples + expected; p += 3) {
       const auto color =
           ToRgb(std::to_integer<int>(p[0]), std::to_integer<int>(p[1]), std::to_integer<int>(p[2]));
       for (std::size_t c = 0; c < 3; ++c) p[c] = static_cast<std::byte>(color[c]);
@@ -333,8 +596,12 @@ void ReadDicom(const Job& job, ImportReply& reply) {
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
   reply.header.kind = FileKind::kDicom;
-  ReadHeader(job, reply.header);
-  if (job.samples != nullptr) ReadPixels(job, reply.header);
+  const DicomFile file(job, reply.header);
+  ReadHeader(job, file, reply.header);
+  if (job.request.operation == ImportOperation::kProbeFrames)
+    ReadFrames(job, file, reply.header);
+  else if (job.samples != nullptr)
+    ReadPixels(job, file, reply.header);
 }
 
 }  // namespace trocar::images::import

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Source: NIfTI-1 and NIfTI-2 data format, nifti1.h and nifti2.h (method 1 to 3 of orientation).
+// Source: NIfTI-1 and NIfTI-2 data format, nifti1.h and nifti2.h (method 1 to 3 of orientation). Where files depart from it,
+// what nifti_clib (nifti1_io.c) and nibabel (nifti1.py) make of them is taken.
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "byte_source.h"
 #include "header_text.h"
@@ -69,56 +73,97 @@ constexpr int kColour = 128;
 
 using Matrix = std::array<std::array<double, 3>, 3>;  // [world, RAS][image axis]
 
-Matrix FromQuaternion(double b, double c, double d) {
-  const double a = std::sqrt(std::max(0.0, 1.0 - b * b - c * c - d * d));
-  return {{{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
-           {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},
-           {2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c}}};
+/// Orientation, steps and place as one of the two ways of the header says them.
+struct Frame {
+  Matrix direction{};
+  std::array<double, 3> spacing{}, origin{};
+};
+
+/// \return why it is of no use; nothing where it is
+std::optional<Failure> ReadSform(const Fields& fields, const Layout& layout, double unit_mm, Frame& frame) {
+  const std::size_t number = layout.is_second ? 8 : 4;
+  for (int world = 0; world < 3; ++world) {
+    for (int axis = 0; axis < 3; ++axis)
+      frame.direction[world][axis] = unit_mm * fields.Length(layout.rows + 4 * world * number, axis);
+    frame.origin[world] = unit_mm * fields.Length(layout.rows + 4 * world * number, 3);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x = frame.direction[0][axis], y = frame.direction[1][axis], z = frame.direction[2][axis];
+    frame.spacing[axis] = std::sqrt(x * x + y * y + z * z);
+    if (frame.spacing[axis] == 0)
+      return Failure{ErrorCode::kImageGeometryInvalid, "its sform has an axis without length"};
+    if (!std::isfinite(frame.spacing[axis]))
+      return Failure{ErrorCode::kImageGeometryInvalid, "its sform has an axis that is not a finite number"};
+    for (int world = 0; world < 3; ++world) frame.direction[world][axis] /= frame.spacing[axis];
+  }
+  return std::nullopt;
 }
 
-/// Orientation and place, RAS in the file, LPS in the header.
-void ReadFrame(const Fields& fields, const Layout& layout, double unit_mm, ImageHeader& header) {
+/// \return why it is of no use; nothing where it is
+std::optional<Failure> ReadQform(const Fields& fields, const Layout& layout, double unit_mm, Frame& frame) {
+  constexpr double kRounding = 1e-3;  // of a quaternion in single precision, written by anybody
+  double b = fields.Length(layout.quaternion, 0), c = fields.Length(layout.quaternion, 1),
+         d = fields.Length(layout.quaternion, 2);
+  const double square = b * b + c * c + d * d;
+  if (!(square <= 1 + kRounding))
+    return Failure{ErrorCode::kImageGeometryInvalid, "its qform is no rotation"};
+  const double a = std::sqrt(std::max(0.0, 1.0 - square));
+  if (square > 1) b /= std::sqrt(square), c /= std::sqrt(square), d /= std::sqrt(square);
+  frame.direction = {{{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
+                      {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},
+                      {2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c}}};
+  const bool is_mirrored = fields.Length(layout.pixel_dimensions, 0) < 0;
+  for (int world = 0; world < 3; ++world) {
+    if (is_mirrored) frame.direction[world][2] = -frame.direction[world][2];
+    frame.origin[world] = unit_mm * fields.Length(layout.quaternion_offset, world);
+  }
   for (int axis = 0; axis < 3; ++axis)
-    header.spacing[axis] = unit_mm * std::fabs(fields.Length(layout.pixel_dimensions, 1 + axis));
-  Matrix matrix{};
-  std::array<double, 3> origin{};
-  if (fields.Code(layout.sform) > 0) {
-    const std::size_t number = layout.is_second ? 8 : 4;
-    for (int world = 0; world < 3; ++world) {
-      for (int axis = 0; axis < 3; ++axis)
-        matrix[world][axis] = unit_mm * fields.Length(layout.rows + 4 * world * number, axis);
-      origin[world] = unit_mm * fields.Length(layout.rows + 4 * world * number, 3);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      header.spacing[axis] = std::sqrt(matrix[0][axis] * matrix[0][axis] + matrix[1][axis] * matrix[1][axis] +
-                                       matrix[2][axis] * matrix[2][axis]);
-      for (int world = 0; world < 3; ++world) matrix[world][axis] /= header.spacing[axis];
-    }
-  } else if (fields.Code(layout.qform) > 0) {
-    matrix = FromQuaternion(fields.Length(layout.quaternion, 0), fields.Length(layout.quaternion, 1),
-                            fields.Length(layout.quaternion, 2));
-    const bool is_mirrored = fields.Length(layout.pixel_dimensions, 0) < 0;
-    for (int world = 0; world < 3; ++world) {
-      if (is_mirrored) matrix[world][2] = -matrix[world][2];
-      origin[world] = unit_mm * fields.Length(layout.quaternion_offset, world);
-    }
-  } else {
+    frame.spacing[axis] = unit_mm * std::fabs(fields.Length(layout.pixel_dimensions, 1 + axis));
+  return std::nullopt;
+}
+
+/// Orientation and place, RAS in the file, LPS in the header: by the sform, else by the qform.
+void ReadFrame(const Fields& fields, const Layout& layout, double unit_mm, ImageHeader& header) {
+  const bool has_sform = fields.Code(layout.sform) > 0, has_qform = fields.Code(layout.qform) > 0;
+  Frame frame;
+  std::optional<Failure> fault;
+  if (has_sform) fault = ReadSform(fields, layout, unit_mm, frame);
+  if (fault && !has_qform) throw *fault;
+  if (has_qform && (!has_sform || fault)) {
+    const std::optional<Failure> other = ReadQform(fields, layout, unit_mm, frame);
+    if (other && fault)
+      throw Failure{ErrorCode::kImageGeometryInvalid, fault->why + ", and its qform is no rotation"};
+    if (other) throw *other;
+  }
+  if (!has_sform && !has_qform) {
+    for (int axis = 0; axis < 3; ++axis)
+      header.spacing[axis] = unit_mm * std::fabs(fields.Length(layout.pixel_dimensions, 1 + axis));
     return;
   }
   header.frame = FileFrame::kRas;
+  for (int axis = 0; axis < 3; ++axis) header.spacing[axis] = frame.spacing[axis];
   for (int world = 0; world < 3; ++world) {
     const double sign = world == 2 ? 1.0 : -1.0;
-    for (int axis = 0; axis < 3; ++axis) header.direction[axis][world] = sign * matrix[world][axis];
-    header.origin[world] = sign * origin[world];
+    for (int axis = 0; axis < 3; ++axis) header.direction[axis][world] = sign * frame.direction[world][axis];
+    header.origin[world] = sign * frame.origin[world];
   }
 }
 
-std::string ReadHeaderBytes(const InputFile& file, bool is_deflated,
-                            std::size_t most = kSecond.header_bytes) {
-  if (!is_deflated) return ReadBegin(file, most);
-  std::string bytes(most, '\0');
-  bytes.resize(OpenDeflated(file, 0)->Read(bytes.data(), bytes.size()));
-  return bytes;
+/// Length of the header's unit [mm]; millimetres where it says none.
+double ReadUnitMm(int code) {
+  switch (code & 7) {
+    case 0:
+    case 2:
+      return 1.0;
+    case 1:
+      return 1000.0;
+    case 3:
+      return 0.001;
+    default:
+      throw Failure{ErrorCode::kImageGeometryInvalid, "its unit of length has the code " +
+                                                          std::to_string(code & 7) +
+                                                          ", which NIfTI does not know (1 to 3)"};
+  }
 }
 
 /// Text of an XML element after its start tag, without CDATA's brackets.
@@ -177,20 +222,94 @@ void ReadExtensions(std::string_view bytes, const Layout& layout, bool is_swappe
   }
 }
 
+/// Sides of a volume; trailing dimensions of 0 or less count as 1, as everywhere.
+void ReadSides(const Fields& fields, const Layout& layout, const Job& job, ImageHeader& header) {
+  const std::int64_t dimensions = fields.Count(layout.dimensions, 0);
+  if (dimensions < 1 || dimensions > 7)
+    throw Failure{ErrorCode::kImageUndecodable, "its number of dimensions is not between 1 and 7"};
+  std::vector<std::int64_t> sides;
+  for (std::size_t i = 1; i <= static_cast<std::size_t>(dimensions); ++i) {
+    const std::int64_t side = fields.Count(layout.dimensions, i);
+    sides.push_back(i > 3 ? std::max<std::int64_t>(side, 1) : side);
+  }
+  if (sides.size() > 4 && sides[3] == 1 && sides[4] != 1) {
+    throw Failure{ErrorCode::kImageUnsupported,
+                  "it has " + std::to_string(sides[4]) + " values a voxel; extract one of them"};
+  }
+  SetSides(sides, job, header);
+}
+
+/// What a voxel type that is not read is called.
+std::string NameOfType(int code) {
+  switch (code) {
+    case 0:
+      return "0 (not said)";
+    case 1:
+      return "1 (single bits)";
+    case 32:
+    case 1792:
+    case 2048:
+      return std::to_string(code) + " (complex numbers)";
+    case 1536:
+      return "1536 (floating point of 128 bits)";
+    case 2304:
+      return "2304 (colour with transparency)";
+    default:
+      return std::to_string(code);
+  }
+}
+
+/// Where the voxels begin in the unpacked file.
+std::uint64_t FindVoxels(double begin, const Layout& layout, const InputFile& file,
+                         std::uint64_t bytes_of_samples) {
+  if (begin == 0) {
+    // programs differ in whether the voxels follow the header at once: the length of the file tells
+    const std::uint64_t without = layout.header_bytes + bytes_of_samples,
+                        all = CountUnpacked(file, without + 5);
+    if (all == without) return layout.header_bytes;
+    if (all == without + 4) return layout.header_bytes + 4;
+    throw Failure{ErrorCode::kImageUndecodable,
+                  "it does not say where its voxels begin (vox_offset), nor does its length tell"};
+  }
+  if (!(begin >= static_cast<double>(layout.header_bytes) && begin < 1e15) || begin != std::floor(begin)) {
+    throw Failure{ErrorCode::kImageUndecodable,
+                  "where its voxels begin (vox_offset) is no place behind its header"};
+  }
+  return static_cast<std::uint64_t>(begin);
+}
+
+/// Where they begin in the .img of a pair.
+std::uint64_t FindVoxelsOfPair(double begin) {
+  if (!(begin >= 0 && begin < 1e15) || begin != std::floor(begin))
+    throw Failure{ErrorCode::kImageUndecodable, "where its voxels begin (vox_offset) is no place in a file"};
+  return static_cast<std::uint64_t>(begin);
+}
+
 }  // namespace
+
+bool IsAnalyze(std::string_view begin) {
+  constexpr std::int32_t kAnalyzeBytes = 348;
+  constexpr std::size_t kDimensions = 40;
+  if (begin.size() < kDimensions + 2) return false;
+  for (const bool is_swapped : {false, true}) {
+    const std::string bytes(begin);
+    const Fields fields(bytes, kFirst, is_swapped);
+    const auto dimensions = fields.At<std::int16_t>(kDimensions);
+    if (fields.At<std::int32_t>(0) == kAnalyzeBytes && dimensions >= 1 && dimensions <= 7) return true;
+  }
+  return false;
+}
 
 void ReadNifti(const Job& job, ImportReply& reply) {
   ImageHeader& header = reply.header;
   header.kind = FileKind::kNifti;
-  const bool is_deflated = IsGzip(job.file);
-  const std::string bytes = ReadHeaderBytes(job.file, is_deflated);
-  const bool is_second = bytes.size() >= 8 && bytes.substr(4, 3) == "n+2";
+  const std::string bytes = ReadUnpacked(job.file, kSecond.header_bytes);
+  const std::string mark = bytes.size() >= 8 ? bytes.substr(4, 3) : "";
+  const bool is_second = mark == "n+2" || mark == "ni2";
   const Layout& layout = is_second ? kSecond : kFirst;
   if (bytes.size() < layout.header_bytes)
     throw Failure{ErrorCode::kImageTruncated, "it ends within its header"};
-  if (!is_second && bytes.substr(344, 3) == "ni1") {
-    throw Failure{ErrorCode::kImageUnsupported, "its samples are in a file of their own (.hdr and .img)"};
-  }
+  const bool is_pair = bytes.compare(is_second ? 4 : 344, 2, "ni") == 0;
   bool is_swapped = false;
   const auto header_bytes = static_cast<std::int32_t>(layout.header_bytes);
   if (Fields(bytes, layout, false).At<std::int32_t>(0) != header_bytes) {
@@ -199,58 +318,51 @@ void ReadNifti(const Job& job, ImportReply& reply) {
       throw Failure{ErrorCode::kImageUndecodable, "the size of its NIfTI header is wrong"};
   }
   const Fields fields(bytes, layout, is_swapped);
-
-  const std::int64_t dimensions = fields.Count(layout.dimensions, 0);
-  if (dimensions < 1 || dimensions > 7)
-    throw Failure{ErrorCode::kImageUndecodable, "its number of dimensions is not between 1 and 7"};
-  std::uint64_t sides[7] = {1, 1, 1, 1, 1, 1, 1};
-  for (int i = 0; i < dimensions; ++i) {
-    const std::int64_t side = fields.Count(layout.dimensions, 1 + static_cast<std::size_t>(i));
-    if (side < 1)
-      throw Failure{ErrorCode::kImageUndecodable, "one of its sides has no voxel or a negative number"};
-    sides[i] = static_cast<std::uint64_t>(side);
-  }
-  if (CheckedProduct({sides[3], sides[4], sides[5], sides[6]}) != 1)
-    throw Failure{ErrorCode::kImageUnsupported, "it has more than three dimensions; extract one volume"};
-  CheckedProduct({sides[0], sides[1], sides[2], 8});
-  for (const std::uint64_t side : {sides[0], sides[1], sides[2]}) {
-    if (side > job.request.most_side)
-      throw Failure{ErrorCode::kImageTooLarge,
-                    "one of its sides is longer than " + std::to_string(job.request.most_side) + " voxels"};
-  }
-  header.width = static_cast<std::uint32_t>(sides[0]);
-  header.height = static_cast<std::uint32_t>(sides[1]);
-  header.depth = static_cast<std::uint32_t>(sides[2]);
+  ReadSides(fields, layout, job, header);
 
   const int code = fields.At<std::int16_t>(layout.data_type);
   const auto* type = std::find_if(std::begin(kTypes), std::end(kTypes),
                                   [&](const TypeCode& entry) { return entry.code == code; });
   if (type == std::end(kTypes))
-    throw Failure{ErrorCode::kImageUnsupported, "its voxel type " + std::to_string(code) + " is not read"};
+    throw Failure{ErrorCode::kImageUnsupported, "its voxel type " + NameOfType(code) + " is not read"};
   StoredSamples stored;
   stored.type = type->type;
   stored.is_big_endian = is_swapped;
-  stored.is_whole_file_deflated = is_deflated;
   header.channels = code == kColour ? 3 : 1;
   header.samples = HandedOverAs(stored.type);
   header.bits = static_cast<std::uint32_t>(8 * StoredBytes(stored.type));
 
-  const double begin =
-      is_second ? static_cast<double>(fields.At<std::int64_t>(layout.begin)) : fields.At<float>(layout.begin);
-  if (!(begin >= static_cast<double>(layout.header_bytes) && begin < 1e15) || begin != std::floor(begin))
-    throw Failure{ErrorCode::kImageUndecodable, "where its voxels begin (vox_offset) is no place in a file"};
-  stored.begin = static_cast<std::uint64_t>(begin);
+  // a slope of 0 or that is no number says that there is none
   const double slope = fields.Length(layout.slope);
-  if (slope != 0) header.slope = slope, header.intercept = fields.Length(layout.intercept);
-
-  const int units = (is_second ? fields.At<std::int32_t>(layout.units) : bytes[layout.units]) & 7;
-  ReadFrame(fields, layout, units == 1 ? 1000.0 : units == 3 ? 0.001 : 1.0, header);
+  if (slope != 0 && std::isfinite(slope))
+    header.slope = slope, header.intercept = fields.Length(layout.intercept);
+  ReadFrame(fields, layout,
+            ReadUnitMm(is_second ? fields.At<std::int32_t>(layout.units) : bytes[layout.units]), header);
   CheckGeometry(header);
   CheckSize(header, job.request);
-  CheckBytesPresent(header, stored, job.file, job.request);
-  if (const auto most = std::min<std::uint64_t>(stored.begin, kLongestHeader); most > layout.header_bytes + 4)
-    ReadExtensions(ReadHeaderBytes(job.file, is_deflated, most), layout, is_swapped, reply);
-  if (job.samples != nullptr) ReadSamples(header, stored, job.file, job.samples);
+
+  const double begin =
+      is_second ? static_cast<double>(fields.At<std::int64_t>(layout.begin)) : fields.At<float>(layout.begin);
+  std::uint64_t end_of_extensions = kLongestHeader;
+  if (is_pair) {
+    stored.skipped = FindVoxelsOfPair(begin);
+  } else {
+    stored.skipped = FindVoxels(begin, layout, job.file, BytesOfSamples(header, stored));
+    end_of_extensions = std::min<std::uint64_t>(stored.skipped, kLongestHeader);
+  }
+  if (end_of_extensions > layout.header_bytes + 4)
+    ReadExtensions(ReadUnpacked(job.file, end_of_extensions), layout, is_swapped, reply);
+  if (is_pair && !job.data_file) {
+    header.is_data_beside = 1;
+    return;
+  }
+  const InputFile& file = is_pair ? *job.data_file : job.file;
+  if (IsGzip(file))
+    stored.packing = Packing::kDeflated;
+  else
+    std::swap(stored.begin, stored.skipped);
+  CheckBytesPresent(header, stored, file, job.request);
+  if (job.samples != nullptr) ReadSamples(header, stored, file, job.samples);
 }
 
 }  // namespace trocar::images::import

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,18 +19,69 @@ namespace {
 
 using core::ErrorCode;
 
+/// Bytes of a file by their place in it.
+class FileBytes {
+ public:
+  explicit FileBytes(const InputFile& file) : file_(file) {}
+  /// \return fewer only at the end
+  std::string At(std::uint64_t begin, std::size_t count) const {
+    std::string bytes(count, '\0');
+    bytes.resize(OpenPlain(file_, begin)->Read(bytes.data(), count));
+    return bytes;
+  }
+  /// \return as a number with the most significant byte first; nothing behind the end
+  std::optional<std::uint32_t> NumberAt(std::uint64_t begin, std::size_t count) const {
+    const std::string bytes = At(begin, count);
+    if (bytes.size() != count) return std::nullopt;
+    std::uint32_t number = 0;
+    for (const char byte : bytes) number = number << 8 | static_cast<unsigned char>(byte);
+    return number;
+  }
+
+ private:
+  InputFile file_;
+};
+
+/// Goes from chunk to chunk until the last one, IEND; what follows that belongs to others.
+bool ReachesPngEnd(const FileBytes& bytes) {
+  constexpr std::uint64_t kMark = 8, kAround = 12;  // length, type and checksum of a chunk
+  for (std::uint64_t at = kMark;;) {
+    const auto length = bytes.NumberAt(at, 4);
+    if (!length) return false;
+    if (bytes.At(at + 4, 4) == "IEND") return bytes.NumberAt(at + 8, 4).has_value();
+    at += kAround + *length;
+  }
+}
+
+/// Goes from segment to segment until the picture begins, then looks for the mark of its end.
+bool ReachesJpegEnd(const FileBytes& bytes, std::uint64_t file_bytes) {
+  constexpr std::uint32_t kStartOfScan = 0xffda;
+  std::uint64_t at = 2;
+  for (;;) {
+    const auto marker = bytes.NumberAt(at, 2), length = bytes.NumberAt(at + 2, 2);
+    if (!marker || !length) return false;
+    if (*marker == 0xffff) {  // padding
+      ++at;
+      continue;
+    }
+    constexpr std::uint32_t kFirstMarker = 0xffc0;  // of those that have a length
+    if (*marker < kFirstMarker) return true;        // no JPEG any more: its decoder will say so
+    at += 2 + *length;
+    if (*marker == kStartOfScan) break;
+  }
+  constexpr std::size_t kChunk = 1 << 16;
+  for (; at < file_bytes; at += kChunk) {
+    if (bytes.At(at, kChunk + 1).find("\xff\xd9") != std::string::npos) return true;
+  }
+  return false;
+}
+
 /// JPEG decoders fill what is missing with grey, so a file must reach its end to count as whole.
 void CheckWhole(const InputFile& file, FileKind kind) {
-  if (kind == FileKind::kTiff) return;
-  constexpr std::uint64_t kTail = 4096;
-  const std::uint64_t begin = file.bytes - std::min(kTail, file.bytes);
-  std::string tail(static_cast<std::size_t>(file.bytes - begin), '\0');
-  tail.resize(OpenPlain(file, begin)->Read(tail.data(), tail.size()));
-  bool is_whole = tail.find("IEND") != std::string::npos;
-  if (kind == FileKind::kJpeg) {
-    const auto end = tail.find_last_not_of('\0');
-    is_whole = end != std::string::npos && end > 3 && tail.substr(end - 1, 2) == "\xff\xd9";
-  }
+  const FileBytes bytes(file);
+  const bool is_whole = kind == FileKind::kPng    ? ReachesPngEnd(bytes)
+                        : kind == FileKind::kJpeg ? ReachesJpegEnd(bytes, file.bytes)
+                                                  : true;
   if (!is_whole) throw Failure{ErrorCode::kImageTruncated, "its end is missing"};
 }
 
@@ -104,10 +156,17 @@ void ReadPicture(const Job& job, FileKind kind, ImportReply& reply) {
   const bool is_float = reader->GetComponentType() == itk::IOComponentEnum::FLOAT;
   const bool is_byte = reader->GetComponentType() == itk::IOComponentEnum::UCHAR;
   const bool is_grey = channels == 1 || channels == 2;
-  if (channels == 0 || channels > 4 || !(is_byte || is_wide || (is_grey && (is_signed || is_float)))) {
-    throw Failure{ErrorCode::kImageUnsupported,
-                  "it has neither 8 nor 16 bits a sample, or too many channels"};
+  if (channels == 0 || channels > 4) {
+    throw Failure{
+        ErrorCode::kImageUnsupported,
+        "it has " + std::to_string(channels) + " channels; grey or colour, also with transparency, is read"};
   }
+  if (is_grey && !(is_byte || is_wide || is_signed || is_float)) {
+    throw Failure{ErrorCode::kImageUnsupported,
+                  "its samples are neither integers of 8 or 16 bits nor floating point of 32 bits"};
+  }
+  if (!is_grey && !(is_byte || is_wide))
+    throw Failure{ErrorCode::kImageUnsupported, "its colours have neither 8 nor 16 bits"};
   header.channels = is_grey ? 1 : 3;
   header.bits = is_byte ? 8 : is_float ? 32 : 16;
   header.samples = !is_grey || is_byte ? SampleKind::kUint8

@@ -8,13 +8,15 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "import_protocol.h"
 #include "trocar/core/error_codes.h"
 
 namespace trocar::images::import {
 
-/// Why a file is not read. `why` goes to the person and holds nothing from the file.
+/// Why a file is not read. `why` goes to the person: it holds numbers and names of fields, types and units of the header
+/// (Shown of header_text.h), and nothing else from the file.
 struct Failure {
   core::ErrorCode code;
   std::string why;
@@ -33,7 +35,8 @@ struct Job {
   InputFile file;
   std::optional<InputFile> data_file;
   ImportRequest request;
-  std::byte* samples = nullptr;  ///< where to put them; null: read the header only
+  std::byte* samples =
+      nullptr;  ///< where to put them; null: read the header only. Of kProbeFrames, the headers
 };
 
 /// \throw Failure kImageTooLarge when the product of the numbers exceeds 2^64
@@ -49,6 +52,8 @@ void CheckGeometry(const ImageHeader& header);
 void ReadPicture(const Job& job, FileKind kind, ImportReply& reply);
 void ReadDicom(const Job& job, ImportReply& reply);
 void ReadNifti(const Job& job, ImportReply& reply);
+/// Whether a file begins like ANALYZE 7.5, from which NIfTI comes: the same header without its mark.
+bool IsAnalyze(std::string_view begin);
 void ReadNrrd(const Job& job, ImportReply& reply);
 void ReadMetaImage(const Job& job, ImportReply& reply);
 

@@ -35,7 +35,6 @@ core::Result<NamedAxes> NameAxes(const std::array<Vec3, 3>& direction) {
     }
   }
   NamedAxes named;
-  std::array<bool, 3> is_used = {};
   for (int i = 0; i < 3; ++i) {
     const Word* best = &kWords[0];
     for (const Word& word : kWords) {
@@ -44,9 +43,8 @@ core::Result<NamedAxes> NameAxes(const std::array<Vec3, 3>& direction) {
     named.axes[i] = best->name;
     const double cosine = std::min(1.0, best->sign * direction[i][best->world]);
     named.tilt_deg = std::max(named.tilt_deg, std::acos(cosine) * kDegrees);
-    named.tilt_deg = is_used[best->world] ? 90.0 : named.tilt_deg;
-    is_used[best->world] = true;
   }
+  // axes at right angles that get one word twice are at least 44 degrees off it
   if (named.tilt_deg > kMostTiltDeg) {
     char text[200];
     std::snprintf(

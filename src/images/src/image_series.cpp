@@ -2,6 +2,8 @@
 #include "trocar/images/image_series.h"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "series_content.h"
 #include "series_geometry.h"
@@ -25,9 +27,13 @@ core::Status OpenVolume(const fs::path& path, const ImageSeriesOptions& options,
   auto decoded = DecodeFile(path, Links::kFollow, *content.pool);
   if (!decoded) return decoded.error();
   if (decoded->header.is_layered != 0) {
-    return Error{ErrorCode::kImageUnsupported,
-                 core::Printable(path.string()) +
-                     ": it holds segments in layers, no image; it is read as a label map"};
+    const std::string printed = core::Printable(path.string());
+    if (!decoded->names.empty())
+      return Error{ErrorCode::kImageUnsupported,
+                   printed + ": it holds segments in layers, no image; it is read as a label map"};
+    return Error{ErrorCode::kImageUnsupported, printed + ": it holds a list of " +
+                                                   std::to_string(decoded->header.channels) +
+                                                   " values a voxel, no image; extract one of them"};
   }
   const ImageHeader& header = decoded->header;
   ImageSeriesInfo& info = content.info;
@@ -42,6 +48,37 @@ core::Status OpenVolume(const fs::path& path, const ImageSeriesOptions& options,
   return {};
 }
 
+/// A slice between two stored ones.
+ColorImage RenderBetween(const Content& content, const SlicePlace& place, const DisplayWindow& window) {
+  const ImageSeriesInfo& info = content.info;
+  const ImageHeader& below = content.headers[place.below];
+  if (place.part == 0)
+    return RenderSlice(below, content.SamplesOf(place.below), window, info.width, info.height);
+  const ImageHeader& above = content.headers[place.below + 1];
+  if (below.channels == 3) {
+    ColorImage mixed = RenderSlice(below, content.SamplesOf(place.below), window, info.width, info.height);
+    const ColorImage other =
+        RenderSlice(above, content.SamplesOf(place.below + 1), window, info.width, info.height);
+    for (std::size_t i = 0; i < mixed.samples.size(); ++i) {
+      mixed.samples[i] = static_cast<std::uint8_t>(
+          std::lround(mixed.samples[i] + place.part * (other.samples[i] - mixed.samples[i])));
+    }
+    return mixed;
+  }
+  // before the window, which would cut what lies outside it
+  ImageHeader header = below;
+  header.samples = SampleKind::kFloat32;
+  header.slope = 1, header.intercept = 0;
+  std::vector<float> samples(below.SampleCount());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double low = below.slope * SampleAt(below, content.SamplesOf(place.below), i) + below.intercept;
+    const double high =
+        above.slope * SampleAt(above, content.SamplesOf(place.below + 1), i) + above.intercept;
+    samples[i] = static_cast<float>(low + place.part * (high - low));
+  }
+  return RenderSlice(header, std::as_bytes(std::span(samples)).data(), window, info.width, info.height);
+}
+
 core::Status OpenFolder(const fs::path& folder, const ImageSeriesOptions& options, const Progress& progress,
                         Content& content) {
   auto found = LookInto(folder);
@@ -51,7 +88,15 @@ core::Status OpenFolder(const fs::path& folder, const ImageSeriesOptions& option
                  "the folder holds no files; name the one that the slices lie in"};
   if (options.pattern.empty() && !found->dicom.empty()) {
     content.info.ignored_files = found->files.size() - found->dicom.size();
-    return OpenDicom(folder, found->dicom, Links::kRefuse, options, progress, content);
+    auto status = OpenDicom(folder, found->dicom, Links::kRefuse, options, progress, content);
+    // reports or lists of contents beside pictures
+    const bool has_pictures = std::any_of(found->files.begin(), found->files.end(), IsPictureName);
+    if (status || status.error().code != ErrorCode::kImageSliceMissing || options.series != 0 ||
+        !has_pictures)
+      return status;
+    content.info = {};
+    auto stacked = OpenStack(folder, found->files, options, progress, content);
+    return !stacked && stacked.error().code == ErrorCode::kImageSliceMissing ? status : stacked;
   }
   auto status = OpenStack(folder, found->files, options, progress, content);
   if (!status && status.error().code == ErrorCode::kImageSliceMissing && !found->volumes.empty() &&
@@ -72,15 +117,14 @@ core::Result<FolderContent> LookInto(const fs::path& folder) {
   for (std::string& name : *names) {
     std::error_code ignored;
     if (fs::symlink_status(folder / name, ignored).type() == fs::file_type::directory) continue;
-    if (!IsPictureName(name)) {
-      // a link or a pipe among the slices is refused here, not left out
-      const auto file = ImportFile::Open(folder / name, Links::kRefuse);
-      if (!file && file.error().code == ErrorCode::kImagePathUnsafe) return file.error();
-      const FileKind kind = file ? SniffKind(file->ReadBegin(348)) : FileKind::kUnknown;
-      if (kind == FileKind::kDicom) content.dicom.push_back(name);
-      const bool is_volume = kind >= FileKind::kNifti || name.ends_with(".nii.gz");
-      if (is_volume) content.volumes.push_back(name);
-    }
+    // a link or a pipe among the slices is refused here, not left out; among pictures, when it is one of the stack
+    const bool is_picture = IsPictureName(name);
+    const auto file = ImportFile::Open(folder / name, Links::kRefuse);
+    if (!file && file.error().code == ErrorCode::kImagePathUnsafe && !is_picture) return file.error();
+    const FileKind kind = file ? SniffKind(file->ReadBegin(348)) : FileKind::kUnknown;
+    if (kind == FileKind::kDicom) content.dicom.push_back(name);
+    const bool is_volume = kind >= FileKind::kNifti || name.ends_with(".nii.gz");
+    if (is_volume && !is_picture) content.volumes.push_back(name);
     content.files.push_back(std::move(name));
   }
   return content;
@@ -115,7 +159,9 @@ core::Result<ImageSeries> ImageSeries::Open(const fs::path& path, const ImageSer
                    core::Printable(path.string()) + " does not exist; name the folder or file of the images"};
     }
     if (!file) return file.error();
-    if (SniffKind(file->ReadBegin(348)) == FileKind::kDicom) {
+    // samples of a pair of files may begin like anything
+    const bool is_of_pair = FindHeader(path) != path;
+    if (!is_of_pair && SniffKind(file->ReadBegin(348)) == FileKind::kDicom) {
       const std::string name = path.filename().string();
       status = OpenDicom(path.parent_path(), {&name, 1}, Links::kFollow, options, progress, *content);
     } else {
@@ -139,11 +185,10 @@ core::Result<ColorImage> ImageSeries::ReadSlice(int number, const DisplayWindow&
                                                     " to " + std::to_string(info.slice_numbers.back())};
   }
   const auto slice = static_cast<std::size_t>(found - info.slice_numbers.begin());
+  if (!content_->places.empty()) return RenderBetween(*content_, content_->places[slice], window);
   const ImageHeader& header = content_->HeaderOf(slice);
-  if (content_->files.empty()) {
-    const std::byte* samples = content_->samples.Data() + slice * PictureBytes(header);
-    return RenderSlice(header, samples, window, info.width, info.height);
-  }
+  if (content_->files.empty())
+    return RenderSlice(header, content_->SamplesOf(slice), window, info.width, info.height);
   auto picture = content_->WithPicture(slice, [&](const std::byte* samples) {
     return RenderSlice(header, samples, window, info.width, info.height);
   });

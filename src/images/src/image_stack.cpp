@@ -75,11 +75,17 @@ core::Result<LabelVolume> ReadLabelFile(const fs::path& path, Links links) {
     return Error{ErrorCode::kImageTooLarge,
                  core::Printable(path.string()) + ": it has more than 2^28 voxels; crop or resample it"};
   const bool has_spacing = header.spacing[0] > 0 && header.spacing[1] > 0 && header.spacing[2] > 0;
-  if (header.frame == FileFrame::kNotSaid || !has_spacing) {
-    return Error{ErrorCode::kImageSpacingUnknown,
-                 core::Printable(path.string()) +
-                     ": it does not say how large its voxels are or how it lies in the "
-                     "body; save it with both, for instance with 3D Slicer"};
+  if (!has_spacing) {
+    return Error{
+        ErrorCode::kImageSpacingUnknown,
+        core::Printable(path.string()) +
+            ": it does not say how large its voxels are; save it with that, for instance with 3D Slicer"};
+  }
+  if (header.frame == FileFrame::kNotSaid) {
+    return Error{
+        ErrorCode::kImageSpacingUnknown,
+        core::Printable(path.string()) +
+            ": it does not say how it lies in the body; save it with that, for instance with 3D Slicer"};
   }
   LabelVolume volume;
   volume.size = {static_cast<int>(header.width), static_cast<int>(header.height),

@@ -9,7 +9,10 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
+#include "import_protocol.h"
+#include "trocar/core/assert.h"
 #include "trocar/core/printable.h"
 
 namespace trocar::images {
@@ -24,11 +27,42 @@ constexpr std::size_t kMostNames = 100000;
 }  // namespace
 
 core::Result<ImportFile> ImportFile::Open(const fs::path& path, Links links) {
+  return OpenAt(AT_FDCWD, path.c_str(), path, links);
+}
+
+core::Result<ImportFile> ImportFile::OpenBelow(const fs::path& folder, std::string_view path) {
+  TROCAR_ASSERT(IsPathBelow(path));
+  Descriptor inner;  // the folder that the next part of the path is looked for in
+  fs::path walked = folder;
+  for (auto slash = path.find('/'); slash != std::string_view::npos; slash = path.find('/')) {
+    const std::string name(path.substr(0, slash));
+    path.remove_prefix(slash + 1);
+    const fs::path start = folder.empty() ? fs::path(".") : folder;
+    if (inner.Get() < 0) inner = Descriptor(::open(start.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+    walked /= name;
+    const std::string printed = core::Printable(walked.string());
+    struct stat info {};
+    if (inner.Get() < 0 || ::fstatat(inner.Get(), name.c_str(), &info, AT_SYMLINK_NOFOLLOW) != 0)
+      return Error{ErrorCode::kFileMissing, printed + " does not exist; check the path"};
+    if (S_ISLNK(info.st_mode))
+      return Error{ErrorCode::kImagePathUnsafe,
+                   printed + " is a symbolic link; put the file itself into the folder"};
+    Descriptor next(::openat(inner.Get(), name.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    if (next.Get() < 0) return Error{ErrorCode::kFileMissing, printed + " is no folder; check the path"};
+    inner = std::move(next);
+  }
+  walked /= std::string(path);
+  return inner.Get() < 0 ? Open(walked, Links::kRefuse)
+                         : OpenAt(inner.Get(), std::string(path).c_str(), walked, Links::kRefuse);
+}
+
+core::Result<ImportFile> ImportFile::OpenAt(int folder, const char* name, const fs::path& path, Links links) {
   const std::string printed = core::Printable(path.string());
   const int follow = links == Links::kRefuse ? O_NOFOLLOW : 0;
   ImportFile file;
   // O_NONBLOCK: opening a FIFO must not wait for a writer; the check below then refuses it
-  file.descriptor_ = Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | follow));
+  file.descriptor_ =
+      Descriptor(::openat(folder, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | follow));
   if (file.Get() < 0) {
     if (errno == ENOENT || errno == ENOTDIR)
       return Error{ErrorCode::kFileMissing, printed + " does not exist; check the path"};

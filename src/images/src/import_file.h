@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "import_socket.h"
@@ -24,6 +25,9 @@ class ImportFile {
   /// Never waits (FIFO, device).
   /// \return kFileMissing, kFileUnreadable, or kImagePathUnsafe for what is no regular file
   static core::Result<ImportFile> Open(const std::filesystem::path& path, Links links);
+  /// The same of a path that a header names, from `folder` on: no part of it may be a link.
+  /// \pre IsPathBelow(path)
+  static core::Result<ImportFile> OpenBelow(const std::filesystem::path& folder, std::string_view path);
 
   int Get() const { return descriptor_.Get(); }
   std::uint64_t Bytes() const { return bytes_; }
@@ -34,6 +38,9 @@ class ImportFile {
   core::Status CheckUnchanged() const;
 
  private:
+  static core::Result<ImportFile> OpenAt(int folder, const char* name, const std::filesystem::path& path,
+                                         Links links);
+
   Descriptor descriptor_;
   std::filesystem::path path_;
   std::uint64_t bytes_ = 0;

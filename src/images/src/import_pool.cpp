@@ -50,10 +50,9 @@ bool IsSane(const ImageHeader& header, const ImportLimits& limits) {
       IsFinite(std::array{header.slope, header.intercept, header.window_centre, header.window_width});
   for (const auto& axis : header.direction) is_finite = is_finite && IsFinite(axis);
   const std::string_view data_file(header.data_file, ::strnlen(header.data_file, sizeof(header.data_file)));
-  const bool is_plain =
-      data_file.find('/') == std::string_view::npos && data_file != "." && data_file != "..";
-  return bytes <= limits.most_bytes && is_finite && is_plain && header.segments <= kMostSegments &&
-         IsTerminated(header.data_file, sizeof(header.data_file)) &&
+  const bool is_below = data_file.empty() || IsPathBelow(data_file);
+  return bytes <= limits.most_bytes && is_finite && is_below && header.is_data_beside <= 1 &&
+         header.segments <= kMostSegments && IsTerminated(header.data_file, sizeof(header.data_file)) &&
          IsTerminated(header.description, sizeof(header.description)) &&
          std::all_of(std::begin(header.spacing), std::end(header.spacing),
                      [](double spacing) { return spacing >= 0 && spacing <= 200; });
@@ -61,6 +60,7 @@ bool IsSane(const ImageHeader& header, const ImportLimits& limits) {
 
 bool IsSane(const ImportReply& reply, const ImportLimits& limits) {
   if (reply.version != kImportVersion || !IsTerminated(reply.why, sizeof(reply.why))) return false;
+  if (reply.header.content > kLastDicomContent) return false;
   for (const SegmentName& name : reply.names) {
     if (!IsTerminated(name.name, sizeof(name.name)) || name.label < 0 || name.layer >= kMostLayers)
       return false;
@@ -72,6 +72,8 @@ bool IsSane(const ImportReply& reply, const ImportLimits& limits) {
 
 const char* FindRemedy(ErrorCode code) {
   switch (code) {
+    case ErrorCode::kImageSliceMissing:
+      return "name the folder of the slices";
     case ErrorCode::kImageTooLarge:
       return "crop or resample it, or allow more memory";
     case ErrorCode::kImageUnsupported:
@@ -132,12 +134,11 @@ core::Result<ImportReply> ImportPool::Ask(const ImportRequest& request, std::spa
     if (worker && worker->IsAlive()) idle_.push_back(std::move(worker));
   }
   returned_.notify_one();
-  if (answer && answer->code != 0)
-    return Error{static_cast<ErrorCode>(answer->code), core::Printable(answer->why, sizeof(answer->why))};
   return answer;
 }
 
-core::Result<ImportReply> ImportPool::Probe(const ImportFile& file, const ImportFile* data_file) {
+core::Result<ImportReply> ImportPool::Probe(const ImportFile& file, const ImportFile* data_file,
+                                            ImageHeader* refused) {
   ImportRequest request;
   request.has_data_file = data_file != nullptr;
   request.most_side = limits_.most_side;
@@ -146,9 +147,45 @@ core::Result<ImportReply> ImportPool::Probe(const ImportFile& file, const Import
   request.seconds = static_cast<std::uint32_t>(limits_.seconds) + kGraceSeconds;
   const int descriptors[] = {file.Get(), data_file != nullptr ? data_file->Get() : -1};
   auto answer = Ask(request, {descriptors, data_file != nullptr ? 2u : 1u}, limits_.seconds);
-  if (!answer) return NameFile(file.Path(), answer.error());
-  if (auto status = file.CheckUnchanged(); !status) return status.error();
+  if (answer && answer->code != 0 && refused != nullptr) *refused = answer->header;
+  if (auto status = CheckAnswer(file, answer); !status) return status.error();
   return answer;
+}
+
+core::Result<std::vector<ImageHeader>> ImportPool::ProbeFrames(const ImportFile& file,
+                                                               const ImageHeader& header) {
+  const std::uint64_t bytes = header.depth * sizeof(ImageHeader);
+  const auto buffer = SampleBuffer::Make(bytes);
+  if (!buffer) return buffer.error();
+  ImportRequest request;
+  request.operation = ImportOperation::kProbeFrames;
+  request.most_side = limits_.most_side;
+  request.most_bytes = limits_.most_bytes;
+  request.is_size_believed = limits_.is_size_believed;
+  request.seconds = static_cast<std::uint32_t>(limits_.seconds) + kGraceSeconds;
+  request.capacity = bytes;
+  const int descriptors[] = {file.Get(), buffer->Get()};
+  const auto answer = Ask(request, descriptors, limits_.seconds);
+  if (auto status = CheckAnswer(file, answer); !status) return status.error();
+  // copied first: the reader could write on
+  std::vector<ImageHeader> frames(header.depth);
+  std::memcpy(frames.data(), buffer->Data(), bytes);
+  for (const ImageHeader& frame : frames) {
+    const bool is_alike = frame.width == header.width && frame.height == header.height && frame.depth == 1 &&
+                          frame.channels == header.channels && frame.samples == header.samples;
+    if (!is_alike || !IsSane(frame, limits_) || frame.content > kLastDicomContent)
+      return NameFile(file.Path(), {ErrorCode::kImportCrashed, "its reader answered nonsense"});
+  }
+  return frames;
+}
+
+core::Status ImportPool::CheckAnswer(const ImportFile& file, const core::Result<ImportReply>& answer) {
+  if (!answer) return NameFile(file.Path(), answer.error());
+  if (answer->code != 0) {
+    return NameFile(file.Path(), {static_cast<ErrorCode>(answer->code),
+                                  core::Printable(answer->why, sizeof(answer->why))});
+  }
+  return file.CheckUnchanged();
 }
 
 core::Status ImportPool::Decode(const ImportFile& file, const ImportFile* data_file,
@@ -169,14 +206,13 @@ core::Status ImportPool::Decode(const ImportFile& file, const ImportFile* data_f
   if (data_file != nullptr) descriptors.push_back(data_file->Get());
   descriptors.push_back(buffer.Get());
   const auto answer = Ask(request, descriptors, seconds);
-  if (!answer) return NameFile(file.Path(), answer.error());
+  if (auto status = CheckAnswer(file, answer); !status) return status;
   const ImageHeader& said = answer->header;
   if (said.width != header.width || said.height != header.height || said.depth != header.depth ||
       said.channels != header.channels || said.samples != header.samples) {
     return Error{ErrorCode::kImageChanged,
                  core::Printable(file.Path().string()) + " changed while it was read; open it again"};
   }
-  if (auto status = file.CheckUnchanged(); !status) return status;
   return data_file != nullptr ? data_file->CheckUnchanged() : core::Status{};
 }
 

@@ -91,7 +91,11 @@ class ImportPool {
 
   /// What the header of `file` says, with the name of its data file still to be opened or the names of its
   /// labels.
-  core::Result<ImportReply> Probe(const ImportFile& file, const ImportFile* data_file = nullptr);
+  /// \param[out] refused  of a file that is refused: what its reader had found out by then; only `content` and `series_hash` count
+  core::Result<ImportReply> Probe(const ImportFile& file, const ImportFile* data_file = nullptr,
+                                  ImageHeader* refused = nullptr);
+  /// A header of each frame of a DICOM file, as if each were a file; `header` is what Probe said.
+  core::Result<std::vector<ImageHeader>> ProbeFrames(const ImportFile& file, const ImageHeader& header);
   /// Writes the samples to `offset` of the buffer; `header` is what Probe said.
   core::Status Decode(const ImportFile& file, const ImportFile* data_file, const ImageHeader& header,
                       const SampleBuffer& buffer, std::uint64_t offset);
@@ -99,6 +103,7 @@ class ImportPool {
  private:
   core::Result<ImportReply> Ask(const ImportRequest& request, std::span<const int> descriptors,
                                 double seconds);
+  static core::Status CheckAnswer(const ImportFile& file, const core::Result<ImportReply>& answer);
 
   ImportLimits limits_;
   std::size_t most_workers_;

@@ -1,84 +1,100 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <optional>
+#include <map>
+#include <string>
 
-#include "dicom_series.h"
+#include "dicom_folder.h"
 #include "series_content.h"
 #include "series_geometry.h"
-#include "trocar/core/printable.h"
 
 namespace trocar::images {
+namespace {
 
 namespace fs = std::filesystem;
 using core::Error;
 using core::ErrorCode;
 
+/// Where the samples of each file go: one with several frames is decoded whole.
+struct FilePlaces {
+  std::vector<const DicomSlice*> files;  // one slice of each
+  std::vector<std::uint64_t> begin;      // of the file, in bytes
+  std::vector<std::uint64_t> offsets;    // of each slice
+  std::uint64_t bytes = 0;
+};
+
+FilePlaces PlaceFiles(const std::vector<DicomSlice>& slices, std::span<const std::size_t> order,
+                      std::uint64_t picture) {
+  FilePlaces places;
+  std::map<std::string, std::uint64_t> begins;
+  for (const std::size_t i : order) {
+    const DicomSlice& slice = slices[i];
+    const auto [at, is_new] = begins.emplace(slice.file, places.bytes);
+    if (is_new) {
+      places.files.push_back(&slice);
+      places.begin.push_back(places.bytes);
+      places.bytes += picture * slice.frames;
+    }
+    places.offsets.push_back(at->second + picture * slice.frame);
+  }
+  return places;
+}
+
+}  // namespace
+
 core::Status OpenDicom(const fs::path& folder, std::span<const std::string> names, Links links,
                        const ImageSeriesOptions& options, const Progress& progress,
                        ImageSeries::Content& content) {
-  std::vector<std::optional<DicomSlice>> found(names.size());
-  const auto looked =
-      ForEach(names.size(), progress, "looking at slices", [&](std::size_t i) -> core::Status {
-        const auto file = ImportFile::Open(folder / names[i], links);
-        if (!file) return file.error();
-        const auto reply = content.pool->Probe(*file);
-        // reports, plans and folders of contents lie among the slices
-        if (!reply && reply.error().code == ErrorCode::kImageUnsupported && names.size() > 1 &&
-            reply.error().message.find(kWithoutPicture) != std::string::npos)
-          return {};
-        if (!reply) return reply.error();
-        found[i] = DicomSlice{names[i], reply->header};
-        return {};
-      });
-  if (!looked) return looked;
-  std::vector<DicomSlice> slices;
-  for (auto& slice : found) {
-    if (slice) slices.push_back(std::move(*slice));
-  }
-  content.info.ignored_files += names.size() - slices.size();
-  if (slices.empty())
-    return Error{ErrorCode::kImageSliceMissing,
-                 "its DICOM files hold no picture; name the folder of the slices"};
-  if (options.series > 0) {
-    auto series = SplitSeries(slices);
-    if (static_cast<std::size_t>(options.series) > series.size()) {
-      return Error{ErrorCode::kImageSliceMissing, "there is no series " + std::to_string(options.series) +
-                                                      "; the folder holds " + std::to_string(series.size())};
-    }
-    content.info.ignored_files += slices.size();
-    slices = std::move(series[static_cast<std::size_t>(options.series) - 1]);
-    content.info.ignored_files -= slices.size();
-  }
-  const auto order = OrderDicomSlices(slices);
-  if (!order) return order.error();
-
+  auto found = LookAtDicom(folder, names, links, *content.pool, "looking at slices", progress);
+  if (!found) return found.error();
   ImageSeriesInfo& info = content.info;
+  if (found->slices.empty()) return ExplainNoSlices(*found);
+  const std::vector<DicomVolume> volumes = SplitVolumes(found->slices, found->placeless);
+  std::string choice;
+  const auto chosen = ChooseVolume(volumes, options.series, choice);
+  if (!chosen) return chosen.error();
+  const DicomVolume& volume = volumes[*chosen];
+  if (auto problem = FindProblem(*found, volumes, volume)) return *problem;
+  const DicomOrder& order = *volume.order;
+  if (!choice.empty()) info.notes.push_back(std::move(choice));
+  if (!order.note.empty()) info.notes.push_back(order.note);
+  for (std::string& note : TellPassedOver(*found)) info.notes.push_back(std::move(note));
+
   info.format = "DICOM";
+  info.series = volume.number, info.series_id = volume.id;
   info.file_frame = "LPS";
-  info.slice_numbers = order->numbers;
-  for (const std::size_t slice : order->slices) content.headers.push_back(slices[slice].header);
+  info.slice_numbers = order.numbers;
+  content.places = order.places;
+  for (const std::size_t slice : order.slices) content.headers.push_back(volume.slices[slice].header);
   const ImageHeader& first = content.headers.front();
   SaidGeometry said = GeometryOf(first);
-  said.slice_mm = order->slice_mm;
-  said.direction[2] = order->direction;
+  said.slice_mm = order.slice_mm;
+  said.direction[2] = order.direction;
   if (auto status = SetGeometry(said, first, options, info); !status) return status;
 
-  const std::uint64_t picture = PictureBytes(first), all = picture * slices.size();
-  if (all > content.pool->Limits().most_bytes) {
-    return Error{ErrorCode::kImageTooLarge, "its " + std::to_string(slices.size()) + " slices unpack to " +
-                                                std::to_string(all >> 20) + " MiB, more than the " +
+  const std::uint64_t picture = PictureBytes(first);
+  FilePlaces places = PlaceFiles(volume.slices, order.slices, picture);
+  if (places.bytes > content.pool->Limits().most_bytes) {
+    return Error{ErrorCode::kImageTooLarge, "its " + std::to_string(places.bytes / picture) +
+                                                " slices unpack to " + std::to_string(places.bytes >> 20) +
+                                                " MiB, more than the " +
                                                 std::to_string(content.pool->Limits().most_bytes >> 20) +
                                                 " MiB allowed; open a part of it"};
   }
-  auto samples = SampleBuffer::Make(all);
+  info.ignored_files += names.size() - places.files.size();
+  auto samples = SampleBuffer::Make(places.bytes);
   if (!samples) return samples.error();
   content.samples = std::move(*samples);
-  const auto decoded = ForEach(slices.size(), progress, "reading slices", [&](std::size_t i) -> core::Status {
-    const auto file = ImportFile::Open(folder / slices[order->slices[i]].file, links);
-    if (!file) return file.error();
-    return content.pool->Decode(*file, nullptr, content.headers[i], content.samples, i * picture);
-  });
+  content.offsets = std::move(places.offsets);
+  const auto decoded =
+      ForEach(places.files.size(), progress, "reading slices", [&](std::size_t i) -> core::Status {
+        const DicomSlice& slice = *places.files[i];
+        const auto file = ImportFile::Open(folder / slice.file, links);
+        if (!file) return file.error();
+        ImageHeader whole = slice.header;
+        whole.depth = slice.frames;
+        return content.pool->Decode(*file, nullptr, whole, content.samples, places.begin[i]);
+      });
   if (!decoded) return decoded;
-  SetGreyValues(first, content.samples.Data(), all / SampleBytes(first.samples), info);
+  SetGreyValues(content, info);
   return {};
 }
 

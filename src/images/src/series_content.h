@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "dicom_series.h"
 #include "import_worker.h"
 #include "trocar/core/result.h"
 #include "trocar/images/image_series.h"
@@ -36,11 +37,17 @@ struct ImageSeries::Content {
   // a stack of pictures: decoded when asked for
   std::vector<std::filesystem::path> files;
   std::unique_ptr<ImportPool> pool;
-  // a volume: its samples, slice after slice
+  // a volume: its samples, slice after slice, or from the bytes on that `offsets` says
   SampleBuffer samples;
+  std::vector<std::uint64_t> offsets;
+  std::vector<SlicePlace> places;  ///< of each slice number where slices are interpolated; else empty
 
   const ImageHeader& HeaderOf(std::size_t slice) const {
     return headers[std::min(slice, headers.size() - 1)];
+  }
+  /// Samples of a stored slice of a volume.
+  const std::byte* SamplesOf(std::size_t slice) const {
+    return samples.Data() + (offsets.empty() ? slice * PictureBytes(HeaderOf(slice)) : offsets[slice]);
   }
   /// Decodes one picture of a stack and hands its samples to `use`, which returns what the caller wants.
   template <typename Use>

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "image_frame.h"
+#include "series_content.h"
 #include "volume_file.h"
 
 namespace trocar::images {
@@ -37,6 +38,19 @@ core::Result<double> Agree(const char* option, double said, const std::optional<
   return said > 0 ? said : *given;
 }
 
+/// \param header  of the first slice
+void SetGreyValues(const ImageHeader& header, const GreyStatistics& grey, ImageSeriesInfo& info) {
+  info.grey_range = {grey.least, grey.greatest};
+  if (header.has_window != 0) {
+    info.suggested_window = {header.window_centre, header.window_width};
+  } else if (header.samples != SampleKind::kUint8 || header.slope != 1 || header.intercept != 0) {
+    info.suggested_window = grey.window;
+  } else if (constexpr double kFewLabels = 32.0; grey.greatest < kFewLabels) {
+    // labels, not light: all of them are to be seen
+    info.suggested_window = {0.5 * grey.greatest, std::max(1.0, grey.greatest)};
+  }
+}
+
 }  // namespace
 
 SaidGeometry GeometryOf(const ImageHeader& header) {
@@ -57,17 +71,40 @@ core::Status SetGeometry(const SaidGeometry& said, const ImageHeader& header,
   if (!pixel_mm) return pixel_mm.error();
   const auto slice_mm = Agree("--slice-mm", said.slice_mm, options.slice_mm);
   if (!slice_mm) return slice_mm.error();
-  std::string missing;
-  const auto ask = [&](bool is_known, const char* option) {
-    if (!is_known) missing += (missing.empty() ? "" : ", ") + std::string(option);
-  };
-  ask(*pixel_mm > 0, "--pixel-mm MM (side of a pixel)");
-  ask(*slice_mm > 0, "--slice-mm MM (from one slice number to the next)");
-  ask(said.has_direction || options.axes,
-      "--axes COLUMN,ROW,SLICE (where they grow to in the patient, for example left,posterior,superior)");
-  if (!missing.empty())
+  const bool has_sizes = *pixel_mm > 0 && *slice_mm > 0, has_axes = said.has_direction || options.axes;
+  if (!has_sizes || !has_axes) {
+    std::string missing;
+    const auto ask = [&](bool is_known, const char* option) {
+      if (!is_known) missing += (missing.empty() ? "" : ", ") + std::string(option);
+    };
+    ask(*pixel_mm > 0, "--pixel-mm MM (side of a pixel)");
+    ask(*slice_mm > 0, "--slice-mm MM (from one slice number to the next)");
+    ask(has_axes,
+        "--axes COLUMN,ROW,SLICE (where they grow to in the patient, for example left,posterior,superior)");
+    if (has_sizes) {
+      return Error{ErrorCode::kImageSpacingUnknown,
+                   "the files do not say how the patient lies; give " + missing};
+    }
+    if (header.kind <= FileKind::kTiff && !has_axes) {
+      return Error{
+          ErrorCode::kImageSpacingUnknown,
+          "pictures do not say how large the patient is and how it lies (a resolution in them is for "
+          "printers and is not used); give " +
+              missing};
+    }
+    if (header.kind <= FileKind::kTiff) {
+      return Error{
+          ErrorCode::kImageSpacingUnknown,
+          "pictures do not say how large the patient is (a resolution in them is for printers and is "
+          "not used); give " +
+              missing};
+    }
+    if (has_axes)
+      return Error{ErrorCode::kImageSpacingUnknown,
+                   "the files do not say how large the patient is; give " + missing};
     return Error{ErrorCode::kImageSpacingUnknown,
-                 "the files do not say how large the patient is or lies; give " + missing};
+                 "the files do not say how large the patient is and how it lies; give " + missing};
+  }
   info.pixel_mm = *pixel_mm;
   info.slice_mm = *slice_mm;
   if (!(info.pixel_mm >= 0.01 && info.pixel_mm <= 20.0) ||
@@ -142,17 +179,35 @@ void SetGreyValues(const ImageHeader& header, const std::byte* samples, std::siz
                    ImageSeriesInfo& info) {
   info.is_color = header.channels == 3;
   info.bits = static_cast<int>(header.bits);
+  if (!info.is_color) SetGreyValues(header, MeasureGrey(header, samples, count), info);
+}
+
+void SetGreyValues(const ImageSeries::Content& content, ImageSeriesInfo& info) {
+  const ImageHeader& first = content.headers[0];
+  info.is_color = first.channels == 3;
+  info.bits = static_cast<int>(first.bits);
   if (info.is_color) return;
-  const GreyStatistics grey = MeasureGrey(header, samples, count);
-  info.grey_range = {grey.least, grey.greatest};
-  if (header.has_window != 0) {
-    info.suggested_window = {header.window_centre, header.window_width};
-  } else if (header.samples != SampleKind::kUint8 || header.slope != 1 || header.intercept != 0) {
-    info.suggested_window = grey.window;
-  } else if (constexpr double kFewLabels = 32.0; grey.greatest < kFewLabels) {
-    // labels, not light: all of them are to be seen
-    info.suggested_window = {0.5 * grey.greatest, std::max(1.0, grey.greatest)};
+  const std::size_t count = PictureBytes(first) / SampleBytes(first.samples);
+  const bool is_alike =
+      std::all_of(content.headers.begin(), content.headers.end(), [&](const ImageHeader& header) {
+        return header.slope == first.slope && header.intercept == first.intercept;
+      });
+  if (is_alike && content.samples.Bytes() == content.headers.size() * PictureBytes(first))
+    return SetGreyValues(first, MeasureGrey(first, content.samples.Data(), count * content.headers.size()),
+                         info);
+  GreyStatistics all;
+  double low = 0, high = 0;
+  for (std::size_t i = 0; i < content.headers.size(); ++i) {
+    const GreyStatistics one = MeasureGrey(content.headers[i], content.SamplesOf(i), count);
+    const double one_low = one.window.centre - 0.5 * one.window.width,
+                 one_high = one.window.centre + 0.5 * one.window.width;
+    all.least = i == 0 ? one.least : std::min(all.least, one.least);
+    all.greatest = i == 0 ? one.greatest : std::max(all.greatest, one.greatest);
+    low = i == 0 ? one_low : std::min(low, one_low);
+    high = i == 0 ? one_high : std::max(high, one_high);
   }
+  all.window = {0.5 * (low + high), high - low};
+  SetGreyValues(first, all, info);
 }
 
 }  // namespace trocar::images

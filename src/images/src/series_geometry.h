@@ -36,5 +36,7 @@ const char* FrameName(FileFrame frame);
 /// Kind of samples, grey range and suggested window, from `count` samples.
 void SetGreyValues(const ImageHeader& header, const std::byte* samples, std::size_t count,
                    ImageSeriesInfo& info);
+/// Of a volume of stored slices, each of which may have a scale of its own.
+void SetGreyValues(const ImageSeries::Content& content, ImageSeriesInfo& info);
 
 }  // namespace trocar::images

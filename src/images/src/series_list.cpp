@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <system_error>
+#include <thread>
 #include <utility>
 
-#include "dicom_series.h"
+#include "dicom_folder.h"
 #include "series_content.h"
 #include "series_geometry.h"
 #include "trocar/core/printable.h"
 #include "trocar/images/slice_names.h"
+#include "volume_file.h"
 
 namespace trocar::images {
 namespace {
@@ -56,6 +58,30 @@ void TakePreview(const core::Result<ImageSeries>& opened, ListedSeries& listed) 
   if (slice.ok()) listed.preview = Shrink(*slice);
 }
 
+/// Of one DICOM slice, whatever becomes of its series.
+void TakePreview(const fs::path& folder, const DicomSlice& slice, ImportPool& pool, ListedSeries& listed) {
+  const auto file = ImportFile::Open(folder / slice.file, Links::kRefuse);
+  ImageHeader whole = slice.header;
+  whole.depth = slice.frames;
+  const std::uint64_t picture = PictureBytes(slice.header);
+  if (!file || picture * slice.frames > pool.Limits().most_bytes) return;
+  const auto samples = SampleBuffer::Make(picture * slice.frames);
+  if (!samples || !pool.Decode(*file, nullptr, whole, *samples, 0)) return;
+  ImageSeriesOptions alone;
+  alone.slice_mm = kAnySliceMm;
+  ImageSeriesInfo info;
+  if (!SetGeometry(GeometryOf(slice.header), slice.header, alone, info)) return;
+  const std::byte* begin = samples->Data() + picture * slice.frame;
+  SetGreyValues(slice.header, begin, slice.header.SampleCount(), info);
+  listed.preview = Shrink(RenderSlice(slice.header, begin, info.suggested_window, info.width, info.height));
+}
+
+/// "FOLDER: MESSAGE" unless the message names a file of it.
+std::string NamePath(const fs::path& folder, const Error& error) {
+  const bool is_named = error.message.find(folder.filename().string()) != std::string::npos;
+  return is_named ? error.message : core::Printable(folder.string()) + ": " + error.message;
+}
+
 /// Collects the series of one folder after the other.
 class Lister {
  public:
@@ -67,9 +93,12 @@ class Lister {
     if (IsStopped() || ++folders_ > kMostFolders) return;
     if (progress_) progress_("looking for images", -1);
     if (auto found = LookInto(folder); found.ok()) {
+      const std::size_t before = found_.size();
       AddDicom(folder, found->dicom);
+      // pictures beside slices are thumbnails: what the folder opens as are the slices
+      const bool has_slices = found_.size() > before;
       for (const std::string& volume : found->volumes) AddVolume(folder / volume);
-      AddPictures(folder, found->files);
+      if (!has_slices) AddPictures(folder, found->files);
     } else if (!problem_) {
       problem_ = found.error();
     }
@@ -129,46 +158,38 @@ class Lister {
 
   void AddDicom(const fs::path& folder, const std::vector<std::string>& names) {
     if (names.empty()) return;
-    ImageSeries::Content content{ImportLimits()};
-    std::vector<std::optional<DicomSlice>> probed(names.size());
+    ImportPool pool(ImportLimits(), std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, 8));
     const auto looked =
-        ForEach(names.size(), progress_, "looking for images", [&](std::size_t i) -> core::Status {
-          if (IsStopped()) return Error{ErrorCode::kCancelled, ""};
-          const auto file = ImportFile::Open(folder / names[i], Links::kRefuse);
-          if (!file) return {};
-          // a report or a damaged file among them; opening the series names it
-          if (const auto reply = content.pool->Probe(*file); reply.ok())
-            probed[i] = DicomSlice{names[i], reply->header};
-          return {};
-        });
-    if (!looked) return;
-    std::vector<DicomSlice> slices;
-    for (auto& one : probed) {
-      if (one) slices.push_back(std::move(*one));
+        LookAtDicom(folder, names, Links::kRefuse, pool, "looking for images", progress_, stop_);
+    if (!looked.ok() || looked->slices.empty()) {
+      const Error error = looked.ok() ? ExplainNoSlices(*looked) : looked.error();
+      if (error.code != ErrorCode::kCancelled && !problem_)
+        problem_ = Error{error.code, NamePath(folder, error)};
+      return;
     }
-    if (slices.empty()) return;
-    const auto series = SplitSeries(slices);
-    for (std::size_t i = 0; i < series.size(); ++i) {
+    const std::vector<DicomVolume> volumes = SplitVolumes(looked->slices, looked->placeless);
+    for (const DicomVolume& volume : volumes) {
+      if (IsStopped()) return;
       ListedSeries listed;
       listed.path = folder;
-      listed.options.series = series.size() > 1 ? static_cast<int>(i) + 1 : 0;
-      const ImageHeader& first = series[i].front().header;
+      listed.options.series = volumes.size() > 1 ? volume.number : 0;
+      const ImageHeader& first = volume.slices.front().header;
       listed.description = first.description[0] != '\0' ? core::Printable(first.description, 80)
                                                         : core::Printable(folder.filename().string(), 80);
+      if (!volume.part.empty()) listed.description += ", " + volume.part;
       listed.format = "DICOM";
-      listed.slices = series[i].size();
+      listed.is_volume = volume.is_volume || volumes.size() == 1;
+      listed.slices = volume.slices.size();
       listed.width = static_cast<int>(first.width), listed.height = static_cast<int>(first.height);
       listed.pixel_mm = std::min(first.spacing[0], first.spacing[1]);
-      std::size_t middle = series[i].size() / 2;
-      if (const auto order = OrderDicomSlices(series[i]); order.ok()) {
-        listed.slice_mm = order->slice_mm;
-        middle = order->slices[order->slices.size() / 2];
-      } else {
-        listed.problem = order.error();
+      std::size_t middle = volume.slices.size() / 2;
+      listed.problem = FindProblem(*looked, volumes, volume);
+      if (volume.order.ok()) {
+        listed.slice_mm = volume.order->slice_mm;
+        listed.slices = volume.order->numbers.size();
+        middle = volume.order->slices[volume.order->slices.size() / 2];
       }
-      ImageSeriesOptions alone;
-      alone.slice_mm = kAnySliceMm;
-      TakePreview(ImageSeries::Open(folder / series[i][middle].file, alone), listed);
+      TakePreview(folder, volume.slices[middle], pool, listed);
       found_.push_back(std::move(listed));
     }
   }

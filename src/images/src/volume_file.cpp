@@ -3,15 +3,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/core/printable.h"
 
 namespace trocar::images {
 namespace {
+
+namespace fs = std::filesystem;
 
 template <typename Sample>
 double Load(const std::byte* samples, std::size_t i) {
@@ -73,16 +80,67 @@ std::vector<Between> MakeSteps(std::uint32_t stored, int made) {
   return steps;
 }
 
+/// The path without `ending`, in small letters or capitals, and what the ending was; none where it has another one.
+std::optional<std::pair<std::string, std::string>> SplitEnding(const fs::path& path,
+                                                               std::string_view ending) {
+  const std::string whole = path.string();
+  if (whole.size() < ending.size()) return std::nullopt;
+  const std::size_t at = whole.size() - ending.size();
+  const bool is_same =
+      std::equal(ending.begin(), ending.end(), whole.begin() + static_cast<std::ptrdiff_t>(at),
+                 [](char small, char c) { return small == c || std::toupper(small) == c; });
+  if (!is_same) return std::nullopt;
+  return std::pair{whole.substr(0, at), whole.substr(at)};
+}
+
+/// Where one of a pair of files lies, by the name of the other: a.hdr and a.img, either of them perhaps packed.
+/// \return empty where there is none
+fs::path FindOther(const fs::path& path, const std::string& mine, const std::string& other) {
+  for (const char* packed : {"", ".gz"}) {
+    const auto split = SplitEnding(path, mine + packed);
+    if (!split) continue;
+    const bool is_capital = split->second[1] < 'a';
+    for (const char* wanted : {packed, "", ".gz"}) {
+      std::string ending = other + wanted;
+      if (is_capital) std::transform(ending.begin(), ending.end(), ending.begin(), ::toupper);
+      std::error_code ignored;
+      const fs::path found = split->first + ending;
+      if (fs::symlink_status(found, ignored).type() != fs::file_type::not_found) return found;
+    }
+  }
+  return {};
+}
+
+/// The samples that belong to the header of a pair.
+core::Result<ImportFile> OpenBeside(const fs::path& header) {
+  const fs::path samples = FindOther(header, ".hdr", ".img");
+  if (samples.empty()) {
+    return core::Error{core::ErrorCode::kFileMissing,
+                       core::Printable(header.string()) +
+                           ": its samples belong into a file of the same name that ends in .img (its own in "
+                           ".hdr), which is not there; put both into one folder"};
+  }
+  return ImportFile::Open(samples, Links::kRefuse);
+}
+
 }  // namespace
 
-core::Result<DecodedFile> DecodeFile(const std::filesystem::path& path, Links links, ImportPool& pool) {
+fs::path FindHeader(const fs::path& path) {
+  fs::path header = FindOther(path, ".img", ".hdr");
+  return header.empty() ? path : header;
+}
+
+core::Result<DecodedFile> DecodeFile(const std::filesystem::path& typed, Links links, ImportPool& pool) {
+  const fs::path path = FindHeader(typed);
   const auto file = ImportFile::Open(path, links);
   if (!file) return file.error();
   auto reply = pool.Probe(*file);
   if (!reply) return reply.error();
   std::optional<ImportFile> data_file;
-  if (reply->header.data_file[0] != '\0') {
-    auto opened = ImportFile::Open(path.parent_path() / reply->header.data_file, Links::kRefuse);
+  if (reply->header.data_file[0] != '\0' || reply->header.is_data_beside != 0) {
+    auto opened = reply->header.is_data_beside != 0
+                      ? OpenBeside(path)
+                      : ImportFile::OpenBelow(path.parent_path(), reply->header.data_file);
     if (!opened) return opened.error();
     data_file = std::move(*opened);
     reply = pool.Probe(*file, &*data_file);

@@ -20,6 +20,9 @@ struct DecodedFile {
   std::vector<SegmentName> names;  ///< of labels, where the file has them
 };
 
+/// The header of a pair of files, a.hdr, where a person named the one with its samples, a.img; else the path itself.
+std::filesystem::path FindHeader(const std::filesystem::path& path);
+
 /// \param links  whether `path` itself may be a symbolic link; its data file never is
 core::Result<DecodedFile> DecodeFile(const std::filesystem::path& path, Links links, ImportPool& pool);
 

@@ -162,7 +162,13 @@ std::vector<Case> MakeNiftiCases() {
       {"NiftiRowNotANumber", ErrorCode::kImageGeometryInvalid, "a.nii", NiftiWith(284, nan)},
       {"NiftiAxisWithoutLength", ErrorCode::kImageGeometryInvalid, "a.nii", NiftiWith(280, 0.0f)},
       {"NiftiOriginInfinite", ErrorCode::kImageGeometryInvalid, "a.nii", NiftiWith(292, HUGE_VALF)},
-      {"NiftiSlopeNotANumber", ErrorCode::kImageGeometryInvalid, "a.nii", NiftiWith(112, nan)},
+      {"NiftiInterceptNotANumber", ErrorCode::kImageGeometryInvalid, "a.nii",
+       [=] {
+         std::string file = MakeNifti();
+         Put<float>(file, 112, 1);
+         Put(file, 116, nan);
+         return file;
+       }},
       {"NiftiSheared", ErrorCode::kImageGeometryInvalid, "a.nii", [] { return MakeTurnedNifti(0, 0.2); }},
       {"NiftiOblique", ErrorCode::kImageGeometryInvalid, "a.nii", [] { return MakeTurnedNifti(44, 0); }},
       {"NiftiBeginsNowhere", ErrorCode::kImageUndecodable, "a.nii", NiftiWith(108, nan)},
@@ -205,8 +211,8 @@ std::vector<Case> MakeNrrdAndMetaCases() {
        Nrrd({"space directions: (nan,0,0) (0,1,0) (0,0,1)"})},
       {"NrrdTwoAnswers", ErrorCode::kImageUndecodable, "a.nrrd",
        [] { return "NRRD0004\ntype: short\nTYPE: uchar\n" + MakeNrrd().substr(9); }},
-      {"NrrdLineSkip", ErrorCode::kImageUnsupported, "a.nrrd", Nrrd({"line skip: 9"})},
-      {"NrrdSkipBackwards", ErrorCode::kImageUndecodable, "a.nrrd", Nrrd({"byte skip: -5"})},
+      {"NrrdLineSkip", ErrorCode::kImageTruncated, "a.nrrd", Nrrd({"line skip: 9"})},
+      {"NrrdSkipBackwards", ErrorCode::kImageTruncated, "a.nrrd", Nrrd({"byte skip: -5"})},
       {"NrrdSkipBeyond64Bits", ErrorCode::kImageTruncated, "a.nrrd",
        Nrrd({"byte skip: 9223372036854775807"})},
       {"NrrdDataInAnotherFolder", ErrorCode::kImagePathUnsafe, "a.nhdr",
@@ -232,7 +238,7 @@ std::vector<Case> MakeNrrdAndMetaCases() {
       {"MetaNegativeHeader", ErrorCode::kImageUndecodable, "a.mhd", Meta({"HeaderSize = -7"}, "a.raw"),
        [](const fs::path& folder) { ASSERT_TRUE(core::WriteFile(folder / "a.raw", Samples(8, 6, 4)).ok()); }},
       {"MetaDataInAnotherFolder", ErrorCode::kImagePathUnsafe, "a.mhd", Meta({}, "../a.raw")},
-      {"MetaList", ErrorCode::kImageUnsupported, "a.mhd", Meta({}, "LIST")},
+      {"MetaList", ErrorCode::kImageTruncated, "a.mhd", Meta({}, "LIST")},
       {"MetaNumberedFiles", ErrorCode::kImageUnsupported, "a.mhd", Meta({}, "a%03d.raw 1 4 1")},
   };
 }
@@ -360,7 +366,7 @@ std::vector<Case> MakeDicomCases() {
       {"Dicom64Bits", ErrorCode::kImageUnsupported, "a.dcm", Dicom([](DicomFields& f) { f.allocated = 64; })},
       {"DicomPalette", ErrorCode::kImageUnsupported, "a.dcm",
        Dicom([](DicomFields& f) { f.shown = "PALETTE COLOR"; })},
-      {"DicomManyFrames", ErrorCode::kImageUnsupported, "a.dcm", Dicom([](DicomFields& f) {
+      {"DicomManyFrames", ErrorCode::kImageTooLarge, "a.dcm", Dicom([](DicomFields& f) {
          f.dimensions = Element(0x28, 8, "IS", "1000000") +
                         Element(0x28, 0x10, "US", Bytes<std::uint16_t>(6)) +
                         Element(0x28, 0x11, "US", Bytes<std::uint16_t>(8));
@@ -404,10 +410,20 @@ std::vector<Case> MakeDicomCases() {
          rle.resize(64, '\0');
          f.pixel_element = Fragments({rle + std::string(16, '\x7f')});
        })},
-      {"DicomUnknownTransferSyntax", ErrorCode::kImageUndecodable, "a.dcm",
+      {"DicomUnknownTransferSyntax", ErrorCode::kImageUnsupported, "a.dcm",
        Dicom([](DicomFields& f) { f.transfer_syntax = "1.2.840.10008.1.2.4.999"; })},
-      {"DicomWithThePreambleOfAPng", ErrorCode::kImageUndecodable, "a.dcm",
-       [] { return MakeDicom({}).replace(0, 8, "\x89PNG\r\n\x1a\n"); }},
+      {"DicomCutBehindItsPreamble", ErrorCode::kImageTruncated, "a.dcm",
+       [] { return Cut(MakeDicom({}), 132); }},
+      {"DicomCutBehindThePreambleOfAPng", ErrorCode::kImageTruncated, "a.dcm",
+       [] { return Cut(MakeDicom({}).replace(0, 8, "\x89PNG\r\n\x1a\n"), 600); }},
+      {"DicomFramesMissing", ErrorCode::kImageTruncated, "a.dcm", Dicom([](DicomFields& f) {
+         f.dimensions = Element(0x28, 8, "IS", "3") + Element(0x28, 0x10, "US", Bytes<std::uint16_t>(6)) +
+                        Element(0x28, 0x11, "US", Bytes<std::uint16_t>(8));
+       })},
+      {"DicomSegmentation", ErrorCode::kImageSliceMissing, "a.dcm", Dicom([](DicomFields& f) {
+         f.sop_class = "1.2.840.10008.5.1.4.1.1.66.4";
+         f.modality = "SEG";
+       })},
   };
 }
 

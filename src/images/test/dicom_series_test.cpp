@@ -113,13 +113,88 @@ TEST(OrderDicomSlices, RefusesMixtures) {
           "different orientations");
 }
 
-TEST(SplitSeries, KeepsEachTogether) {
+/// Slices at these places along the normal, with instance numbers that follow each other.
+std::vector<DicomSlice> MakeSlicesAt(const std::vector<double>& places) {
+  auto slices = MakeSlices(static_cast<int>(places.size()), 1);
+  for (std::size_t i = 0; i < places.size(); ++i) slices[i].header.origin[2] = places[i];
+  return slices;
+}
+
+TEST(OrderDicomSlices, InterpolatesWhereTheDistanceChanges) {
+  // 5 mm, then 2.5 mm
+  const auto slices = MakeSlicesAt({0, 5, 10, 15, 17.5, 20, 22.5});
+  const auto order = OrderDicomSlices(slices);
+  ASSERT_TRUE(order.ok()) << order.error().Text();
+  EXPECT_DOUBLE_EQ(order->slice_mm, 2.5);
+  EXPECT_EQ(order->numbers, (std::vector{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+  ASSERT_EQ(order->places.size(), 10u);
+  for (std::size_t i = 0; i < order->places.size(); ++i) {
+    const SlicePlace& place = order->places[i];
+    const double below = slices[order->slices[place.below]].header.origin[2];
+    const double above = place.part > 0 ? slices[order->slices[place.below + 1]].header.origin[2] : below;
+    EXPECT_NEAR(below + place.part * (above - below), 2.5 * static_cast<double>(i), 1e-9) << i;
+  }
+  EXPECT_EQ(order->places[1].part, 0.5);
+  EXPECT_EQ(order->places[8].part, 0.0) << "a slice that there is, is taken as it is";
+  EXPECT_THAT(order->note, HasSubstr("5 mm, then 2.5 mm"));
+  // the other way round, more of the fine ones, lengths that are no multiples, one distance between them
+  EXPECT_TRUE(OrderDicomSlices(MakeSlicesAt({0, 2.5, 5, 7.5, 10, 12.5, 17.5, 22.5, 27.5})).ok());
+  const auto odd = OrderDicomSlices(MakeSlicesAt({0, 3, 6, 9, 13, 18, 23, 28}));
+  ASSERT_TRUE(odd.ok()) << odd.error().Text();
+  EXPECT_EQ(odd->numbers.size(), 10u) << "0 to 27 mm";
+  EXPECT_FALSE(order->note.empty());
+  EXPECT_TRUE(OrderDicomSlices(MakeSlices(5, 2))->note.empty());
+}
+
+TEST(OrderDicomSlices, SaysTrulyWhatIsWrongWithDistances) {
+  const auto text = [](const std::vector<DicomSlice>& slices) {
+    const auto order = OrderDicomSlices(slices);
+    return order.ok() ? "opened" : order.error().Text();
+  };
+  // every other slice of the second half is missing: the numbers say it
+  auto slices = MakeSlicesAt({0, 2, 4, 6, 8, 12, 16, 20});
+  for (int i = 5; i < 8; ++i)
+    slices[i].header.instance_number = slices[4].header.instance_number + 2 * (i - 4);
+  EXPECT_THAT(text(slices),
+              HasSubstr("E-IMG-007 slices are missing: 1 between slice 15 (IM4) and slice 17 (IM5); 1 "
+                        "between"));
+  // the numbers go on: the same places are a change of distance
+  EXPECT_EQ(text(MakeSlicesAt({0, 2, 4, 6, 8, 12, 16, 20})), "opened");
+  // one long distance, and numbers that go on: nothing is known to be missing
+  EXPECT_THAT(text(MakeSlicesAt({0, 2, 4, 8, 10, 12})),
+              HasSubstr("E-IMG-008 slice 13 (IM2) and slice 14 (IM3) are 4 mm apart, others 2 mm"));
+  EXPECT_THAT(text(MakeSlicesAt({0, 1, 3, 6, 10, 15, 21})), HasSubstr("E-IMG-008"));
+  // too long to be filled
+  EXPECT_THAT(text(MakeSlicesAt({0, 1, 2, 3, 4, 12, 20, 28})), HasSubstr("are 8 mm apart, others 1 mm"));
+  // two short ones of the usual length count, however few they are
+  const auto two = OrderDicomSlices(MakeSlicesAt({0, 2.5, 5, 10, 15, 20, 22.5, 25}));
+  ASSERT_TRUE(two.ok()) << two.error().Text();
+  EXPECT_DOUBLE_EQ(two->slice_mm, 2.5);
+  // doubles
+  EXPECT_THAT(text(MakeSlicesAt({0, 2, 2, 4})),
+              HasSubstr("slice 12 (IM1) and slice 13 (IM2) lie in the same place"));
+  EXPECT_THAT(text(MakeSlicesAt({0, 0, 2, 2, 4, 4})), HasSubstr("as do 2 more pairs"));
+}
+
+TEST(OrderDicomSlices, NamesASliceThatLiesAside) {
   auto slices = MakeSlices(6, 2);
-  for (const int i : {1, 3, 5}) slices[i].header.series_hash = 7;
-  const auto series = SplitSeries(slices);
-  ASSERT_EQ(series.size(), 2u);
-  EXPECT_EQ(series[1][0].file, "IM1");
-  EXPECT_EQ(series[0].size(), 3u);
+  slices[3].header.origin[0] = 20;
+  const auto order = OrderDicomSlices(slices);
+  ASSERT_FALSE(order.ok());
+  EXPECT_THAT(order.error().message, HasSubstr("slice 14 (IM3) lies 20 mm aside"));
+}
+
+TEST(FindStrayInGap, NamesTheSliceThatFillsIt) {
+  auto slices = MakeSlices(6, 2);
+  DicomSlice stray = slices[2];
+  stray.header.spacing[0] = 0.9;
+  slices.erase(slices.begin() + 2);
+  const auto found = FindStrayInGap(slices, {&stray, 1});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->code, ErrorCode::kImageSeriesMixed);
+  EXPECT_THAT(found->message, HasSubstr("slice 12 (IM1) and slice 13 (IM2) have pixels of different sizes"));
+  stray.header.origin[1] += 30;
+  EXPECT_FALSE(FindStrayInGap(slices, {&stray, 1})) << "elsewhere";
 }
 
 }  // namespace

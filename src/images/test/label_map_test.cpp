@@ -202,22 +202,78 @@ TEST_F(LabelMap, JoinsLayersOfSegmentsThatOverlap) {
             (std::vector<std::pair<std::string, int>>{{"liver", 1}, {"gallbladder", 2}, {"spleen", 3}}));
 }
 
+// Before version 4.11 3D Slicer said neither label nor layer; other programs call the axis a vector, or put it last.
+TEST_F(LabelMap, TakesLayersOfOlderAndOtherWriters) {
+  std::vector<double> layers(3 * kX * kY * kZ, 0.0), planes = layers;
+  for (const std::size_t voxel : {3u, 4u, 5u, 6u}) layers[3 * voxel] = 1;
+  for (const std::size_t voxel : {6u, 7u}) layers[3 * voxel + 1] = 1;
+  layers[3 * 20 + 2] = 1;
+  for (std::size_t i = 0; i < planes.size(); ++i) planes[i % 3 * kX * kY * kZ + i / 3] = layers[i];
+  const std::string old =
+      "Segment0_ID:=a\nSegment0_Name:=liver\nSegment1_ID:=b\nSegment1_Name:=gallbladder\nSegment2_ID:="
+      "spleen\n";
+  const std::string said =
+      "Segment0_Name:=liver\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+      "Segment1_Name:=gallbladder\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n"
+      "Segment2_Name:=spleen\nSegment2_LabelValue:=1\nSegment2_Layer:=2\n";
+  const auto with = [](std::string text, const std::string& what, const std::string& by) {
+    return text.replace(text.find(what), what.size(), by);
+  };
+  const std::string as_list = FormatLayers(3, old, layers);
+  const std::string last = with(with(with(FormatLayers(3, said, planes), "3 4 3 2", "4 3 2 3"),
+                                     "none (2,0,0) (0,2,0) (0,0,3)", "(2,0,0) (0,2,0) (0,0,3) none"),
+                                "list domain domain domain", "domain domain domain list");
+  const std::pair<const char*, std::string> files[] = {
+      {"old.seg.nrrd", as_list},
+      {"vector.seg.nrrd", with(FormatLayers(3, said, layers), "list", "vector")},
+      {"without_kinds.seg.nrrd", with(as_list, "kinds: list domain domain domain\n", "")},
+      {"last.seg.nrrd", last},
+      {"last_vector.seg.nrrd", with(last, "list", "vector")},
+  };
+  std::vector<std::int32_t> expected(kX * kY * kZ, 0);
+  expected[3] = expected[4] = expected[5] = 1;
+  expected[6] = expected[7] = 2;
+  expected[20] = 3;
+  for (const auto& [name, content] : files) {
+    const auto read = Read(name, content);
+    ASSERT_TRUE(read.ok()) << name << ": " << read.error().Text();
+    EXPECT_EQ(read->labels, expected) << name;
+    EXPECT_EQ(read->direction[2][2], 3) << name;
+    EXPECT_EQ(read->names,
+              (std::vector<std::pair<std::string, int>>{{"liver", 1}, {"gallbladder", 2}, {"spleen", 3}}))
+        << name;
+  }
+}
+
+TEST_F(LabelMap, TakesOneSegmentOfAnOlderWriter) {
+  const auto values = Values(1);
+  std::string file = FormatNrrd<std::uint8_t>(values);
+  file.insert(file.find("\n\n") + 1, "Segment0_ID:=Segment_1\nSegment0_Name:=li\\\\ver\n");
+  const auto read = Read("one.seg.nrrd", file);
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->names, (std::vector<std::pair<std::string, int>>{{"li\\ver", 1}}));
+  EXPECT_EQ(read->labels[7], 1);
+}
+
 TEST_F(LabelMap, RefusesLayersThatSayNothing) {
   const std::vector<double> layers(2 * kX * kY * kZ, 1.0);
   EXPECT_THAT(Refusal("bare.nrrd", FormatLayers(2, "", layers)), HasSubstr("which label of which layer"));
-  // a segment in a layer that is not there is none
-  const auto read =
-      Read("odd.nrrd", FormatLayers(2,
-                                    "Segment0_Name:=liver\nSegment0_LabelValue:=1\n"
-                                    "Segment1_Name:=lost\nSegment1_LabelValue:=1\nSegment1_Layer:=2\n",
-                                    layers));
-  ASSERT_TRUE(read.ok()) << read.error().Text();
-  EXPECT_EQ(read->names.size(), 1u);
+  EXPECT_THAT(
+      Refusal("odd.nrrd", FormatLayers(2,
+                                       "Segment0_Name:=liver\nSegment0_LabelValue:=1\n"
+                                       "Segment1_Name:=lost\nSegment1_LabelValue:=1\nSegment1_Layer:=2\n",
+                                       layers)),
+      HasSubstr("one of its segments lies in layer 2, and it has 2"));
   EXPECT_EQ(Read("many.nrrd", FormatLayers(65, kTwoLayers, layers)).error().code, ErrorCode::kImageTooLarge);
   EXPECT_EQ(Read("cut.nrrd", FormatLayers(3, kTwoLayers, layers)).error().code, ErrorCode::kImageTruncated);
-  const auto series = ImageSeries::Open(folder_.Path() / "odd.nrrd", {});
-  ASSERT_FALSE(series.ok());
-  EXPECT_EQ(series.error().code, ErrorCode::kImageUnsupported);
+  EXPECT_TRUE(Read("two.nrrd", FormatLayers(2, kTwoLayers, layers)).ok());
+  for (const auto& [name, why] : {std::pair{"two.nrrd", "segments in layers, no image"},
+                                  {"bare.nrrd", "a list of 2 values a voxel, no image"}}) {
+    const auto series = ImageSeries::Open(folder_.Path() / name, {});
+    ASSERT_FALSE(series.ok());
+    EXPECT_EQ(series.error().code, ErrorCode::kImageUnsupported);
+    EXPECT_THAT(series.error().message, HasSubstr(why));
+  }
 }
 
 }  // namespace

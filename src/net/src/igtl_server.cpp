@@ -9,9 +9,19 @@ namespace trocar::net {
 namespace {
 
 constexpr std::size_t kMostViewers = 8;
-constexpr double kPatience = 10.0;  // with a viewer that takes nothing [s]
-/// A viewer that is behind for longer loses its place to a new one, when all are taken [s].
-constexpr double kBehind = 1.0;
+constexpr double kPatience = 10.0;    // with a viewer that is behind [s]
+constexpr double kJudgePeriod = 1.0;  // between two looks at what a viewer took [s]
+/// A viewer that is behind for longer, two looks at least, loses its place to a new one when all are taken [s].
+constexpr double kBehind = 1.5;
+/// Keeps up who takes this part of the tools' bytes or more within a second. A viewer that reads takes all of them, organs besides;
+/// of one that does not, a system whose buffer still grows announces up to nine tenths of what comes as new room.
+constexpr double kPartTaken = 0.95;
+/// Longer gaps between two ticks are pauses [s].
+constexpr double kPause = 1.0;
+/// Of a viewer that does not read: what lies there is old before it is seen [bytes].
+constexpr int kSendBuffer = 64 << 10;
+/// New callers that are looked at in one tick.
+constexpr int kMostCallers = 16;
 
 /// Columns are the world's axes in RAS.
 math::Quaternion RotationRasWorld() {
@@ -66,36 +76,44 @@ math::Pose RasFromWorld(const math::Pose& X_world_tool) {
           RasFromWorld(X_world_tool.translation)};
 }
 
-IgtlServer::IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<device::TcpListener> listener)
-    : settings_(settings), listener_(std::move(listener)) {}
+IgtlServer::IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<device::TcpListener> listener,
+                       device::Clock& clock)
+    : settings_(settings), clock_(clock), listener_(std::move(listener)), last_call_(clock.Now()) {}
 
 core::Result<std::unique_ptr<IgtlServer>> IgtlServer::Make(const IgtlServerSettings& settings,
-                                                           std::span<const scene::SurfaceInfo> surfaces) {
-  auto listener = device::TcpListener::Make(settings.port, settings.is_local_only);
+                                                           std::span<const scene::SurfaceInfo> surfaces,
+                                                           device::Clock& clock) {
+  auto listener = device::TcpListener::Make(settings.port, settings.is_local_only, kSendBuffer);
   if (!listener) return listener.error();
-  std::unique_ptr<IgtlServer> server(new IgtlServer(settings, std::move(*listener)));
+  std::unique_ptr<IgtlServer> server(new IgtlServer(settings, std::move(*listener), clock));
   for (const scene::SurfaceInfo& surface : surfaces) {
     if (!surface.triangles.empty()) server->organs_.push_back(surface);
   }
   return server;
 }
 
-void IgtlServer::Accept(double time) {
-  while (std::unique_ptr<device::Transport> line = listener_->Accept()) {
+void IgtlServer::Accept() {
+  for (int i = 0; i < kMostCallers; ++i) {
+    Viewer caller;
+    caller.line = listener_->Accept();
+    if (caller.line == nullptr) return;
     if (viewers_.size() >= kMostViewers) {
-      // the slowest makes room; where all keep up, the newest caller is sent away
+      // who is behind longest makes room; where all keep up, the newest caller is sent away
       const auto slowest =
           std::min_element(viewers_.begin(), viewers_.end(),
                            [](const Viewer& a, const Viewer& b) { return a.last_level < b.last_level; });
-      if (time - slowest->last_level <= kBehind) continue;
+      if (slowest->Behind() <= kBehind) continue;
       viewers_.erase(slowest);
     }
-    viewers_.push_back({std::move(line), {}, time, time, false});
+    caller.judged_at = caller.last_level = serving_time_;
+    caller.taken_then = device::GetTcpReach(*caller.line);
+    caller.offered_then = offered_;
+    viewers_.push_back(std::move(caller));
   }
 }
 
 /// Sends what is left over, and throws away what a viewer says. A viewer that is gone loses its line.
-void IgtlServer::Serve(Viewer& viewer, double time) {
+void IgtlServer::Serve(Viewer& viewer) {
   std::array<char, 4096> ignored;
   device::IoResult heard;
   constexpr int kMostReads = 16;
@@ -103,22 +121,37 @@ void IgtlServer::Serve(Viewer& viewer, double time) {
   }
   const device::IoResult sent = viewer.line->Write(viewer.unsent);
   viewer.unsent.erase(0, sent.count);
-  if (sent.count > 0 || viewer.unsent.empty()) viewer.last_sent = time;
-  if (viewer.unsent.empty()) viewer.last_level = time;
-  if (heard.is_lost || sent.is_lost || time - viewer.last_sent > kPatience) viewer.line.reset();
+  viewer.sent += sent.count;
+  if (serving_time_ - viewer.judged_at >= kJudgePeriod) Judge(viewer);
+  if (heard.is_lost || sent.is_lost || viewer.Behind() > kPatience) viewer.line.reset();
+}
+
+/// Where the system does not tell what the far side takes, what its send buffer takes has to do.
+void IgtlServer::Judge(Viewer& viewer) {
+  const std::uint64_t reach = device::GetTcpReach(*viewer.line);
+  const std::uint64_t taken = reach > 0 ? reach : viewer.sent;
+  const std::uint64_t news = taken - std::min(taken, viewer.taken_then);
+  const bool is_stuck = news == 0 && !viewer.unsent.empty();
+  if (!is_stuck &&
+      static_cast<double>(news) >= kPartTaken * static_cast<double>(offered_ - viewer.offered_then))
+    viewer.last_level = serving_time_;
+  viewer.judged_at = serving_time_;
+  viewer.taken_then = taken;
+  viewer.offered_then = offered_;
 }
 
 void IgtlServer::Publish(const simulation::Snapshot& snapshot) {
-  const double time = snapshot.time;
+  const double time = snapshot.time, now = clock_.Now();
+  serving_time_ += std::min(now - last_call_, kPause);
+  last_call_ = now;
   // back at the first tick
-  if (next_tools_ > time + settings_.organ_period + settings_.tool_period) {
-    next_tools_ = next_organs_ = time;
-    for (Viewer& viewer : viewers_) viewer.last_sent = viewer.last_level = time;
-  }
-  Accept(time);
+  if (next_tools_ > time + settings_.organ_period + settings_.tool_period) next_tools_ = next_organs_ = time;
+  Accept();
   const bool has_tools = IsDue(time, settings_.tool_period, next_tools_);
   const bool has_organs = IsDue(time, settings_.organ_period, next_organs_);
-  std::string tools, organs;
+  const std::string tools = has_tools && !viewers_.empty() ? FormatTools(snapshot) : std::string();
+  offered_ += tools.size();
+  std::string organs;
   for (Viewer& viewer : viewers_) {
     // whole sets or none: what does not fit now is left out, the next one is newer
     if (viewer.unsent.empty() && (has_organs || !viewer.has_organs)) {
@@ -126,11 +159,8 @@ void IgtlServer::Publish(const simulation::Snapshot& snapshot) {
       viewer.unsent += organs;
       viewer.has_organs = true;
     }
-    if (has_tools && viewer.unsent.size() <= organs.size()) {
-      if (tools.empty()) tools = FormatTools(snapshot);
-      viewer.unsent += tools;
-    }
-    Serve(viewer, time);
+    if (viewer.unsent.size() <= organs.size()) viewer.unsent += tools;
+    Serve(viewer);
   }
   std::erase_if(viewers_, [](const Viewer& viewer) { return viewer.line == nullptr; });
 }

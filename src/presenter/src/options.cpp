@@ -153,7 +153,7 @@ void AddSeries(CLI::App& app, images::ImageSeriesOptions& series, std::string& a
       ->needs("--contours");
   app.add_option("--series", series.series,
                  "With --contours: which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 100000))
+      ->check(CLI::Range(1, 999999999))
       ->needs("--contours");
   app.add_option("--pattern", series.pattern,
                  "With --contours: only pictures with such names, where a folder holds several stacks: "

@@ -10,6 +10,7 @@
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/translate.h"
+#include "trocar/core/user_folder.h"
 
 namespace trocar::presenter {
 namespace {
@@ -75,7 +76,7 @@ void PatientDesk::Make(const std::string& name, const std::string& doing, Maker 
     const fs::path target = folder / name;
     std::error_code failure;
     if (!fs::exists(target / "patient.json", failure)) {
-      fs::create_directories(folder, failure);
+      failure = core::MakeFolders(folder);
       // a patient is there as a whole, or not at all
       const core::PartialPath part(target);
       core::Status made = maker(part.Path(), *work);

@@ -47,7 +47,7 @@ core::Status Draw(const anatomy::Patient& patient, const fs::path& path) {
       render::DrawPictures(figure.surfaces, figure.marks, {&camera, 1}, look, kWidth, kHeight);
   if (!pictures.ok()) return pictures.error();
   std::error_code ignored;
-  fs::create_directories(path.parent_path(), ignored);
+  ignored = core::MakeFolders(path.parent_path());
   return render::WritePng(path, pictures->front());
 }
 

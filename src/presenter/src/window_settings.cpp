@@ -88,7 +88,7 @@ core::Status SaveWindowSettings(const std::filesystem::path& path, const WindowS
     if (!settings.last_part.empty()) json["last"]["part"] = settings.last_part;
   }
   std::error_code ignored;
-  std::filesystem::create_directories(path.parent_path(), ignored);
+  ignored = core::MakeFolders(path.parent_path());
   return core::WriteFile(path,
                          json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }

@@ -11,6 +11,7 @@
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/translate.h"
+#include "trocar/core/user_folder.h"
 
 namespace trocar::presenter {
 namespace {
@@ -51,7 +52,7 @@ core::Status SaveSoundSettings(const std::filesystem::path& file, const sound::S
                                        {"muted", settings.is_muted},
                                        {"speech", settings.has_speech}};
   std::error_code ignored;
-  std::filesystem::create_directories(file.parent_path(), ignored);
+  ignored = core::MakeFolders(file.parent_path());
   return core::WriteFile(file, json.dump(2) + "\n");
 }
 

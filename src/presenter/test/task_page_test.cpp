@@ -58,8 +58,8 @@ TEST(TaskPages, HaveTheOperationAndItsPartsOnThePatientWithLevels) {
 TEST(TaskPages, SayOnesBestResultAtEachLevel) {
   TaskPage page = Load(TaskSection::kAll);
   centre::BestResults best;
-  best[{"peg_transfer", "normal"}] = {3, 2, 91.5, 84.0, true};
-  best[{"cholecystectomy", ""}] = {1, 1, std::nullopt, 600.0, false};
+  best[{"peg_transfer", "normal"}] = {3, 2, 0, 91.5, 84.0, true};
+  best[{"cholecystectomy", ""}] = {1, 1, 0, std::nullopt, 600.0, false};
   AddBestResults(best, page);
   int said = 0;
   for (const TaskPage::Group& group : page.groups) {

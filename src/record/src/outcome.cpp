@@ -2,7 +2,10 @@
 #include "trocar/record/outcome.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "trocar/core/json.h"
+#include "trocar/simulation/attempt_end.h"
 #include "trocar/training/critical_view.h"
 #include "trocar/training/injury.h"
 #include "trocar/training/operation_error.h"
@@ -58,6 +61,16 @@ ordered_json OutcomeOf(const OperationResult& result) {
           {"detached_share", result.facts.detached_share}};
 }
 
+std::optional<ordered_json> ReadObject(std::string_view outcome) {
+  auto parsed = core::ParseJson<ordered_json>(outcome, "the outcome", core::kSmallJson);
+  if (!parsed.ok() || !parsed->is_object()) return std::nullopt;
+  return std::move(*parsed);
+}
+
+std::string Written(const ordered_json& json) {
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
 }  // namespace
 
 std::string CalcOutcome(const simulation::Simulation& simulation) {
@@ -65,7 +78,48 @@ std::string CalcOutcome(const simulation::Simulation& simulation) {
   ordered_json json = {{"seconds", now.time}};
   if (const auto& task = simulation.GetScene().task) json["task"] = OutcomeOf(*task, now.task);
   if (const auto result = simulation.GetOperationResult()) json["operation"] = OutcomeOf(*result);
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return Written(json);
+}
+
+std::optional<OutcomeSummary> ReadOutcome(std::string_view outcome) {
+  using scene::TaskPhase;
+  const auto object = ReadObject(outcome);
+  if (!object) return std::nullopt;
+  const ordered_json& json = *object;
+  const auto field = [](const ordered_json& of, const char* key) {
+    const auto found = of.find(key);
+    return found == of.end() ? ordered_json() : *found;
+  };
+  OutcomeSummary summary;
+  const auto task = field(json, "task"), operation = field(json, "operation");
+  const auto phase = task.is_object() ? (field(task, "phase") == scene::PhaseName(TaskPhase::kCompleted)
+                                             ? TaskPhase::kCompleted
+                                             : TaskPhase::kRunning)
+                                      : TaskPhase::kNone;
+  const bool is_operation_completed = operation.is_object() && field(operation, "completed") == true;
+  summary.is_completed = simulation::HasCompleted(phase, is_operation_completed);
+  if (task.is_object()) {
+    if (const auto score = field(task, "score"); score.is_number()) summary.score = score.get<double>();
+  }
+  return summary;
+}
+
+CourseStep FindCourseStep(std::string_view outcome) {
+  const auto object = ReadObject(outcome);
+  if (!object) return {};
+  const auto course = object->find("course");
+  if (course == object->end() || !course->is_object()) return {};
+  const auto text = [&course](const char* key) {
+    const auto found = course->find(key);
+    return found != course->end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  return {text("course"), text("step")};
+}
+
+std::string WithCourseStep(std::string_view outcome, const CourseStep& step) {
+  ordered_json json = ReadObject(outcome).value_or(ordered_json::object());
+  json["course"] = {{"course", step.course}, {"step", step.step}};
+  return Written(json);
 }
 
 }  // namespace trocar::record

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "trocar/core/json.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/training/operation_error.h"
 
@@ -14,6 +16,15 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::array<const char*, 3> kKinds = {"scene", "task", "operation"};
+
+/// It holds the outcome as a text, with an escape for each of its quotes.
+constexpr core::JsonLimits kEndingLimits{4u << 20, 4, 100, 100, 2u << 20};
+
+/// \return null where the text is no JSON, or more than belongs here; neither is any part of a recording
+ordered_json Parse(std::string_view text, const core::JsonLimits& limits) {
+  auto json = core::ParseJson<ordered_json>(text, "", limits);
+  return json.ok() ? std::move(*json) : ordered_json();
+}
 
 bool ReadHex(const ordered_json& json, const char* key, std::uint64_t& value) {
   const auto found = json.find(key);
@@ -65,7 +76,7 @@ std::string WriteDescription(const Description& d) {
 }
 
 bool ReadDescription(std::string_view text, Description& d) {
-  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  const ordered_json json = Parse(text, core::kSmallJson);
   if (!json.is_object()) return false;
   std::string kind;
   if (!ReadText(json, "kind", kind)) return false;
@@ -94,7 +105,7 @@ std::string WriteEnding(const Ending& ending) {
 }
 
 bool ReadEnding(std::string_view text, Ending& ending) {
-  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  const ordered_json json = Parse(text, kEndingLimits);
   return json.is_object() && ReadCount(json, "ticks", ending.ticks) && ReadHex(json, "hash", ending.hash) &&
          ReadText(json, "outcome", ending.outcome);
 }
@@ -121,7 +132,7 @@ ordered_json PhaseJson(std::uint64_t tick, training::Phase phase) {
 }
 
 bool ReadEvents(std::string_view text, std::vector<EventMark>& events) {
-  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  const ordered_json json = Parse(text, {});
   if (!json.is_array()) return false;
   for (const ordered_json& entry : json) {
     EventMark event;

@@ -15,6 +15,7 @@
 
 #include "chunk.h"
 #include "recording_json.h"
+#include "trocar/core/json.h"
 
 namespace trocar::record {
 namespace {
@@ -157,8 +158,9 @@ std::vector<RecordingSummary> ListRecordings(const fs::path& folder) {
 }
 
 std::string DescribeOutcome(const std::string& outcome) {
-  const ordered_json json = ordered_json::parse(outcome, nullptr, false);
-  if (!json.is_object()) return {};
+  const auto parsed = core::ParseJson<ordered_json>(outcome, "the outcome", core::kSmallJson);
+  if (!parsed.ok() || !parsed->is_object()) return {};
+  const ordered_json& json = *parsed;
   if (const auto task = json.find("task"); task != json.end() && task->is_object()) {
     const auto phase = task->find("phase");
     std::string text = phase != task->end() && phase->is_string() ? phase->get<std::string>() : "";

@@ -189,13 +189,16 @@ core::Result<bool> Replay::FillGap(std::uint64_t tick, double seconds, const GoO
   return index_->Has(Tick());
 }
 
-core::Status Replay::CompareAll(const std::function<bool(double)>& progress) {
+core::Status Replay::CompareAll(const std::function<bool(double)>& progress, const Watch& watch) {
   const auto count = static_cast<double>(std::max<std::size_t>(1, recording_->inputs.size()));
   std::size_t next_frame = 0;
   const auto& frames = recording_->KeyframeTicks();
   std::vector<std::byte> state;
+  if (watch) watch(simulation_.GetSnapshot(), {});
   while (!IsAtEnd()) {
+    const Input& input = recording_->inputs[Tick() - recording_->FirstTick()];
     Step();
+    if (watch) watch(simulation_.GetSnapshot(), input);
     if (progress && Tick() % kProgressTicks == 0 &&
         !progress(static_cast<double>(Tick() - recording_->FirstTick()) / count))
       return core::Error{core::ErrorCode::kCancelled, "the recording was not compared to its end"};
@@ -210,13 +213,20 @@ core::Status Replay::CompareAll(const std::function<bool(double)>& progress) {
   return {};
 }
 
-core::Result<Verification> Replay::Verify(const std::function<bool(double)>& progress) {
+bool Replay::IsEndingSame() const {
+  TROCAR_ASSERT(IsAtEnd());
+  const auto& ending = recording_->ending;
+  return !ending || (ending->ticks == Tick() && ending->hash == simulation_.Hash() &&
+                     ending->outcome == CalcOutcome(simulation_));
+}
+
+core::Result<Verification> Replay::Verify(const std::function<bool(double)>& progress, const Watch& watch) {
   if (const auto restored = simulation_.Restore(*first_); !restored.ok()) return restored.error();
   next_hash_ = 0;
   divergence_.reset();
   // to compare is not to look: nothing is kept
   const std::uint64_t visit_ticks = std::exchange(visit_ticks_, 0);
-  const core::Status compared = CompareAll(progress);
+  const core::Status compared = CompareAll(progress, watch);
   visit_ticks_ = visit_ticks;
   if (!compared.ok()) return compared.error();
   Verification verification;
@@ -227,7 +237,7 @@ core::Result<Verification> Replay::Verify(const std::function<bool(double)>& pro
     ++verification.hashes;
     if (const std::uint64_t hash = simulation_.Hash(); hash != ending->hash && !divergence_)
       divergence_ = Divergence{Tick(), ending->hash, hash};
-    verification.is_outcome_same = verification.outcome == ending->outcome;
+    verification.is_outcome_same = verification.outcome == ending->outcome && ending->ticks == Tick();
   }
   verification.divergence = divergence_;
   return verification;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/record/storage.h"
+#include "trocar/core/user_folder.h"
 
 #include <fcntl.h>
 #include <sys/statvfs.h>
@@ -75,7 +76,7 @@ class File final : public Storage {
 
 core::Result<std::unique_ptr<Storage>> MakeFile(const fs::path& path) {
   std::error_code failure;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
+  if (path.has_parent_path()) failure = core::MakeFolders(path.parent_path());
   if (failure) return Unwritable(path.parent_path(), failure.message());
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_APPEND, 0644);
   if (descriptor < 0 && errno == EEXIST)

@@ -11,6 +11,7 @@
 
 #include "trocar/instrument/tool.h"
 #include "trocar/record/replay.h"
+#include "trocar/simulation/attempt_end.h"
 #include "trocar/training/injury.h"
 #include "trocar/training/operation_error.h"
 
@@ -350,12 +351,12 @@ training::AttemptTrace TraceBuilder::Calc() const {
     trace.stones_spilled += stone.place != StonePlace::kInside;
     trace.stones_lost += stone.place == StonePlace::kSpilled || stone.place == StonePlace::kHeld;
   }
+  const bool is_completed = simulation::HasCompleted(last.phase, last.is_completed);
   if (c.task) {
-    trace.outcome = {std::string(scene::PhaseName(last.phase)), last.phase == scene::TaskPhase::kCompleted,
-                     last.score, last.task_time};
+    trace.outcome = {std::string(scene::PhaseName(last.phase)), is_completed, last.score, last.task_time};
   } else if (trace.is_operation) {
-    trace.outcome.is_completed = last.is_completed;
-    trace.outcome.phase = last.is_completed ? "completed" : "unfinished";
+    trace.outcome.is_completed = is_completed;
+    trace.outcome.phase = is_completed ? "completed" : "unfinished";
   }
   return trace;
 }

@@ -278,11 +278,13 @@ void RehearsalPresenter::TakeSeries(core::Result<std::vector<images::ListedSerie
   }
   listed_ = std::move(*listed);
   for (const images::ListedSeries& one : listed_) page_.series.push_back(Describe(one));
-  // the one that was looked at before, or the only one
+  // the one that was looked at before, or the only one that is a volume
+  const auto volumes =
+      std::count_if(listed_.begin(), listed_.end(), [](const auto& one) { return one.is_volume; });
   for (std::size_t i = 0; i < listed_.size(); ++i) {
     const images::ListedSeries& one = listed_[i];
     const bool is_same = one.path == state_.series && one.options.series == state_.options.series;
-    const bool is_only = state_.series.empty() && listed_.size() == 1 && !one.problem;
+    const bool is_only = state_.series.empty() && volumes == 1 && one.is_volume && !one.problem;
     if (!is_same && !is_only) continue;
     if (is_only) return ChooseSeries(i);
     page_.chosen_series = i;

@@ -137,13 +137,14 @@ core::Result<LabelMap> ReadLabelMap(const fs::path& file, int liver, int gallbla
   const auto found = anatomy::FindLabels(*volume, options);
   if (found.ok()) {
     map.liver = found->liver, map.gallbladder = found->gallbladder;
+    anatomy::JoinParts(*found, *volume);
   } else {
     // what FindLabels says names options of the command line
-    map.problem = Error{
-        found.error().code,
-        "liver and gallbladder are not found among the labels of this map, neither by their names nor by "
-        "the usual numbers; say which label is which. A map without a gallbladder, as after its removal "
-        "or of the chest, is of no use here: take another one"};
+    map.problem = Error{found.error().code,
+                        "which labels of this map are liver and gallbladder is not certain by their names, "
+                        "their numbers, sizes and "
+                        "places; say which label is which. A map without a gallbladder, as after its removal "
+                        "or of the chest, is of no use here: take another one"};
     map.liver = liver, map.gallbladder = gallbladder;
   }
   auto aligned = images::AlignLabels(std::move(*volume), series);
@@ -227,6 +228,14 @@ std::vector<RehearsalLine> DescribeCheck(const RehearsedPatient& built) {
   if (!placed.empty())
     lines.push_back({Kind::kPlain,
                      core::TranslateWith("From the template, because nothing outlines them: {1}", {placed})});
+  if (!built.patient.labels.empty()) lines.push_back({Kind::kTitle, core::Translate("Labels")});
+  for (const anatomy::SourceLabel& label : built.patient.labels) {
+    if (!roles::FindRole<roles::OrganRole>(label.meaning)) continue;
+    lines.push_back(
+        {Kind::kPlain, core::TranslateWith("Label {1} was taken for the {2}: {3}.",
+                                           {std::to_string(label.label), core::Translate(label.meaning),
+                                            core::TranslateComposed(label.reason)})});
+  }
   if (built.notes.empty()) return lines;
   lines.push_back({Kind::kTitle, core::Translate("Notes")});
   for (const std::string& note : built.notes) lines.push_back({Kind::kPlain, core::TranslateComposed(note)});

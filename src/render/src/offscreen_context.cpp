@@ -4,8 +4,10 @@
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +26,21 @@ core::Error TooOld(const std::string& version) {
   return {core::ErrorCode::kGraphicsTooOld,
           "OpenGL here is " + version + ", 3.3 is needed; update the graphics driver, or unset " +
               "MESA_GL_VERSION_OVERRIDE, or draw in software with LIBGL_ALWAYS_SOFTWARE=1"};
+}
+
+/// Process that was the first, here or among this one's parents, to ask for graphics; 0 before that.
+std::atomic<::pid_t> first_process{0};
+
+bool IsFork() noexcept {
+  const ::pid_t first = first_process.load();
+  return first != 0 && first != ::getpid();
+}
+
+core::Error NotInForks() {
+  return {core::ErrorCode::kEnvironmentState,
+          "this process is a fork of one that has begun to draw, and graphics drivers do not work in forks; "
+          "start "
+          "processes that draw with \"spawn\" or \"forkserver\", or fork before the first picture"};
 }
 
 bool HasWord(const char* words, std::string_view word) {
@@ -83,7 +100,7 @@ struct OffscreenContext::Content {
   Content& operator=(const Content&) = delete;
   // the display stays initialised: EGL shares it between all contexts of the process
   ~Content() {
-    if (context == EGL_NO_CONTEXT) return;
+    if (context == EGL_NO_CONTEXT || IsFork()) return;
     if (eglGetCurrentContext() == context) {
       eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
@@ -99,11 +116,14 @@ OffscreenContext& OffscreenContext::operator=(OffscreenContext&&) noexcept = def
 OffscreenContext::~OffscreenContext() = default;
 
 core::Result<OffscreenContext> OffscreenContext::Make() {
+  if (IsFork()) return NotInForks();
   // epoxy ends the program where the library is missing, so look before it does; the handle is kept on
   // purpose
   if (::dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) == nullptr)
     return NoGraphics("libEGL.so.1 is not installed");
 
+  ::pid_t none = 0;
+  first_process.compare_exchange_strong(none, ::getpid());
   std::string why = "EGL offers no display that works without a window system";
   std::string old_version;
   for (const EGLDisplay display : FindDisplays()) {
@@ -155,11 +175,13 @@ core::Result<OffscreenContext> OffscreenContext::Make() {
 }
 
 core::Status OffscreenContext::MakeCurrent() {
+  if (IsFork()) return NotInForks();
   if (!content_->MakeCurrent()) return NoGraphics("the context is current on another thread");
   return {};
 }
 
 void OffscreenContext::Release() {
+  if (IsFork()) return;
   eglMakeCurrent(content_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 

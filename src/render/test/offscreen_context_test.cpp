@@ -2,10 +2,13 @@
 #include "trocar/render/offscreen_context.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 namespace trocar::render {
 namespace {
@@ -30,6 +33,28 @@ TEST(OffscreenContext, MovesToAnotherThreadAfterRelease) {
     EXPECT_TRUE(context->MakeCurrent().ok());
     context->Release();
   }).join();
+  EXPECT_TRUE(context->MakeCurrent().ok());
+}
+
+// The driver's threads do not come along, and what they hold is held for ever.
+TEST(OffscreenContext, IsRefusedInForks) {
+  auto context = OffscreenContext::Make();
+  ASSERT_TRUE(context.ok()) << context.error().Text();
+  context->Release();
+  const ::pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(30);
+    const auto is_refused = [](const auto& result) {
+      return !result.ok() && result.error().code == core::ErrorCode::kEnvironmentState;
+    };
+    const bool holds = is_refused(context->MakeCurrent()) && is_refused(OffscreenContext::Make());
+    context->Release();
+    { const OffscreenContext goes(std::move(*context)); }
+    ::_exit(holds ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
   EXPECT_TRUE(context->MakeCurrent().ok());
 }
 

@@ -106,6 +106,12 @@ Tiles::Tile ErrorTile(const AttemptReport& report) {
 Section MakeSummary(const AttemptReport& report) {
   Section section{core::Translate("Result"), {}};
   section.blocks.emplace_back(Paragraph{report.outcome, report.is_completed ? Tone::kGood : Tone::kCaution});
+  if (report.facts.is_as_recorded == false) {
+    section.blocks.emplace_back(Paragraph{
+        core::Translate("The file of this recording claims another outcome. This report is of what was "
+                        "computed from its inputs; the claim is refused."),
+        Tone::kBad});
+  }
   Tiles tiles;
   tiles.tiles.push_back({core::Translate("Time"),
                          FormatClock(std::round(report.task_seconds.value_or(report.seconds))),

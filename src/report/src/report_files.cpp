@@ -75,6 +75,10 @@ std::vector<FieldMeaning> FixedFields() {
       {"attempt.player", "who or what moved the hands", "", own},
       {"attempt.program", "version of Trocar", "", own},
       {"attempt.recording", "file name of the recording", "", own},
+      {"attempt.as_recorded",
+       "whether the replay came to the outcome that the recording's file says; null where it was not read "
+       "from a file",
+       "", own},
       {"outcome.ending",
        "\"completed\", \"time_over\", \"error\" (one that ends the task), \"left\", or \"no_task\"", "", own},
       {"outcome.completed", "whether the task or operation was brought to its end", "", own},
@@ -135,16 +139,17 @@ std::string FormatDictionaryCsv() {
 std::string FormatCsv(const AttemptReport& report) {
   const AttemptFacts& facts = report.facts;
   std::string csv =
-      "person,task,level,patient,seed,started,program,metric,name,hand,phase,tool,value,unit\r\n";
+      "person,task,level,patient,seed,started,program,metric,name,hand,phase,tool,value,unit,as_recorded\r\n";
   std::string of;
   for (const std::string& text : {facts.person, facts.task_key, facts.level, facts.patient})
     of += QuoteCsv(text) + ",";
   of += std::to_string(facts.seed) + "," + QuoteCsv(facts.started) + "," + QuoteCsv(facts.program) + ",";
+  const std::string as_recorded = !facts.is_as_recorded ? "" : *facts.is_as_recorded ? "true" : "false";
   const auto add = [&](const std::string& metric, const std::string& name, const MetricRow& row, double value,
                        const std::string& unit) {
     csv += of + QuoteCsv(metric) + "," + QuoteCsv(name) + "," + QuoteCsv(row.hand) + "," +
            QuoteCsv(row.phase) + "," + QuoteCsv(row.tool) + "," + AllDigits(value) + "," + QuoteCsv(unit) +
-           "\r\n";
+           "," + as_recorded + "\r\n";
   };
   for (const MetricRow& row : report.metrics)
     add(row.id, row.name, row, SiValue(row, row.value), SiUnit(row));
@@ -155,16 +160,18 @@ std::string FormatJson(const AttemptReport& report) {
   const AttemptFacts& facts = report.facts;
   ordered_json json = {
       {"format", "trocar-report"}, {"version", 1}, {"disclaimer", training::MetricsDisclaimer()}};
-  json["attempt"] = {{"person", OptionalText(facts.person)},
-                     {"task", facts.task},
-                     {"task_key", facts.task_key},
-                     {"level", OptionalText(facts.level)},
-                     {"patient", OptionalText(facts.patient)},
-                     {"seed", facts.seed},
-                     {"started", OptionalText(facts.started)},
-                     {"player", OptionalText(facts.player)},
-                     {"program", facts.program},
-                     {"recording", OptionalText(facts.recording)}};
+  json["attempt"] = {
+      {"person", OptionalText(facts.person)},
+      {"task", facts.task},
+      {"task_key", facts.task_key},
+      {"level", OptionalText(facts.level)},
+      {"patient", OptionalText(facts.patient)},
+      {"seed", facts.seed},
+      {"started", OptionalText(facts.started)},
+      {"player", OptionalText(facts.player)},
+      {"program", facts.program},
+      {"recording", OptionalText(facts.recording)},
+      {"as_recorded", facts.is_as_recorded ? ordered_json(*facts.is_as_recorded) : ordered_json()}};
   ordered_json& outcome = json["outcome"] = {
       {"ending", NameOf(report.ending)}, {"completed", report.is_completed}, {"time_s", report.seconds}};
   if (report.score && report.is_completed) {

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/user_folder.h"
 
@@ -153,7 +154,9 @@ core::Status WriteSynced(const fs::path& path, const std::string& content) {
   std::error_code failure;
   const fs::path folder = path.parent_path();
   // a new folder's own entry lies in its parent
-  if (fs::create_directories(folder, failure) && folder.has_parent_path()) {
+  const bool is_new = !fs::exists(folder, failure);
+  failure = core::MakeFolders(folder);
+  if (is_new && folder.has_parent_path()) {
     if (auto status = SyncPath(folder.parent_path(), O_RDONLY | O_DIRECTORY); !status.ok()) return status;
   }
   const fs::path part = path.string() + ".part";
@@ -196,9 +199,21 @@ std::vector<fs::path> ListFiles(const fs::path& folder) {
 std::optional<XapiStatement> ReadStatement(const fs::path& path) {
   auto text = core::ReadFile(path, kMostBytes);
   if (!text.ok()) return std::nullopt;
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
-  if (!json.is_object() || !json.contains("id") || json["id"] != path.stem().string()) return std::nullopt;
+  const auto json = core::ParseJson<nlohmann::json>(*text, path.string(), core::kSmallJson);
+  if (!json.ok() || !json->is_object() || !json->contains("id") || (*json)["id"] != path.stem().string())
+    return std::nullopt;
   return XapiStatement{path.stem().string(), std::move(*text)};
+}
+
+/// The pseudonym that a statement is about; empty where it names none.
+std::string FindAccountName(std::string_view statement) {
+  const auto json = core::ParseJson<nlohmann::json>(statement, "", core::kSmallJson);
+  const nlohmann::json* at = json.ok() ? &*json : nullptr;
+  for (const char* key : {"actor", "account", "name"}) {
+    if (at == nullptr || !at->is_object() || !at->contains(key)) return {};
+    at = &at->at(key);
+  }
+  return at->is_string() ? at->get<std::string>() : std::string();
 }
 
 }  // namespace
@@ -212,6 +227,11 @@ core::Result<std::vector<XapiStatement>> MakeStatements(const AttemptReport& rep
     return core::Error{
         core::ErrorCode::kUsage,
         "the accounts' home page must be an address such as https://training.hospital.example"};
+  if (facts.is_as_recorded == false)
+    return core::Error{
+        core::ErrorCode::kRecordingInvalid,
+        "the recording's file claims another outcome than its replay comes to, and no statement "
+        "is made of it; trocar replay --verify shows both"};
   const std::string attempt = settings.home_page + '\n' + facts.person + '\n' + facts.task_key + '\n' +
                               facts.level + '\n' + std::to_string(facts.seed) + '\n' + facts.started + '\n' +
                               facts.recording;
@@ -286,14 +306,19 @@ core::Result<std::size_t> XapiQueue::Erase(const std::string& pseudonym) {
   std::size_t count = 0;
   std::error_code failure;
   for (const fs::path& folder : {folder_, folder_ / "refused"}) {
+    // what a program that was killed left half written
+    for (const auto& entry : fs::directory_iterator(folder, failure)) {
+      if (entry.path().extension() != ".part") continue;
+      const auto text = core::ReadFile(entry.path(), kMostBytes);
+      if (text.ok() && text->find(pseudonym) == std::string::npos) continue;
+      fs::remove(entry.path(), failure);
+      if (failure) return Unwritable(entry.path());
+      ++count;
+    }
     for (const fs::path& path : ListFiles(folder)) {
       const auto text = core::ReadFile(path, kMostBytes);
       if (!text.ok()) return text.error();
-      const auto json = nlohmann::json::parse(*text, nullptr, false);
-      const auto name = !json.is_object() ? nlohmann::json()
-                                          : json.value(nlohmann::json::json_pointer("/actor/account/name"),
-                                                       nlohmann::json());
-      if (name != pseudonym) continue;
+      if (FindAccountName(*text) != pseudonym) continue;
       fs::remove(path, failure);
       if (failure) return Unwritable(path);
       fs::remove(fs::path(path).replace_extension(".txt"), failure);

@@ -31,15 +31,13 @@ OperationLevel ReadLevel(const core::JsonView& view) {
 
 core::Result<core::JsonDocument> ParsePatched(const std::string& text, const std::string& source,
                                               const std::string& patch) {
-  // both have been found to be JSON before they are put together
-  auto written = core::JsonDocument::Parse(text, source);
-  if (!written.ok() || patch.empty()) return written;
-  auto json = nlohmann::json::parse(text, nullptr, false);
-  const auto changes = nlohmann::json::parse(patch, nullptr, false);
-  if (changes.is_discarded())
-    return core::Error{core::ErrorCode::kJsonSyntax, source + ": what a level changes is no JSON"};
-  json.merge_patch(changes);
-  return core::JsonDocument::Parse(json.dump(), source);
+  if (patch.empty()) return core::JsonDocument::Parse(text, source);
+  auto json = core::ParseJson<nlohmann::json>(text, source);
+  if (!json.ok()) return json.error();
+  const auto changes = core::ParseJson<nlohmann::json>(patch, source + ", what a level changes");
+  if (!changes.ok()) return changes.error();
+  json->merge_patch(*changes);
+  return core::JsonDocument::Parse(json->dump(), source);
 }
 
 core::Result<core::JsonDocument> ReadPatched(const std::filesystem::path& path, const std::string& patch) {
@@ -58,7 +56,8 @@ core::Result<std::vector<OperationLevel>> ReadOperationLevels(const std::filesys
   if (root.Text("format") != "trocar-operation-levels")
     root.Complain("format must be \"trocar-operation-levels\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  const auto json = core::ParseJson<nlohmann::json>(*text, path.string());
+  if (!json.ok()) return json.error();
   std::vector<OperationLevel> levels;
   bool has_normal = false;
   for (const core::JsonView& view : root.Array("levels")) {
@@ -66,7 +65,7 @@ core::Result<std::vector<OperationLevel>> ReadOperationLevels(const std::filesys
     for (const OperationLevel& other : levels) {
       if (other.key == level.key) view.Complain("there are two levels \"" + level.key + "\"");
     }
-    const nlohmann::json& node = json["levels"][levels.size()];
+    const nlohmann::json& node = (*json)["levels"][levels.size()];
     if (node.is_object() && node.contains("scene")) level.scene_patch = node["scene"].dump();
     if (node.is_object() && node.contains("parameters")) level.parameters_patch = node["parameters"].dump();
     if (level.key == kNormalLevel) {

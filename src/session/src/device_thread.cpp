@@ -21,6 +21,15 @@ namespace {
 constexpr double kReadPeriod = 0.002;  // [s]
 constexpr double kRetryPeriod = 0.5;   // [s]
 constexpr double kNap = 0.02;          // longest wait that a stop has to bear [s]
+constexpr double kLookPeriod = 1.0;    // between two looks at what the driver held back [s]
+
+/// What came and does not count, in the person's language; empty where all does.
+std::string HeldBackText(const device::Driver& driver) {
+  std::string text;
+  for (const std::string& sentence : driver.DescribeHeldBack())
+    text += (text.empty() ? "" : "; ") + core::TranslateComposed(sentence);
+  return text;
+}
 
 }  // namespace
 
@@ -41,6 +50,8 @@ struct DeviceThread::Content {
   device::HandButtons buttons;
   core::NewestSlot<DeviceReport> slot;
   DeviceReport report;
+  double next_look = 0;       // at what is held back [s]
+  std::size_t held_back = 0;  // reasons that were told
   std::atomic<bool> is_stopping{false};
   std::thread thread;
 
@@ -78,6 +89,7 @@ struct DeviceThread::Content {
       report.raw_jaws[static_cast<std::size_t>(tool)] = jaws->GetRaw(tool);
   }
   bool Connect();
+  void TellHeldBack();
   void Run();
 };
 
@@ -89,6 +101,7 @@ bool DeviceThread::Content::Connect() {
     if (!done) (void)driver->Cleanup();
   }
   const bool was_lost = report.losses > 0;
+  held_back = 0;
   if (done) {
     Say(DeviceReport::Phase::kRunning,
         core::TranslateWith(was_lost ? core::Mark("{1} is connected again") : core::Mark("{1} is connected"),
@@ -98,6 +111,19 @@ bool DeviceThread::Content::Connect() {
         core::ShownText(done.error()) + core::Translate("; trying again"));
   }
   return done.ok();
+}
+
+/// Once for each new reason; their counts change all the time.
+void DeviceThread::Content::TellHeldBack() {
+  const double now = device::SystemClock().Now();
+  if (now < next_look) return;
+  next_look = now + kLookPeriod;
+  const std::size_t reasons = driver->DescribeHeldBack().size();
+  if (reasons > held_back) {
+    Say(report.phase, core::TranslateWith("{1} is connected, but not all that it sends counts: {2}",
+                                          {driver->GetName(), HeldBackText(*driver)}));
+  }
+  held_back = reasons;
 }
 
 void DeviceThread::Content::Run() {
@@ -114,6 +140,7 @@ void DeviceThread::Content::Run() {
     switch (status) {
       case device::ReadStatus::kFresh:
       case device::ReadStatus::kUnchanged:
+        TellHeldBack();
         if (!is_fresh && !has_acted) break;
         report.reads += is_fresh ? 1 : 0;
         report.acts = buttons.Acts();
@@ -127,9 +154,13 @@ void DeviceThread::Content::Run() {
         report.acts = buttons.Acts();
         report.sensors = {};
         report.raw_jaws = {};
-        Say(DeviceReport::Phase::kLost,
-            core::ShownText(core::Error{core::ErrorCode::kDeviceLost,
-                                        driver->GetName() + " was lost; check plug and power"}));
+        {
+          const std::string held = HeldBackText(*driver);
+          Say(DeviceReport::Phase::kLost,
+              core::ShownText(core::Error{core::ErrorCode::kDeviceLost,
+                                          driver->GetName() + " was lost; check plug and power"}) +
+                  (held.empty() ? "" : "; ") + held);
+        }
         Nap(kRetryPeriod);
         break;
     }

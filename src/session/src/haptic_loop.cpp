@@ -107,7 +107,7 @@ struct HapticLoop::Content {
   }
 };
 
-/// Opens the device and gives its wires to the supervisor. Not real-time safe.
+/// Opens the device and gives its wires, or the processes that hold it, to the supervisor. Not real-time safe.
 core::Status HapticLoop::Content::Connect() {
   if (core::Status done = driver->Configure(); !done) return done;
   if (core::Status done = driver->Activate(); !done) {
@@ -116,14 +116,14 @@ core::Status HapticLoop::Content::Connect() {
   }
   if (!supervisor) return {};
   supervisor->ForgetWires();
-  for (int c = 0; c < driver->GetChannelCount(); ++c) {
-    if (core::Status done = supervisor->AddWire(driver->GetSupervisedWire(c)); !done) {
-      static_cast<void>(driver->Deactivate());
-      static_cast<void>(driver->Cleanup());
-      return done;
-    }
+  core::Status done = supervisor->AddLibrary(driver->GetSupervisedLibrary());
+  for (int c = 0; c < driver->GetChannelCount() && done; ++c)
+    done = supervisor->AddWire(driver->GetSupervisedWire(c));
+  if (!done) {
+    static_cast<void>(driver->Deactivate());
+    static_cast<void>(driver->Cleanup());
   }
-  return {};
+  return done;
 }
 
 void HapticLoop::Content::Run() noexcept {

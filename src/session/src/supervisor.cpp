@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -8,6 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -17,6 +17,8 @@
 #include "supervisor_watch.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/real_time.h"
+#include "trocar/device/file_messages.h"
+#include "trocar/device/library_guard.h"
 #include "trocar/session/supervisor_link.h"
 
 namespace trocar::session {
@@ -26,6 +28,8 @@ namespace {
 constexpr int kPriorityAboveLowest = 20;
 constexpr int kLastWords = 3;  // zero frames after the other end has closed
 constexpr timespec kBetweenLastWords{0, 2'000'000};
+/// Between two looks at the processes of a maker's library [ns].
+constexpr std::int64_t kLibraryLook = 1'000'000;
 
 struct Wire {
   int file = -1;
@@ -35,6 +39,7 @@ struct Wire {
 struct Supervisor {
   std::array<Wire, kMaxWires> room;
   std::size_t wire_count = 0;
+  device::LibraryGuard library;
 
   std::span<const Wire> Wires() const noexcept { return std::span(room).first(wire_count); }
 
@@ -48,32 +53,32 @@ struct Supervisor {
   /// Takes what the other end sent. Returns false once it has closed.
   bool Receive(int socket) noexcept {
     for (;;) {
-      WireMessage message;
-      iovec part{&message, sizeof message};
-      alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
-      msghdr header{};
-      header.msg_iov = &part;
-      header.msg_iovlen = 1;
-      header.msg_control = control;
-      header.msg_controllen = sizeof control;
-      const ssize_t size = ::recvmsg(socket, &header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-      if (size < 0) return errno == EAGAIN;
-      if (size == 0) return false;
-      const cmsghdr* carried = CMSG_FIRSTHDR(&header);
-      if (carried == nullptr || carried->cmsg_type != SCM_RIGHTS) {
+      alignas(WireMessage) std::array<char, kLongestMessage> bytes;
+      const device::FileMessage got = device::ReceiveFiles(socket, bytes, MSG_DONTWAIT);
+      if (got.size < 0) return errno == EAGAIN;
+      if (got.size == 0) return false;
+      const std::span files(got.files, got.file_count);
+      if (files.empty()) {
         for (const Wire& wire : Wires()) ::close(wire.file);
         wire_count = 0;
-        continue;
+        library.Forget();
+      } else if (files.size() == 1) {
+        TakeWire(files[0], std::span(bytes).first(static_cast<std::size_t>(got.size)));
+      } else {
+        if (files.size() % 2 == 0) library.Take({bytes.data(), static_cast<std::size_t>(got.size)}, files);
+        device::CloseFiles(files);
       }
-      int file = -1;
-      std::memcpy(&file, CMSG_DATA(carried), sizeof file);
-      if (size != sizeof message || message.size > device::SupervisedWire::kMaxBytes ||
-          wire_count == room.size()) {
-        ::close(file);
-        continue;
-      }
-      room[wire_count++] = {file, message};
     }
+  }
+  void TakeWire(int file, std::span<const char> bytes) noexcept {
+    WireMessage message;
+    if (bytes.size() == sizeof message) std::memcpy(&message, bytes.data(), sizeof message);
+    if (bytes.size() != sizeof message || message.size > device::SupervisedWire::kMaxBytes ||
+        wire_count == room.size()) {
+      ::close(file);
+      return;
+    }
+    room[wire_count++] = {file, message};
   }
 
   void SayLastWords() noexcept {
@@ -110,10 +115,13 @@ int RunSupervisor(int socket, int page) {
   SupervisorWatch watch;
   for (;;) {
     pollfd watched{socket, POLLIN, 0};
-    const timespec sleep{0, static_cast<long>(watch.CalcSleep(core::NowNanoseconds()))};
+    std::int64_t wait = watch.CalcSleep(core::NowNanoseconds());
+    if (supervisor.library.IsOn()) wait = std::min(wait, kLibraryLook);
+    const timespec sleep{0, static_cast<long>(wait)};
     ::ppoll(&watched, 1, &sleep, nullptr);
     if (watched.revents != 0 && !supervisor.Receive(socket)) {
       supervisor.SayLastWords();
+      supervisor.library.SeeOut();
       return 0;
     }
     shared.supervisor_beats.fetch_add(1, std::memory_order_relaxed);
@@ -121,6 +129,7 @@ int RunSupervisor(int socket, int page) {
     // told first: a simulator that wakes now knows that its force has been taken away
     shared.trips.store(watch.CountTrips(), std::memory_order_release);
     if (is_silent) supervisor.SendZero();
+    supervisor.library.Look(core::NowNanoseconds());
   }
 }
 

@@ -5,11 +5,14 @@
 
 #include <cerrno>
 #include <cstring>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "supervisor_protocol.h"
 #include "trocar/core/beat_watch.h"
 #include "trocar/device/companion.h"
+#include "trocar/device/file_messages.h"
 
 namespace trocar::session {
 namespace {
@@ -57,20 +60,16 @@ core::Status SupervisorLink::AddWire(const device::SupervisedWire& wire) {
   message.size = static_cast<std::uint32_t>(wire.size);
   message.is_closed_after = wire.is_closed_after ? 1 : 0;
   std::memcpy(message.zero_frame, wire.zero_frame.data(), wire.size);
-  iovec part{&message, sizeof message};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-  msghdr header{};
-  header.msg_iov = &part;
-  header.msg_iovlen = 1;
-  header.msg_control = control;
-  header.msg_controllen = sizeof control;
-  cmsghdr* carried = CMSG_FIRSTHDR(&header);
-  carried->cmsg_level = SOL_SOCKET;
-  carried->cmsg_type = SCM_RIGHTS;
-  carried->cmsg_len = CMSG_LEN(sizeof(int));
-  std::memcpy(CMSG_DATA(carried), &wire.file, sizeof(int));
-  if (::sendmsg(content_->companion.Socket(), &header, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof message))
+  const std::string_view bytes(reinterpret_cast<const char*>(&message), sizeof message);
+  if (!device::SendFiles(content_->companion.Socket(), bytes, std::span(&wire.file, 1)))
     return Fail(std::string("the supervisor takes no wire (") + std::strerror(errno) + ")");
+  return {};
+}
+
+core::Status SupervisorLink::AddLibrary(const device::SupervisedLibrary& library) {
+  if (library.files.empty()) return {};
+  if (!device::SendFiles(content_->companion.Socket(), library.request, library.files))
+    return Fail(std::string("the supervisor takes no library (") + std::strerror(errno) + ")");
   return {};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 
 #include "trocar/device/force_driver.h"
@@ -17,7 +18,8 @@ struct SupervisorPage {
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-/// Travels with the wire's descriptor; without one it means: forget the wires.
+/// Travels with the wire's descriptor. Without one it means: forget wires and library. A library's request travels with two
+/// descriptors or four (device::SupervisedLibrary).
 struct WireMessage {
   std::uint32_t size = 0;
   std::uint8_t is_closed_after = 0;
@@ -25,5 +27,7 @@ struct WireMessage {
 };
 
 inline constexpr int kMaxWires = 8;
+inline constexpr std::size_t kLongestMessage = 4096;
+static_assert(sizeof(WireMessage) < kLongestMessage);
 
 }  // namespace trocar::session

@@ -24,8 +24,11 @@ using Got = ForceWire::Got;
 /// moment it comes to be are of the same tick.
 class FaultBench {
  public:
-  explicit FaultBench(WireKind kind) : wire(kind) {
+  explicit FaultBench(WireKind kind, double max_force = 3.3) : push(0.6 * max_force), wire(kind) {
     device::SimulatedForceSettings simulated;
+    simulated.limits = device::MakeTouchLimits();
+    simulated.limits.max_force = max_force;
+    simulated.limits.max_continuous_force = max_force;
     simulated.wire = wire.Host();
     simulated.path = [this](int, double) {
       Feed();
@@ -74,6 +77,7 @@ class FaultBench {
   void SpoilForce() { wants_bad = true; }
   std::int64_t Spoiled() const { return spoiled; }  ///< when [ns]
 
+  std::atomic<double> push;  ///< of the tissue [N]
   ForceWire wire;
   HapticLink link;
   device::SimulatedForceDevice* device = nullptr;
@@ -87,7 +91,7 @@ class FaultBench {
     haptics::LocalPatch& patch = link.patches[kRight].Back();
     patch.kind = haptics::LocalPatch::Kind::kLinear;
     patch.is_healthy = true;
-    patch.force = {is_pressing ? 2.0 : 0.0, 0, 0};
+    patch.force = {is_pressing ? push.load() : 0.0, 0, 0};
     if (is_bad) patch.force.x = std::numeric_limits<double>::quiet_NaN();
     link.patches[kRight].Publish();
     if (is_bad) spoiled = core::NowNanoseconds();
@@ -163,6 +167,33 @@ TEST_P(FaultTimes, SafetySwitchLetGo) {
     bench_->device->SetButtons(0, 0);
     return now;
   });
+}
+
+TEST_P(FaultTimes, ReportsThatAlternate) {
+  Measure("every other report a jump", 0.010, [&] { return Inject(SimulatedFault::kAlternating); });
+}
+
+// on the wire: as much as the device bears, and never more
+TEST(ForceOnTheWire, IsTheDevicesLargestAtMost) {
+  for (const double nominal : {0.1, 3.3, 8.0, 50.0}) {
+    FaultBench bench(WireKind::kSocket, nominal);
+    ASSERT_NE(bench.loop, nullptr);
+    double largest = 0;
+    int at_clamp = 0;
+    const core::Stopwatch watch;
+    while (watch.Seconds() < 40.0 && at_clamp < 200) {
+      // a machine that stood still has taken the force away
+      if (bench.wire.Next(1.0) != Got::kForce) {
+        bench.push = 0.6 * nominal;
+        ASSERT_TRUE(bench.Arm());
+        bench.push = 15.0 * nominal;
+      }
+      largest = std::max(largest, bench.wire.Size());
+      at_clamp += bench.wire.Size() >= 0.999 * nominal ? 1 : 0;
+    }
+    EXPECT_GE(largest, 0.999 * nominal) << "the clamp itself";
+    EXPECT_LE(largest, nominal * (1 + 1e-6)) << "floats on the wire";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(On, FaultTimes, testing::Values(WireKind::kTerminal, WireKind::kSocket),

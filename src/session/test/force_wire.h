@@ -80,6 +80,7 @@ class ForceWire {
         float force[3];
         std::memcpy(force, bytes_.data() + 8, sizeof force);
         bytes_.erase(bytes_.begin(), bytes_.begin() + device::SimulatedForceFrame::kBytes);
+        size_ = math::Norm(math::Vec3{force[0], force[1], force[2]});
         return force[0] == 0.0F && force[1] == 0.0F && force[2] == 0.0F ? Got::kZero : Got::kForce;
       }
       if (watch.Seconds() > seconds) return Got::kNothing;
@@ -95,6 +96,8 @@ class ForceWire {
       if (size < 0 || is_at_end) return Got::kClosed;
     }
   }
+  /// Of the last force [N].
+  double Size() const { return size_; }
   /// Time at which the last force arrived [ns].
   std::int64_t Arrived() const { return arrived_; }
   /// How long the reader itself, which wakes every millisecond, was not let run since ForgetAbsence() [s]: the machine's own
@@ -117,6 +120,7 @@ class ForceWire {
  private:
   int device_ = -1, host_ = -1;
   std::vector<char> bytes_;
+  double size_ = 0;
   std::int64_t arrived_ = 0, longest_absence_ = 0;
 };
 
@@ -125,7 +129,8 @@ class ForceWire {
 class ZeroTimes {
  public:
   static constexpr double kAbsent = 0.001;    // of the reader, that counts [s]
-  static constexpr double kGenerous = 0.100;  // that every machine keeps [s]
+  static constexpr double kGenerous = 0.100;  // that every machine keeps where 30 ms are promised [s]
+  static constexpr double kUsual = 0.030;
 
   void Add(double seconds, double reader_absence) {
     (reader_absence > kAbsent ? disturbed_ : times_).push_back(seconds);
@@ -133,10 +138,10 @@ class ZeroTimes {
   }
   /// Prints the percentiles and judges: in every run by a limit that a busy machine keeps as well, and with
   /// TROCAR_SLOW_TESTS=1, on a quiet machine, by what is promised [s].
-  void ReportAndJudge(const std::string& what, double promised = 0.030) {
-    const double longest = Report(what);
-    EXPECT_LE(longest, kGenerous) << what;
-    for (const double seconds : disturbed_) EXPECT_LE(seconds, kGenerous + longest_absence_) << what;
+  void ReportAndJudge(const std::string& what, double promised = kUsual) {
+    const double longest = Report(what), generous = kGenerous * std::max(1.0, promised / kUsual);
+    EXPECT_LE(longest, generous) << what;
+    for (const double seconds : disturbed_) EXPECT_LE(seconds, generous + longest_absence_) << what;
     if (std::getenv("TROCAR_SLOW_TESTS") != nullptr) {
       EXPECT_LE(longest, promised) << what;
     }

@@ -128,6 +128,7 @@ TEST(HapticTick, EveryFaultOfTheDeviceTakesTheForceAway) {
                {SimulatedFault::kSilent, 20, Fault::kSilent},
                {SimulatedFault::kNotFinite, 20, Fault::kBadSamples},
                {SimulatedFault::kJumped, 3, Fault::kJump},
+               {SimulatedFault::kAlternating, 6, Fault::kJump},
                {SimulatedFault::kUncalibrated, 1, Fault::kNotCalibrated}};
   for (const auto& wanted : cases) {
     HapticBench bench;

@@ -59,7 +59,7 @@ class LibraryFaults : public testing::Test {
         haptics::LocalPatch& patch = link_.patches[hand].Back();
         patch.kind = haptics::LocalPatch::Kind::kLinear;
         patch.is_healthy = true;
-        patch.force = {is_pressing_ ? 2.0 : 0.0, 0, 0};
+        patch.force = {is_pressing_ ? push_.load() : 0.0, 0, 0};
         link_.patches[hand].Publish();
       }
       ::usleep(5000);
@@ -170,6 +170,7 @@ class LibraryFaults : public testing::Test {
   HapticLink link_;
   StandInPage page_;
   StandInState* const motors_ = page_.Get();
+  std::atomic<double> push_{2.0};  // of the tissue [N]
 
  private:
   std::thread tissue_;
@@ -206,6 +207,29 @@ TEST_F(LibraryFaults, SupervisorStopped) {
     ::kill(stopped, SIGSTOP);
     std::thread([stopped] { ::usleep(150'000), ::kill(stopped, SIGCONT); }).detach();
   });
+}
+
+// at the motors, through loop, gate, mailbox and library: as much as the device says that it bears, and never more
+TEST_F(LibraryFaults, TheLargestForceIsTheDevices) {
+  for (const double nominal : {0.1, 3.3, 8.0, 50.0}) {
+    loop_.reset();
+    motors_->limits[0] = motors_->limits[1] = nominal;
+    motors_->largest = 0;
+    push_ = 15.0 * nominal;
+    Start();
+    const core::Stopwatch watch;
+    while (motors_->largest < 0.999 * nominal && watch.Seconds() < 40.0) {
+      // a machine that stood still has taken the force away
+      if (!IsPushing()) {
+        ASSERT_TRUE(Arm()) << nominal;
+      }
+      ::usleep(1000);
+    }
+    ::usleep(200'000);
+    EXPECT_GE(motors_->largest, 0.999 * nominal) << "the clamp itself";
+    EXPECT_LE(motors_->largest, nominal * (1 + 1e-9));
+    EXPECT_EQ(motors_->bad_forces, 0);
+  }
 }
 
 // the person goes on: the device is there again, unarmed, with its check pose to confirm

@@ -24,6 +24,7 @@
 #include "stand_in_page.h"
 #include "trocar/core/clock.h"
 #include "trocar/device/companion.h"
+#include "trocar/device/file_messages.h"
 #include "trocar/device/open_haptics.h"
 #include "trocar/device/ports.h"
 #include "wait_for.h"
@@ -71,6 +72,15 @@ class OpenHapticsHost : public testing::Test {
   static void Kill(pid_t process) {
     ::kill(process, SIGKILL);
     ::waitpid(process, nullptr, 0);
+  }
+
+  static bool IsRealTimePermitted() {
+    sched_param parameters{};
+    parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + 15;
+    const bool is_permitted = ::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
+    const sched_param ordinary{};
+    ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
+    return is_permitted;
   }
 
   device::OpenHapticsSettings settings_;
@@ -186,14 +196,21 @@ TEST_F(OpenHapticsHost, EveryFailureOfTheLibraryIsZeroAndALostDevice) {
       last = driver.ReadForceSamples(samples);
       return last == ReadStatus::kLost;
     };
-    // half a second without a complaint: nobody ends a library that is well. Where no real-time priority is granted, other
-    // programs may hold its thread back for the 12 ms after which it is taken for one that stands; not six times in turn
+    // half a second without a complaint: nobody ends a library that is well. A busy machine may hold its thread back; the
+    // library itself has written down whether it called in time
     bool is_well = false;
-    for (int attempt = 0; attempt < 6 && !is_well; ++attempt) {
+    for (int attempt = 0; attempt < 20 && !is_well; ++attempt) {
+      motors_->longest_gap = 0;
       const core::Status configured = driver.Configure();
       ASSERT_TRUE(configured.ok()) << configured.error().Text();
       ASSERT_TRUE(driver.Activate().ok());
       is_well = !WaitFor(0.5, tick);
+      const long long gap =
+          std::max<long long>(motors_->longest_gap, core::NowNanoseconds() - motors_->last_call);
+      // without real-time priority its guard may have been held back in place of it, and nobody has seen that
+      if (!is_well && IsRealTimePermitted()) {
+        ASSERT_GT(gap, device::kLongestCallSilence) << "ended although it called in time";
+      }
     }
     ASSERT_TRUE(is_well);
     ASSERT_TRUE(WaitFor(5, [&] { return tick(), IsPushing(); }));
@@ -259,12 +276,16 @@ class LibraryProcess : public OpenHapticsHost {
     page_of_host_->mailbox.Clear();
   }
   Reply Ask(const std::string& request) {
-    Reply reply;
-    reply.code = -1;
     EXPECT_EQ(::send(process_->Socket(), request.data(), request.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(request.size()));
+    return TakeReply(10'000);
+  }
+  /// \return code -1 where none comes
+  Reply TakeReply(int milliseconds) {
+    Reply reply;
+    reply.code = -1;
     pollfd answered{process_->Socket(), POLLIN, 0};
-    if (::poll(&answered, 1, 10'000) == 1) {
+    if (::poll(&answered, 1, milliseconds) == 1) {
       EXPECT_EQ(::recv(process_->Socket(), &reply, sizeof reply, 0), static_cast<ssize_t>(sizeof reply));
     }
     return reply;
@@ -310,7 +331,7 @@ TEST_F(LibraryProcess, AnswersEveryRequestAndEndsWithItsSocket) {
   EXPECT_EQ(open.limits[1].max_force, 3.3);
   EXPECT_EQ(motors_->devices, 2);
   EXPECT_EQ(Ask("open\n" + Devices()).code, kLost) << "it is open";
-  EXPECT_EQ(Ask("rescue\n" + Devices()).code, kLost);
+  EXPECT_EQ(Ask("watch\n" + Devices()).code, kLost);
   EXPECT_EQ(Ask("neither").code, kLost);
   EXPECT_EQ(motors_->devices, 2);
   EXPECT_FALSE(HasReports(0.03)) << "not started";
@@ -333,35 +354,108 @@ TEST_F(LibraryProcess, AnswersEveryRequestAndEndsWithItsSocket) {
 }
 
 TEST_F(LibraryProcess, BeatsEveryMillisecondBeforeEverybodyElse) {
+  ASSERT_TRUE(WaitFor(10, [&] { return page_of_host_->beats > 0; }));
   const std::uint64_t before = page_of_host_->beats;
   const core::Stopwatch watch;
   device::SystemClock().Sleep(0.3);
   const double beats = static_cast<double>(page_of_host_->beats - before);
   EXPECT_GT(beats, 10);
   EXPECT_LT(beats, 1.5e3 * watch.Seconds());
-  sched_param parameters{};
-  parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + 15;
-  const bool is_permitted = ::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
-  const sched_param ordinary{};
-  ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
-  if (!is_permitted) return;
+  if (!IsRealTimePermitted()) return;
   sched_param of_host{};
   EXPECT_EQ(::sched_getparam(process_->Process(), &of_host), 0);
-  EXPECT_EQ(of_host.sched_priority, parameters.sched_priority) << "above the loop, below the supervisor";
+  EXPECT_EQ(of_host.sched_priority, sched_get_priority_min(SCHED_FIFO) + 15)
+      << "above the loop, below the supervisor";
 }
 
-TEST_F(LibraryProcess, OneThatTakesOverSendsZeroAndWaits) {
-  motors_->forces[0][0] = 1.5;
-  const Reply rescued = Ask("rescue\n" + Devices());
-  EXPECT_EQ(rescued.code, 0);
-  EXPECT_EQ(rescued.count, 2u);
-  EXPECT_EQ(rescued.limits[0].max_force, 3.3);
+/// A spare beside the process.
+class LibrarySpare : public LibraryProcess {
+ protected:
+  void SetUp() override {
+    LibraryProcess::SetUp();
+    ASSERT_EQ(Ask("open\n" + Devices()).code, 0);
+    ASSERT_EQ(Ask("start").code, 0);
+    holder_.swap(process_);
+    of_holder_ = page_of_host_;
+    StartProcess();
+    const int files[] = {holder_->PageFile(), holder_->Handle()};
+    ASSERT_TRUE(device::SendFiles(process_->Socket(), "watch\n" + Devices(), files));
+    ASSERT_EQ(TakeReply(10'000).code, 0);
+  }
+  bool HolderPushes() {
+    return WaitFor(3, [&] {
+      of_holder_->mailbox.Send(0, haptics::ForceGate::Make({1, 0, 0}));
+      return IsPushing();
+    });
+  }
+
+  std::optional<device::Companion> holder_;
+  device::HdHostPage* of_holder_ = nullptr;
+};
+
+TEST_F(LibrarySpare, TakesThePlaceOfOneThatFailsSendsZeroAndWaits) {
+  for (const int signal : {SIGKILL, SIGSTOP}) {
+    if (signal == SIGSTOP) {
+      process_.reset();
+      ASSERT_NO_FATAL_FAILURE(SetUp());
+    }
+    ASSERT_TRUE(HolderPushes());
+    EXPECT_EQ(motors_->process, holder_->Process());
+    ::kill(holder_->Process(), signal);
+    const Reply taken = TakeReply(10'000);
+    EXPECT_EQ(taken.code, 0);
+    ASSERT_EQ(taken.count, 2u);
+    EXPECT_EQ(taken.limits[0].max_force, 3.3);
+    EXPECT_FALSE(IsPushing());
+    EXPECT_EQ(motors_->process, process_->Process());
+    HasReports(0.01);
+    EXPECT_FALSE(HasReports(0.1)) << "until somebody asks for the devices";
+    EXPECT_EQ(Ask("start").code, 0);
+    EXPECT_TRUE(Push());
+    EXPECT_EQ(Ask("stop").code, 0);
+    EXPECT_EQ(motors_->misuses, 0);
+  }
+}
+
+// the simulator is gone: the spare stays until the devices are at zero, by the other or by itself
+TEST_F(LibrarySpare, OutlivesTheSimulatorUntilTheDevicesAreAtZero) {
+  ASSERT_TRUE(HolderPushes());
+  ::kill(holder_->Process(), SIGSTOP);
+  ::shutdown(process_->Socket(), SHUT_RDWR);
+  EXPECT_EQ(WaitForEnd(), 0);
   EXPECT_FALSE(IsPushing());
-  HasReports(0.01);
-  EXPECT_FALSE(HasReports(0.1)) << "until somebody asks for the devices";
-  EXPECT_EQ(Ask("start").code, 0);
-  EXPECT_TRUE(Push());
-  EXPECT_EQ(motors_->misuses, 0);
+  EXPECT_EQ(motors_->devices, 0) << "and given back";
+  EXPECT_TRUE(page_of_host_->is_closed);
+  EXPECT_FALSE(of_holder_->is_closed);
+}
+
+TEST_F(LibrarySpare, LetsOneThatClosesGo) {
+  ASSERT_TRUE(HolderPushes());
+  const pid_t holder = motors_->process;
+  ::shutdown(holder_->Socket(), SHUT_RDWR);
+  ASSERT_TRUE(WaitFor(10, [&] { return of_holder_->is_closed.load(); }));
+  EXPECT_FALSE(IsPushing());
+  EXPECT_EQ(TakeReply(100).code, -1) << "nothing to take over";
+  EXPECT_EQ(motors_->process, holder);
+  EXPECT_EQ(Ask("open\n" + Devices()).code, 0) << "and it is a process as any other";
+  EXPECT_EQ(motors_->process, process_->Process());
+}
+
+// what nobody answers for is told: the supervisor goes on where a spare could do nothing
+TEST_F(LibrarySpare, SaysThatItCouldNotTakeOver) {
+  process_->Kill();
+  StartProcess();
+  const int files[] = {holder_->PageFile(), holder_->Handle()};
+  ASSERT_TRUE(device::SendFiles(process_->Socket(), "watch\nlibHD_that_nobody_has.so\nLeft\n", files));
+  ASSERT_EQ(TakeReply(10'000).code, 0);
+  // one that is still on the way when the process stops
+  ASSERT_TRUE(HolderPushes());
+  ::kill(holder_->Process(), SIGKILL);
+  EXPECT_EQ(TakeReply(10'000).code, static_cast<int>(core::ErrorCode::kDeviceUnsupported));
+  ::shutdown(process_->Socket(), SHUT_RDWR);
+  EXPECT_EQ(WaitForEnd(), 1);
+  EXPECT_FALSE(page_of_host_->is_closed);
+  EXPECT_TRUE(IsPushing()) << "nobody could";
 }
 
 // with nobody else to do it, the process itself takes the force away
@@ -405,7 +499,7 @@ TEST_F(OpenHapticsHost, ErrorsOfTheLibraryComeThrough) {
   settings_.names = {std::string(4096, 'x')};
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
   // as long as a request may be, and a byte more
-  const std::size_t around = settings_.hd_file.size() + 2 + device::hd_host::kRescue.size();
+  const std::size_t around = settings_.hd_file.size() + 2 + device::hd_host::kWatch.size();
   settings_.names = {std::string(device::hd_host::kLongestRequest - around + 1, 'x')};
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
   settings_.names.front().pop_back();

@@ -2,6 +2,7 @@
 // Rows of attempts that more than one source needs.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "database.h"
@@ -10,8 +11,17 @@
 
 namespace trocar::store {
 
+/// Which attempts count: as VerificationMark::Counts, and completed.
+#define TROCAR_COUNTS \
+  "attempt.completed = 1 AND attempt.verification IN ('verified', 'recorded_here', 'accepted')"
+
 /// What AddAttempt refuses. \return kStoreInvalid
 core::Status CheckAttempt(const Attempt& attempt);
+/// What no reader of the store would take: nested too deep, or too long. A text that is no JSON is kept as it is.
+/// \return kStoreInvalid
+core::Status CheckOutcome(std::string_view outcome);
+/// Whether the store has it as somebody else's, or as nobody's where it is somebody's.
+core::Result<bool> IsAnothers(Database& database, const Attempt& attempt);
 /// The metrics in the order of their key, with the score and the length.
 std::vector<training::MetricValue> ListMetrics(const Attempt& attempt);
 

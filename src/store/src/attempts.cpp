@@ -5,11 +5,13 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "attempt_rows.h"
 #include "database.h"
 #include "sql.h"
+#include "trocar/core/json.h"
 #include "trocar/store/courses.h"
 
 namespace trocar::store {
@@ -22,7 +24,8 @@ constexpr int kMostPerPage = 1000;
 constexpr std::string_view kColumns =
     "attempt.id, attempt.recording_id, attempt.started, person.pseudonym, attempt.task, attempt.level, "
     "attempt.patient, attempt.seed, attempt.seconds, attempt.completed, attempt.passed, attempt.score, "
-    "attempt.outcome, attempt.recording_path, attempt.program, attempt.started_ms";
+    "attempt.outcome, attempt.recording_path, attempt.program, attempt.started_ms, attempt.verification, "
+    "attempt.verification_why, attempt.verified_by, attempt.verified_ms, attempt.claim";
 constexpr std::size_t kStartedColumn = 15;
 constexpr std::string_view kFrom = " FROM attempt LEFT JOIN person ON person.id = attempt.person_id WHERE ";
 
@@ -45,6 +48,12 @@ StoredAttempt ReadAttempt(const Row& row) {
   a.outcome = row.Text(12);
   a.recording = row.Text(13);
   a.program = row.Text(14);
+  // a word that this program does not know counts as nothing
+  a.mark.state = ParseVerification(row.Text(16)).value_or(Verification::kUnverified);
+  a.mark.why = ParseWhy(row.Text(17)).value_or(WhyUnverified::kNotYet);
+  a.mark.program = row.Text(18);
+  a.mark.time_ms = row.IntOrNull(19);
+  a.mark.claim = row.Text(20);
   return stored;
 }
 
@@ -146,7 +155,15 @@ bool IsRatingItem(const Rating& rating) {
 
 }  // namespace
 
+core::Status CheckOutcome(std::string_view outcome) {
+  const auto read = core::ParseJson<nlohmann::json>(outcome, "the outcome of an attempt", core::kSmallJson);
+  if (read.ok() || read.error().code != core::ErrorCode::kFileTooLarge) return {};
+  return Invalid(read.error().message);
+}
+
 core::Status CheckAttempt(const Attempt& attempt) {
+  if (!attempt.trainee.empty() && attempt.trainee.size() > kLongestText)
+    return Invalid("the trainee of the attempt is no pseudonym");
   if (attempt.recording_id.empty() || attempt.started.empty() || attempt.task.empty())
     return Invalid("an attempt needs its recording's id, when it started, and its task");
   for (const std::string* text : {&attempt.recording_id, &attempt.started, &attempt.task, &attempt.level}) {
@@ -161,7 +178,7 @@ core::Status CheckAttempt(const Attempt& attempt) {
   }
   if (!is_finite)
     return Invalid("a number of the attempt is not finite; a metric that is undefined is left out");
-  return {};
+  return CheckOutcome(attempt.outcome);
 }
 
 std::vector<training::MetricValue> ListMetrics(const Attempt& attempt) {
@@ -232,6 +249,17 @@ core::Result<std::int64_t> ParseTime(std::string_view text) {
   return 1000 * seconds + milliseconds;
 }
 
+core::Result<bool> IsAnothers(Database& database, const Attempt& attempt) {
+  const auto there = database.Run(
+      "SELECT person.pseudonym FROM attempt LEFT JOIN person ON person.id = attempt.person_id WHERE "
+      "attempt.recording_id = $1 AND attempt.started = $2",
+      {attempt.recording_id, attempt.started});
+  if (!there.ok()) return there.error();
+  if (there->rows.empty()) return false;
+  const Row& row = there->rows[0];
+  return (row.IsNull(0) ? std::string() : row.Text(0)) != attempt.trainee;
+}
+
 core::Result<bool> AddAttempt(Store& store, const Attempt& attempt) {
   if (auto sound = CheckAttempt(attempt); !sound.ok()) return sound.error();
   const auto started_ms = ParseTime(attempt.started);
@@ -254,22 +282,119 @@ core::Result<bool> AddAttempt(Store& store, const Attempt& attempt) {
     const auto added = database.Run(
         "INSERT INTO attempt (recording_id, started, started_ms, person_id, task, level, patient, seed, "
         "seconds, "
-        "completed, passed, score, outcome, recording_path, program) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, "
-        "$9, "
-        "$10, $11, $12, $13, $14, $15) ON CONFLICT (recording_id, started) DO NOTHING RETURNING id",
-        {attempt.recording_id, attempt.started, *started_ms, OrNull(person), attempt.task, attempt.level,
-         attempt.patient, std::to_string(attempt.seed), attempt.seconds, std::int64_t{attempt.is_completed},
-         OrNull(is_passed), OrNull(attempt.score),
-         attempt.outcome.empty() ? std::string("{}") : attempt.outcome, attempt.recording, attempt.program});
+        "completed, passed, score, outcome, recording_path, program, verification, verification_why, "
+        "verified_by, verified_ms, claim) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, "
+        "$10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20) ON CONFLICT (recording_id, started) DO "
+        "NOTHING RETURNING id",
+        {attempt.recording_id,
+         attempt.started,
+         *started_ms,
+         OrNull(person),
+         attempt.task,
+         attempt.level,
+         attempt.patient,
+         std::to_string(attempt.seed),
+         attempt.seconds,
+         std::int64_t{attempt.is_completed},
+         OrNull(is_passed),
+         OrNull(attempt.score),
+         attempt.outcome.empty() ? std::string("{}") : attempt.outcome,
+         attempt.recording,
+         attempt.program,
+         std::string(VerificationName(attempt.mark.state)),
+         std::string(WhyName(attempt.mark.why)),
+         attempt.mark.program,
+         OrNull(attempt.mark.time_ms),
+         attempt.mark.claim});
     if (!added.ok()) return added.error();
-    if (added->rows.empty()) return false;
+    if (added->rows.empty()) {
+      const auto is_anothers = IsAnothers(database, attempt);
+      if (!is_anothers.ok()) return is_anothers.error();
+      if (*is_anothers) return Conflict();
+      return false;
+    }
     const std::int64_t id = added->rows[0].Int(0);
     if (auto kept = AddMetrics(database, id, metrics); !kept.ok()) return kept.error();
-    if (person && attempt.is_completed) {
+    if (person && attempt.CountsAsCompleted()) {
       if (auto raised = database.Run(kRaiseStanding, {id}); !raised.ok()) return raised.error();
     }
     return true;
   });
+}
+
+core::Status MoveAttempt(Store& store, const Viewer& viewer, std::string_view recording_id,
+                         std::string_view started, std::string_view trainee) {
+  if (auto may = MayManage(viewer); !may.ok()) return may;
+  Database& database = store.GetDatabase();
+  return InTransaction(database, Access::kWrite, [&]() -> core::Status {
+    const auto to = FindPerson(store, trainee);
+    if (!to.ok()) return to.error();
+    const auto there =
+        database.Run("SELECT id, person_id FROM attempt WHERE recording_id = $1 AND started = $2",
+                     {std::string(recording_id), std::string(started)});
+    if (!there.ok()) return there.error();
+    if (there->rows.empty()) return {};  // there is nothing to move
+    if (auto moved =
+            database.Run("UPDATE attempt SET person_id = $2 WHERE id = $1", {there->rows[0].Int(0), to->id});
+        !moved.ok())
+      return moved.error();
+    if (const auto from = there->rows[0].IntOrNull(1)) {
+      if (auto counted = RecalcStandings(database, *from); !counted.ok()) return counted;
+    }
+    return RecalcStandings(database, to->id);
+  });
+}
+
+core::Status UpdateAttempt(Store& store, const Viewer& viewer, const Attempt& attempt) {
+  if (auto may = MayManage(viewer); !may.ok()) return may;
+  if (auto sound = CheckAttempt(attempt); !sound.ok()) return sound;
+  Database& database = store.GetDatabase();
+  return InTransaction(database, Access::kWrite, [&]() -> core::Status {
+    const std::vector<training::MetricValue> metrics = ListMetrics(attempt);
+    std::optional<bool> is_passed = attempt.is_passed;
+    if (!is_passed) {
+      const auto judged = Judge(store, attempt, metrics);
+      if (!judged.ok()) return judged.error();
+      is_passed = *judged;
+    }
+    const auto changed = database.Run(
+        "UPDATE attempt SET seconds = $3, completed = $4, passed = $5, score = $6, outcome = $7, "
+        "verification = $8, verification_why = $9, verified_by = $10, verified_ms = $11, claim = $12 "
+        "WHERE recording_id = $1 AND started = $2 RETURNING id, person_id",
+        {attempt.recording_id, attempt.started, attempt.seconds, std::int64_t{attempt.is_completed},
+         OrNull(is_passed), OrNull(attempt.score),
+         attempt.outcome.empty() ? std::string("{}") : attempt.outcome,
+         std::string(VerificationName(attempt.mark.state)), std::string(WhyName(attempt.mark.why)),
+         attempt.mark.program, OrNull(attempt.mark.time_ms), attempt.mark.claim});
+    if (!changed.ok()) return changed.error();
+    if (changed->rows.empty())
+      return Unknown("the attempt is not in the store any more; trocar store attempts lists what is");
+    const std::int64_t id = changed->rows[0].Int(0);
+    if (auto gone = database.Run("DELETE FROM metric WHERE attempt_id = $1", {id}); !gone.ok())
+      return gone.error();
+    if (auto kept = AddMetrics(database, id, metrics); !kept.ok()) return kept;
+    if (const auto person = changed->rows[0].IntOrNull(1)) return RecalcStandings(database, *person);
+    return {};
+  });
+}
+
+core::Result<std::vector<StoredAttempt>> ListUnverified(Store& store, const Viewer& viewer,
+                                                        std::int64_t after, int limit) {
+  if (auto may = MayManage(viewer); !may.ok()) return may.error();
+  Database& database = store.GetDatabase();
+  const auto found = database.RunLong("SELECT " + std::string(kColumns) + std::string(kFrom) +
+                                          "attempt.id > $1 AND attempt.verification IN ('unverified', "
+                                          "'accepted') ORDER BY attempt.id LIMIT $2",
+                                      {after, std::int64_t{limit}});
+  if (!found.ok()) return found.error();
+  std::vector<StoredAttempt> attempts;
+  for (const Row& row : found->rows) {
+    attempts.push_back(ReadAttempt(row));
+    auto metrics = ReadMetrics(database, attempts.back().id);
+    if (!metrics.ok()) return metrics.error();
+    attempts.back().attempt.metrics = std::move(*metrics);
+  }
+  return attempts;
 }
 
 core::Status RecalcStandings(Database& database, std::int64_t person) {
@@ -280,12 +405,14 @@ core::Status RecalcStandings(Database& database, std::int64_t person) {
       "SELECT attempt.task, attempt.level, metric.metric, metric.hand, attempt.person_id, COUNT(*), 0, "
       "MAX(attempt.started_ms), MIN(metric.value), MAX(metric.value) FROM metric JOIN attempt ON attempt.id "
       "= "
-      "metric.attempt_id WHERE attempt.person_id = $1 AND attempt.completed = 1 AND metric.phase = '' AND "
+      "metric.attempt_id WHERE attempt.person_id = $1 AND " TROCAR_COUNTS
+      " AND metric.phase = '' AND "
       "metric.tool = '' GROUP BY attempt.task, attempt.level, metric.metric, metric.hand, attempt.person_id",
       "UPDATE standing SET latest = (SELECT metric.value FROM attempt JOIN metric ON metric.attempt_id = "
       "attempt.id "
       "WHERE attempt.person_id = standing.person_id AND attempt.task = standing.task AND attempt.level = "
-      "standing.level AND attempt.completed = 1 AND metric.metric = standing.metric AND metric.hand = "
+      "standing.level AND " TROCAR_COUNTS
+      " AND metric.metric = standing.metric AND metric.hand = "
       "standing.hand "
       "AND metric.phase = '' AND metric.tool = '' ORDER BY attempt.started_ms DESC, attempt.id DESC LIMIT 1) "
       "WHERE person_id = $1"};

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "schema.h"
 #include "sql.h"
 #include "tables.h"
+#include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/sha256.h"
 #include "trocar/store/maintenance.h"
@@ -66,9 +68,11 @@ core::Status BackUpPostgres(Database& from, const fs::path& partial) {
 core::Status SyncFile(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const bool is_synced = file >= 0 && ::fsync(file) == 0;
+  const int why = errno;
   if (file >= 0) ::close(file);
   if (is_synced) return {};
-  return core::Error{ErrorCode::kFileUnwritable, path.string() + ": cannot be synced; check the disk"};
+  return core::Error{IsFull(why) ? ErrorCode::kStoreFull : ErrorCode::kFileUnwritable,
+                     path.string() + ": cannot be synced; check the disk"};
 }
 
 /// "2026-11-25T023221.123Z", so that names sort by time.
@@ -108,17 +112,14 @@ core::Result<fs::path> BackUp(Store& store, const Viewer& viewer, fs::path file)
   if (file.has_parent_path()) {
     if (auto made = MakePrivateFolder(file.parent_path()); !made.ok()) return made.error();
   }
-  const fs::path partial = file.string() + ".partial";
+  const core::PartialPath part(file);
+  const fs::path& partial = part.Path();
   std::error_code failure;
-  fs::remove(partial, failure);
   Database& database = store.GetDatabase();
   auto copied = database.GetDialect() == Dialect::kSqlite ? BackUpSqlite(database, partial.string())
                                                           : BackUpPostgres(database, partial);
   if (copied.ok()) copied = SyncFile(partial);
-  if (!copied.ok()) {
-    fs::remove(partial, failure);
-    return copied.error();
-  }
+  if (!copied.ok()) return copied.error();
   const auto hash = core::CalcSha256OfFile(partial);
   if (!hash.ok()) return hash.error();
   if (auto written =
@@ -171,7 +172,8 @@ core::Status Verify(Store& store) {
         "SELECT (SELECT COUNT(*) FROM (SELECT attempt.task, attempt.level, metric.metric, metric.hand, "
         "attempt.person_id, COUNT(*) AS attempts, MIN(metric.value) AS lowest, MAX(metric.value) AS highest "
         "FROM "
-        "metric JOIN attempt ON attempt.id = metric.attempt_id WHERE attempt.completed = 1 AND "
+        "metric JOIN attempt ON attempt.id = metric.attempt_id WHERE " TROCAR_COUNTS
+        " AND "
         "attempt.person_id IS "
         "NOT NULL AND metric.phase = '' AND metric.tool = '' GROUP BY attempt.task, attempt.level, "
         "metric.metric, "
@@ -181,8 +183,8 @@ core::Status Verify(Store& store) {
         "standing.person_id = counted.person_id WHERE standing.attempts IS NULL OR standing.attempts <> "
         "counted.attempts OR standing.lowest <> counted.lowest OR standing.highest <> counted.highest), "
         "(SELECT COUNT(*) FROM standing WHERE NOT EXISTS (SELECT 1 FROM attempt WHERE attempt.person_id = "
-        "standing.person_id AND attempt.task = standing.task AND attempt.level = standing.level AND "
-        "attempt.completed = 1))");
+        "standing.person_id AND attempt.task = standing.task AND attempt.level = standing.level "
+        "AND " TROCAR_COUNTS "))");
     if (!wrong.ok()) return wrong.error();
     const std::int64_t count = wrong->rows[0].Int(0) + wrong->rows[0].Int(1);
     if (count == 0) return {};

@@ -53,22 +53,38 @@ class BulkWriter {
       auto person = FindId(attempt.trainee);
       if (!person.ok()) return person.error();
       if (!by_key.emplace(std::pair(attempt.recording_id, attempt.started), &attempt).second) continue;
-      rows.Add({attempt.recording_id, attempt.started, *started_ms, *person, attempt.task, attempt.level,
-                attempt.patient, std::to_string(attempt.seed), attempt.seconds,
-                std::int64_t{attempt.is_completed}, OrNull(attempt.is_passed), OrNull(attempt.score),
-                attempt.outcome.empty() ? std::string("{}") : attempt.outcome, attempt.recording,
-                attempt.program});
+      rows.Add({attempt.recording_id,
+                attempt.started,
+                *started_ms,
+                *person,
+                attempt.task,
+                attempt.level,
+                attempt.patient,
+                std::to_string(attempt.seed),
+                attempt.seconds,
+                std::int64_t{attempt.is_completed},
+                OrNull(attempt.is_passed),
+                OrNull(attempt.score),
+                attempt.outcome.empty() ? std::string("{}") : attempt.outcome,
+                attempt.recording,
+                attempt.program,
+                std::string(VerificationName(attempt.mark.state)),
+                std::string(WhyName(attempt.mark.why)),
+                attempt.mark.program,
+                OrNull(attempt.mark.time_ms),
+                attempt.mark.claim});
     }
     const auto added =
         rows.Run(database_,
                  "INSERT INTO attempt (recording_id, started, started_ms, person_id, task, level, "
-                 "patient, seed, seconds, completed, passed, score, outcome, recording_path, program) "
+                 "patient, seed, seconds, completed, passed, score, outcome, recording_path, program, "
+                 "verification, verification_why, verified_by, verified_ms, claim) "
                  "VALUES ",
                  " ON CONFLICT (recording_id, started) DO NOTHING RETURNING id, recording_id, started");
     if (!added.ok()) return added.error();
     for (const Row& row : added->rows) {
       const Attempt& attempt = *by_key.at({row.Text(1), row.Text(2)});
-      if (!attempt.trainee.empty() && attempt.is_completed) raised_.insert(attempt.trainee);
+      if (!attempt.trainee.empty() && attempt.CountsAsCompleted()) raised_.insert(attempt.trainee);
       for (const training::MetricValue& m : ListMetrics(attempt)) {
         metrics_.Add({row.Int(0), m.metric, m.hand, m.phase, m.tool, m.value});
         if (metrics_.Count() < kMetricsAtOnce) continue;

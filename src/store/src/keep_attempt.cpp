@@ -4,13 +4,20 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <system_error>
 #include <thread>
 #include <utility>
 
+#include "attempt_rows.h"
+#include "sql.h"
+#include "trocar/core/log.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/core/version.h"
+#include "trocar/record/outcome.h"
+#include "trocar/record/replay.h"
+#include "trocar/record/trace.h"
+#include "trocar/training/attempt_metrics.h"
 
 namespace trocar::store {
 
@@ -33,23 +40,72 @@ core::Result<Attempt> DescribeAttempt(const record::Recording& recording, const 
                        path.string() + ": it does not say when it started; record it again"};
   // without an ending the program was stopped: the attempt is kept, as not completed
   if (!recording.ending) return attempt;
-  const auto outcome = nlohmann::json::parse(recording.ending->outcome, nullptr, false);
-  if (!outcome.is_object())
+  const auto outcome = record::ReadOutcome(recording.ending->outcome);
+  if (!outcome)
     return core::Error{
         core::ErrorCode::kRecordingInvalid,
         path.string() + ": its outcome cannot be read; trocar replay --verify computes it again"};
   attempt.outcome = recording.ending->outcome;
-  if (const auto task = outcome.find("task"); task != outcome.end() && task->is_object()) {
-    const auto phase = task->find("phase");
-    attempt.is_completed = phase != task->end() && *phase == "completed";
-    if (const auto score = task->find("score"); score != task->end() && score->is_number())
-      attempt.score = score->get<double>();
+  attempt.is_completed = outcome->is_completed;
+  attempt.score = outcome->score;
+  return attempt;
+}
+
+core::Result<Attempt> ReplayAttempt(record::Recording recording, const std::filesystem::path& path,
+                                    const ReplayChoice& choice) {
+  auto described = DescribeAttempt(recording, path);
+  if (!described.ok()) return described;
+  Attempt attempt = std::move(*described);
+  VerificationMark& mark = attempt.mark;
+  const bool is_of_this_version = recording.description.program == core::VersionText();
+  const bool is_from_state = recording.FirstTick() > 0;
+  // an ending that was left out since it contradicts what stands before it: no cut makes one
+  const bool has_other_ending = !recording.ending && recording.damage.find("its ending") != std::string::npos;
+  mark.program = core::VersionText();
+  mark.time_ms = NowMilliseconds();
+  auto replay = record::Replay::Open(std::move(recording), choice.threads);
+  if (!replay.ok()) {
+    mark.why = is_of_this_version ? WhyUnverified::kCannotReplay : WhyUnverified::kOtherVersion;
+    core::Log(core::LogLevel::kWarning, replay.error().Text());
+    return attempt;
   }
-  if (const auto operation = outcome.find("operation");
-      operation != outcome.end() && operation->is_object()) {
-    const auto completed = operation->find("completed");
-    attempt.is_completed = completed != operation->end() && *completed == true;
+  record::TraceBuilder builder(replay->GetSimulation());
+  const auto played = replay->Verify(
+      choice.progress,
+      [&](const simulation::Snapshot& now, const record::Input& input) { builder.Add(now, input.controls); });
+  if (!played.ok()) {
+    if (played.error().code == core::ErrorCode::kCancelled) return played.error();
+    mark.why = WhyUnverified::kCannotReplay;
+    core::Log(core::LogLevel::kWarning, played.error().Text());
+    return attempt;
   }
+  if (!played->IsVerified() && !is_of_this_version) {
+    mark.why = WhyUnverified::kOtherVersion;
+    return attempt;
+  }
+  const auto& ending = replay->GetRecording().ending;
+  if (!played->IsVerified() && ending) mark.claim = ending->outcome;
+  attempt.outcome = played->outcome;
+  if (played->divergence) {
+    // whose states these are, nobody knows: nothing is measured
+    mark.state = Verification::kRefused, mark.why = WhyUnverified::kDiverged;
+    attempt.is_completed = false;
+    attempt.score.reset();
+    return attempt;
+  }
+  const training::AttemptTrace trace = builder.Calc();
+  attempt.is_completed = trace.outcome.is_completed;
+  attempt.score = trace.outcome.score;
+  if (auto metrics = training::CalcAttemptMetrics(trace); metrics.ok())
+    attempt.metrics = std::move(metrics->values);
+  else
+    core::Log(core::LogLevel::kWarning, "kept without metrics: " + metrics.error().Text());
+  if (!played->is_outcome_same || has_other_ending)
+    mark.state = Verification::kRefused, mark.why = WhyUnverified::kOtherEnding;
+  else if (is_from_state)
+    mark.why = WhyUnverified::kSavedState;
+  else
+    mark.state = Verification::kVerified, mark.why = WhyUnverified::kNone;
   return attempt;
 }
 
@@ -69,6 +125,14 @@ core::Result<KeepReport> KeepAttempt(const Place& place, const Attempt& attempt,
   if (report.failure) return report;
   // what this attempt came to is asked by its key: other programs may have delivered it
   const auto again = AddAttempt(*store, attempt);
+  if (!again.ok()) {
+    const auto is_anothers = IsAnothers(store->GetDatabase(), attempt);
+    if (is_anothers.ok() && *is_anothers) {
+      // whoever gives it hears at once that it is not kept
+      if (auto gone = spool.TakeBack(attempt); !gone.ok()) return gone.error();
+      return again.error();
+    }
+  }
   report.is_in_store = again.ok();
   if (!again.ok()) report.failure = again.error();
   return report;

@@ -12,6 +12,7 @@
 #include "trocar/core/file_lock.h"
 #include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/store/people.h"
 
 namespace trocar::store {
 namespace {
@@ -69,6 +70,9 @@ core::Result<Names> ReadNames(const fs::path& path) {
 }
 
 core::Status SetName(const fs::path& path, std::string_view pseudonym, std::string_view name) {
+  if (!name.empty()) {
+    if (auto sound = CheckName(name); !sound.ok()) return sound;
+  }
   return Change(path, [&](Names& names) {
     if (name.empty())
       names.erase(std::string(pseudonym));

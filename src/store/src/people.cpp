@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kLetters = "23456789ABCDEFGHJKMNPQRSTUVWXYZ";
 constexpr std::size_t kPseudonymLetters = 6;
-constexpr std::size_t kLongestPseudonym = 200, kLongestGroup = 1000;  // [bytes]
+constexpr std::size_t kLongestPseudonym = 200, kLongestName = 200, kLongestGroup = 1000;  // [bytes]
 
 core::Error NoPerson() {
   return Unknown("the store knows no such trainee; trocar store trainee list shows whom it knows");
@@ -22,13 +22,54 @@ core::Error NoGroup() {
   return Unknown("the store knows no such group; trocar store group list shows which it knows");
 }
 
-core::Status CheckPseudonym(std::string_view pseudonym) {
-  if (pseudonym.empty() || pseudonym.size() > kLongestPseudonym)
-    return Invalid("a pseudonym has 1 to " + std::to_string(kLongestPseudonym) + " bytes");
-  return {};
+/// What is wrong with a text that people read in lists, on certificates and in files; empty where nothing is.
+std::string ComplainOfText(std::string_view text, std::size_t longest) {
+  if (text.empty() || text.size() > longest) return "has 1 to " + std::to_string(longest) + " bytes";
+  if (EncodeText(text) != text) return "is UTF-8 without NUL";
+  const auto has = [&](std::string_view bytes) { return text.find(bytes) != std::string_view::npos; };
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) return "has no control characters and no line ends";
+  }
+  for (unsigned char c = 0x80; c < 0xA0; ++c) {
+    const char control[] = {'\xC2', static_cast<char>(c)};
+    if (has({control, 2})) return "has no control characters and no line ends";
+  }
+  // U+200B to U+200F, U+2028 to U+202E, U+2060 to U+2069, U+FEFF: not to be seen, or they turn what is read
+  const auto has_range = [&](char second, unsigned from, unsigned to) {
+    for (unsigned c = from; c <= to; ++c) {
+      const char bytes[] = {'\xE2', second, static_cast<char>(c)};
+      if (has({bytes, 3})) return true;
+    }
+    return false;
+  };
+  if (has_range('\x80', 0x8B, 0x8F) || has_range('\x80', 0xA8, 0xAE) || has_range('\x81', 0xA0, 0xA9) ||
+      has("\xEF\xBB\xBF"))
+    return "has no characters that are not to be seen or turn the direction of writing";
+  if (text.front() == ' ' || text.back() == ' ') return "begins and ends with no space";
+  return "";
 }
 
 }  // namespace
+
+core::Status CheckPseudonym(std::string_view text) {
+  std::string why = ComplainOfText(text, kLongestPseudonym);
+  if (why.empty() && (text.find_first_of("/\\") != std::string_view::npos || text == "." || text == ".."))
+    why = "is no part of a path: it has no / and no \\";
+  if (why.empty() && text.front() == '-') why = "does not begin with -, as options do";
+  return why.empty() ? core::Status() : Invalid("a pseudonym " + why + "; choose another, or none");
+}
+
+core::Status CheckName(std::string_view text) {
+  std::string why = ComplainOfText(text, kLongestName);
+  if (why.empty() && (text.find("../") != std::string_view::npos || text.front() == '/')) why = "is no path";
+  return why.empty() ? core::Status() : Invalid("a name " + why + "; write it as the person does");
+}
+
+core::Status CheckGroupName(std::string_view text) {
+  const std::string why = ComplainOfText(text, kLongestGroup);
+  return why.empty() ? core::Status() : Invalid("a group's name " + why + "; choose another");
+}
 
 std::string MakePseudonym(Role role) {
   static constexpr std::string_view kOfRole = "TIA";
@@ -160,8 +201,7 @@ core::Result<std::vector<Person>> ListPeople(Store& store, const Viewer& viewer,
 
 core::Result<Group> AddGroup(Store& store, const Viewer& viewer, std::string_view name) {
   if (auto may = MayManage(viewer); !may.ok()) return may.error();
-  if (name.empty() || name.size() > kLongestGroup)
-    return Invalid("a group's name has 1 to " + std::to_string(kLongestGroup) + " bytes");
+  if (auto sound = CheckGroupName(name); !sound.ok()) return sound.error();
   const auto added = store.GetDatabase().Run(
       "INSERT INTO training_group (name, added_ms) VALUES ($1, $2) ON CONFLICT DO NOTHING RETURNING id",
       {std::string(name), NowMilliseconds()});

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
+#include <iterator>
+#include <string_view>
 
 #include "trocar/core/state_hash.h"
 #include "trocar/core/user_folder.h"
@@ -10,18 +14,86 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsPostgresUrl(const std::string& url) {
+bool IsPostgresUrl(std::string_view url) {
   return url.starts_with("postgresql://") || url.starts_with("postgres://");
 }
 
-}  // namespace
-
-bool Place::IsPostgres() const {
-  return IsPostgresUrl(url);
+std::string Lower(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
 }
 
-std::string Place::Text() const {
-  if (!IsPostgres()) return url;
+/// Whether it is libpq's other way of naming a server: "host=server user=trocar password=...".
+bool IsKeywordString(std::string_view text) {
+  static constexpr std::string_view kKeywords[] = {"host",
+                                                   "hostaddr",
+                                                   "port",
+                                                   "dbname",
+                                                   "user",
+                                                   "password",
+                                                   "passfile",
+                                                   "service",
+                                                   "options",
+                                                   "sslmode",
+                                                   "sslcert",
+                                                   "sslkey",
+                                                   "sslpassword",
+                                                   "sslrootcert",
+                                                   "connect_timeout",
+                                                   "application_name",
+                                                   "target_session_attrs"};
+  const std::string lower = Lower(text);
+  for (const std::string_view keyword : kKeywords) {
+    for (std::size_t at = 0; (at = lower.find(keyword, at)) != std::string::npos; ++at) {
+      const bool begins = at == 0 || std::isspace(static_cast<unsigned char>(lower[at - 1])) != 0;
+      const std::size_t end = lower.find_first_not_of(" \t", at + keyword.size());
+      if (begins && end != std::string::npos && lower[end] == '=') return true;
+    }
+  }
+  return false;
+}
+
+/// Whether it is an address and no path: "scheme://...", "postgresql:...", "user:password@server/database".
+bool IsAddress(std::string_view text) {
+  const std::string lower = Lower(text);
+  if (lower.find("://") != std::string::npos || lower.find(":\\\\") != std::string::npos) return true;
+  const std::size_t colon = lower.find(':'), slash = lower.find('/');
+  if (colon == std::string::npos || slash < colon) return false;
+  return lower.starts_with("postg") || lower.find('@', colon) < slash ||
+         (lower.size() > colon + 1 && lower[colon + 1] == '/');
+}
+
+/// What of a URL may be shown: all but secrets, and whatever this program does not know to be none.
+std::string WithoutSecrets(const std::string& text) {
+  static constexpr std::string_view kShown[] = {"host",
+                                                "hostaddr",
+                                                "port",
+                                                "dbname",
+                                                "user",
+                                                "sslmode",
+                                                "connect_timeout",
+                                                "application_name",
+                                                "target_session_attrs"};
+  const std::size_t query = text.find('?');
+  if (query == std::string::npos) return text;
+  std::string shown = text.substr(0, query);
+  char before = '?';
+  for (std::size_t at = query + 1; at < text.size();) {
+    const std::size_t next = std::min(text.find('&', at), text.size());
+    const std::string field = text.substr(at, next - at);
+    if (std::find(std::begin(kShown), std::end(kShown), field.substr(0, field.find('='))) !=
+        std::end(kShown)) {
+      shown += before + field;
+      before = '&';
+    }
+    at = next + 1;
+  }
+  return shown;
+}
+
+/// As older versions showed it: the folder's name is made of it.
+std::string FolderText(const std::string& url) {
   std::string text = url;
   const std::size_t begin = text.find("://") + 3;
   // of "user:password@host" and "?password=..."
@@ -39,20 +111,45 @@ std::string Place::Text() const {
   return text;
 }
 
-Place FindPlace(std::string url) {
+/// Never with the text itself: it may hold a password.
+core::Error Refuse(const std::string& why) {
+  return {core::ErrorCode::kUsage,
+          "where the store lies (--store or TROCAR_STORE): " + why +
+              "; a store is the path of a file, or postgresql://USER@SERVER/DATABASE, with the password in "
+              "~/.pgpass"};
+}
+
+}  // namespace
+
+bool Place::IsPostgres() const {
+  return IsPostgresUrl(url);
+}
+
+std::string Place::Text() const {
+  return IsPostgres() ? WithoutSecrets(FolderText(url)) : url;
+}
+
+core::Result<Place> FindPlace(std::string url) {
   if (url.empty()) {
     const char* variable = std::getenv("TROCAR_STORE");
     url = variable == nullptr ? "" : variable;
   }
+  constexpr std::size_t kLongest = 4096;
+  if (url.size() > kLongest) return Refuse("it is longer than any path");
+  if (std::any_of(url.begin(), url.end(),
+                  [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }))
+    return Refuse("it has a line end or another control character");
   Place place;
   if (IsPostgresUrl(url)) {
     place.url = std::move(url);
     core::StateHash hash;
-    for (const char byte : place.Text())
+    for (const char byte : FolderText(place.url))
       hash.Add(static_cast<std::uint64_t>(static_cast<unsigned char>(byte)));
     place.folder = core::FindUserDataFolder() / "store" / ("centre-" + hash.Text());
     return place;
   }
+  if (IsKeywordString(url)) return Refuse("it is a list of keywords, as libpq takes them");
+  if (IsAddress(url)) return Refuse("it looks like an address, but does not begin with postgresql://");
   const fs::path file = url.empty() ? core::FindUserDataFolder() / "store" / "store.sqlite" : fs::path(url);
   std::error_code failure;
   const fs::path absolute = fs::absolute(file, failure);

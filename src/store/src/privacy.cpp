@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "database.h"
 #include "private_file.h"
 #include "sql.h"
+#include "trocar/core/json.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/store/courses.h"
 #include "trocar/store/maintenance.h"
@@ -99,9 +101,16 @@ core::Result<ordered_json> DescribeOne(Store& store, const StoredAttempt& listed
                        {"score", a.score ? ordered_json(*a.score) : ordered_json()},
                        {"program", TextJson(a.program)},
                        {"recording", recording.empty() ? ordered_json() : ordered_json(recording)},
-                       {"recording_id", TextJson(a.recording_id)}};
-  auto outcome = ordered_json::parse(a.outcome, nullptr, false);
-  json["outcome"] = outcome.is_discarded() ? TextJson(a.outcome) : std::move(outcome);
+                       {"recording_id", TextJson(a.recording_id)},
+                       {"verification",
+                        {{"state", VerificationName(a.mark.state)},
+                         {"why", WhyName(a.mark.why)},
+                         {"program", TextJson(a.mark.program)},
+                         {"time_ms", a.mark.time_ms ? ordered_json(*a.mark.time_ms) : ordered_json()},
+                         {"claim", a.mark.claim.empty() ? ordered_json() : TextJson(a.mark.claim)}}}};
+  // one that cannot be read, or is nested too deep, is theirs as well: as a text
+  auto outcome = core::ParseJson<ordered_json>(a.outcome, "the outcome", core::kSmallJson);
+  json["outcome"] = outcome.ok() ? std::move(*outcome) : TextJson(a.outcome);
   json["metrics"] = ordered_json::array();
   for (const training::MetricValue& m : a.metrics)
     json["metrics"].push_back({{"metric", TextJson(m.metric)},
@@ -258,7 +267,7 @@ core::Result<int> ExportPerson(Store& store, const Viewer& viewer, std::string_v
         if (auto made = MakePrivateFolder(folder / "recordings"); !made.ok()) return made.error();
         fs::copy_file(a.recording, folder / to, fs::copy_options::skip_existing, failure);
         if (failure)
-          return core::Error{ErrorCode::kFileUnwritable,
+          return core::Error{IsFull(failure.value()) ? ErrorCode::kStoreFull : ErrorCode::kFileUnwritable,
                              (folder / to).string() + ": " + failure.message() + "; check the space left"};
         ++copied;
       }
@@ -283,6 +292,7 @@ core::Result<EraseReport> ErasePerson(Store& store, const Viewer& viewer, std::s
   const Place& place = store.GetPlace();
   Database& database = store.GetDatabase();
   EraseReport report;
+  if (auto gone = EraseRemnants(place); !gone.ok()) return gone.error();
   // first what waits: it must not arrive after the rows have gone
   const auto spooled = Spool(place).Erase(pseudonym);
   if (!spooled.ok()) return spooled.error();
@@ -337,20 +347,76 @@ core::Result<int> ReadRetention(Store& store) {
   return found->rows.empty() ? 0 : std::atoi(found->rows[0].Text(0).c_str());
 }
 
-core::Result<TidyReport> Tidy(Store& store, const Viewer& viewer, std::int64_t now_ms) {
-  if (auto may = MayManage(viewer); !may.ok()) return may.error();
-  const auto days = ReadRetention(store);
-  if (!days.ok()) return days.error();
-  Database& database = store.GetDatabase();
-  TidyReport report;
-  const std::int64_t before_ms = now_ms - *days * kMillisecondsPerDay;
-  while (*days > 0) {
+namespace {
+
+/// The clock of a computer may be years off: so long after the newest thing that is known, a person is asked.
+constexpr std::int64_t kLongestSilence = 180 * kMillisecondsPerDay;
+constexpr std::int64_t kClockSlack = kMillisecondsPerDay;  // zones, and clocks that are set right
+
+core::Error Unsure(const std::string& why) {
+  return {ErrorCode::kUsage, why + ". Nothing was removed; if that is right, do it again with --yes"};
+}
+
+/// Why a person should look first; nothing where all is as usual.
+core::Result<std::optional<core::Error>> AskFirst(Database& database, std::int64_t now_ms,
+                                                  std::int64_t before_ms) {
+  const auto found = database.RunLong(
+      "SELECT COUNT(*), COALESCE(SUM(CASE WHEN started_ms < $1 THEN 1 ELSE 0 END), 0), "
+      "COALESCE(SUM(CASE WHEN started_ms < $1 AND due_ms IS NULL THEN 1 ELSE 0 END), 0), "
+      "COALESCE(MAX(started_ms), 0) FROM attempt",
+      {before_ms});
+  if (!found.ok()) return found.error();
+  const Row& row = found->rows[0];
+  const std::int64_t all = row.Int(0), old = row.Int(1), newly = row.Int(2);
+  if (old == 0) return std::optional<core::Error>();
+  const auto setting = database.Run("SELECT value FROM setting WHERE name = 'tidied_ms'");
+  if (!setting.ok()) return setting.error();
+  const std::int64_t tidied =
+      setting->rows.empty() ? 0 : std::strtoll(setting->rows[0].Text(0).c_str(), nullptr, 10);
+  const std::int64_t known = std::max(row.Int(3), tidied);
+  if (now_ms > known + kLongestSilence)
+    return std::optional(Unsure("the clock stands " + std::to_string((now_ms - known) / kMillisecondsPerDay) +
+                                " days after the newest attempt and the last tidying, and by it " +
+                                std::to_string(old) + " of " + std::to_string(all) +
+                                " attempts are too old"));
+  if (now_ms + kClockSlack < tidied)
+    return std::optional(Unsure("the clock stands before the last tidying, so one of them was wrong"));
+  if (2 * newly > all)
+    return std::optional(Unsure(std::to_string(newly) + " of " + std::to_string(all) +
+                                " attempts are older than attempts are kept: more than half"));
+  return std::optional<core::Error>();
+}
+
+/// \return how many wait
+core::Result<std::int64_t> MarkDue(Database& database, std::int64_t now_ms, std::int64_t before_ms) {
+  return InTransaction(database, Access::kWrite, [&]() -> core::Result<std::int64_t> {
+    const std::pair<std::string_view, Parameters> steps[] = {
+        // they may be kept longer now, or the clock has gone back
+        {"UPDATE attempt SET due_ms = NULL WHERE due_ms IS NOT NULL AND started_ms >= $1", {before_ms}},
+        {"UPDATE attempt SET due_ms = $1 WHERE due_ms > $1", {now_ms}},
+        {"UPDATE attempt SET due_ms = $1 WHERE due_ms IS NULL AND started_ms < $2", {now_ms, before_ms}},
+        {"INSERT INTO setting (name, value) VALUES ('tidied_ms', $1) ON CONFLICT (name) DO UPDATE SET value "
+         "= "
+         "excluded.value",
+         {std::to_string(now_ms)}}};
+    for (const auto& [sql, parameters] : steps) {
+      if (auto done = database.RunLong(sql, parameters); !done.ok()) return done.error();
+    }
+    const auto count = database.RunLong("SELECT COUNT(*) FROM attempt WHERE due_ms > $1",
+                                        {now_ms - kGraceDays * kMillisecondsPerDay});
+    if (!count.ok()) return count.error();
+    return count->rows[0].Int(0);
+  });
+}
+
+core::Status RemoveDue(Database& database, std::int64_t until_ms, TidyReport& report) {
+  while (true) {
     std::int64_t count = 0;
     const auto done = InTransaction(database, Access::kWrite, [&]() -> core::Status {
       const auto old = database.Run(
-          "SELECT id, recording_path, recording_id, person_id FROM attempt WHERE started_ms < $1 ORDER BY "
+          "SELECT id, recording_path, recording_id, person_id FROM attempt WHERE due_ms <= $1 ORDER BY "
           "started_ms, id LIMIT $2",
-          {before_ms, kAttemptsAtOnce});
+          {until_ms, kAttemptsAtOnce});
       if (!old.ok()) return old.error();
       std::set<std::int64_t> people;
       for (const Row& row : old->rows) {
@@ -368,7 +434,32 @@ core::Result<TidyReport> Tidy(Store& store, const Viewer& viewer, std::int64_t n
     });
     if (!done.ok()) return done.error();
     report.attempts += count;
-    if (count < kAttemptsAtOnce) break;
+    if (count < kAttemptsAtOnce) return {};
+  }
+}
+
+}  // namespace
+
+core::Result<TidyReport> Tidy(Store& store, const Viewer& viewer, std::int64_t now_ms, bool is_sure) {
+  if (auto may = MayManage(viewer); !may.ok()) return may.error();
+  const auto days = ReadRetention(store);
+  if (!days.ok()) return days.error();
+  Database& database = store.GetDatabase();
+  TidyReport report;
+  // without a limit nothing is too old
+  const std::int64_t before_ms =
+      *days > 0 ? now_ms - *days * kMillisecondsPerDay : std::numeric_limits<std::int64_t>::min();
+  if (!is_sure) {
+    auto asked = AskFirst(database, now_ms, before_ms);
+    if (!asked.ok()) return asked.error();
+    report.unsure = std::move(*asked);
+  }
+  if (!report.unsure) {
+    const auto due = MarkDue(database, now_ms, before_ms);
+    if (!due.ok()) return due.error();
+    report.due = *due;
+    if (auto removed = RemoveDue(database, now_ms - kGraceDays * kMillisecondsPerDay, report); !removed.ok())
+      return removed.error();
   }
   if (auto purged = database.Purge(); !purged.ok()) return purged.error();
   if (report.attempts > 0) {

@@ -7,15 +7,22 @@
 #include <string_view>
 
 #include "trocar/core/result.h"
+#include "trocar/store/store.h"
 
 namespace trocar::store {
 
-/// A folder that only its owner may enter; made where it is missing. \return kFileUnwritable
+/// Whether an error of the system says that a disk, a quota or a file can take no more.
+bool IsFull(int why) noexcept;
+
+/// A folder that only its owner may enter; made where it is missing, with those above it. \return kFileUnwritable, kStoreFull
 core::Status MakePrivateFolder(const std::filesystem::path& folder);
 
 /// Writes a file of mode 0600 in one piece: a reader sees the old one or the new one, and it survives a power cut after this returns.
 /// \return kFileUnwritable
 core::Status WritePrivateFile(const std::filesystem::path& path, std::string_view content);
+
+/// The same, where there is no such file yet: of several programs the first one's content stays.
+core::Status MakePrivateFileOnce(const std::filesystem::path& path, std::string_view content);
 
 /// A file of mode 0600 that grows, and takes its name once it is whole.
 class PrivateFileWriter {
@@ -28,6 +35,8 @@ class PrivateFileWriter {
 
   core::Status Append(std::string_view text);
   core::Status Finish();
+  /// Leaves a file that is there as it is.
+  core::Status FinishOnce();
 
  private:
   PrivateFileWriter(std::filesystem::path path, std::string partial, int file);
@@ -37,6 +46,12 @@ class PrivateFileWriter {
   std::string partial_, buffer_;
   int file_;
 };
+
+/// Erases what programs that were killed left half written in a folder: names and pseudonyms are in it.
+core::Status EraseRemnants(const std::filesystem::path& folder);
+
+/// The same in all folders of a store.
+core::Status EraseRemnants(const Place& place);
 
 /// Syncs a folder's entries. \return kFileUnwritable
 core::Status SyncFolder(const std::filesystem::path& folder);

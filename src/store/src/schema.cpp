@@ -142,7 +142,20 @@ constexpr std::string_view kVersion2 = R"(
 -- postgresql: CREATE INDEX standing_values ON standing (task, level, metric, hand, person_id, latest, lowest, highest);
 )";
 
-constexpr Migration kMigrations[] = {{1, kVersion1}, {2, kVersion2}};
+// Whether an attempt was replayed, and since when it is older than it may be. What earlier versions kept goes on counting, and says that nobody replayed it.
+constexpr std::string_view kVersion3 = R"(
+ALTER TABLE attempt ADD COLUMN verification {text} NOT NULL DEFAULT 'unverified'
+  CHECK (verification IN ('unverified', 'verified', 'recorded_here', 'accepted', 'refused'));
+ALTER TABLE attempt ADD COLUMN verification_why {text} NOT NULL DEFAULT 'not_yet';
+ALTER TABLE attempt ADD COLUMN verified_by {text} NOT NULL DEFAULT '';
+ALTER TABLE attempt ADD COLUMN verified_ms BIGINT;
+ALTER TABLE attempt ADD COLUMN claim {text} NOT NULL DEFAULT '';
+ALTER TABLE attempt ADD COLUMN due_ms BIGINT;
+UPDATE attempt SET verification = 'accepted', verification_why = 'earlier';
+-- postgresql: ALTER TABLE attempt ALTER COLUMN claim SET STATISTICS 0;
+)";
+
+constexpr Migration kMigrations[] = {{1, kVersion1}, {2, kVersion2}, {3, kVersion3}};
 
 void Replace(std::string& text, std::string_view from, std::string_view to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())

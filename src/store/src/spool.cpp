@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "attempt_rows.h"
 #include "database.h"
 #include "private_file.h"
 #include "sql.h"
@@ -24,6 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 using core::ErrorCode;
 using nlohmann::ordered_json;
+
+/// The outcome is a text of it, with escapes; that of a measured attempt has some thousand metrics.
+constexpr core::JsonLimits kLimits{8u << 20, 8, 500'000, 100, 4u << 20};
 
 std::uint32_t CalcChecksum(std::string_view text) {
   return static_cast<std::uint32_t>(
@@ -70,9 +74,44 @@ core::Status Move(const fs::path& from, const fs::path& folder) {
   std::error_code failure;
   fs::rename(from, folder / from.filename(), failure);
   if (failure && failure != std::errc::no_such_file_or_directory)
-    return core::Error{ErrorCode::kFileUnwritable,
+    return core::Error{IsFull(failure.value()) ? ErrorCode::kStoreFull : ErrorCode::kFileUnwritable,
                        from.string() + ": " + failure.message() + "; check its rights"};
   return {};
+}
+
+/// 32 random bytes that only this computer's programs know. Where `makes`, they are made where there are none.
+core::Result<std::string> ReadSeal(const fs::path& path, bool makes) {
+  [[maybe_unused]] const int started = ::sodium_init();  // again does nothing
+  TROCAR_ASSERT(started >= 0);
+  auto text = core::ReadFile(path, crypto_auth_KEYBYTES + 1);
+  if (text.ok() && text->size() == crypto_auth_KEYBYTES) return text;
+  if (text.ok())
+    return core::Error{ErrorCode::kStoreDamaged,
+                       path.string() +
+                           ": it is not what it was; remove it, and attempts that wait are taken as "
+                           "not verified"};
+  if (text.error().code != ErrorCode::kFileMissing) return text;
+  if (!makes) return std::string();
+  std::string secret(crypto_auth_KEYBYTES, '\0');
+  ::randombytes_buf(secret.data(), secret.size());
+  if (auto made = MakePrivateFileOnce(path, secret); !made.ok()) return made.error();
+  return core::ReadFile(path, crypto_auth_KEYBYTES + 1);  // another program may have been first
+}
+
+std::string CalcSeal(const std::string& text, std::string_view seal) {
+  unsigned char sum[crypto_auth_BYTES];
+  ::crypto_auth(sum, reinterpret_cast<const unsigned char*>(text.data()), text.size(),
+                reinterpret_cast<const unsigned char*>(seal.data()));
+  char digits[2 * sizeof sum + 1];
+  ::sodium_bin2hex(digits, sizeof digits, sum, sizeof sum);
+  return digits;
+}
+
+bool HasSeal(const ordered_json& json, const std::string& text, std::string_view seal) {
+  const auto found = json.find("seal");
+  if (seal.size() != crypto_auth_KEYBYTES || found == json.end() || !found->is_string()) return false;
+  const std::string expected = CalcSeal(text, seal), &there = found->get_ref<const std::string&>();
+  return there.size() == expected.size() && ::sodium_memcmp(there.data(), expected.data(), there.size()) == 0;
 }
 
 ordered_json TextOrNull(const std::string& text) {
@@ -81,35 +120,45 @@ ordered_json TextOrNull(const std::string& text) {
 
 }  // namespace
 
-std::string WriteAttemptJson(const Attempt& attempt) {
-  ordered_json json = {{"recording_id", EncodeText(attempt.recording_id)},
-                       {"started", EncodeText(attempt.started)},
-                       {"trainee", TextOrNull(attempt.trainee)},
-                       {"task", EncodeText(attempt.task)},
-                       {"level", EncodeText(attempt.level)},
-                       {"patient", EncodeText(attempt.patient)},
-                       {"seed", std::to_string(attempt.seed)},
-                       {"seconds", attempt.seconds},
-                       {"completed", attempt.is_completed},
-                       {"passed", attempt.is_passed ? ordered_json(*attempt.is_passed) : ordered_json()},
-                       {"score", attempt.score ? ordered_json(*attempt.score) : ordered_json()},
-                       {"outcome", EncodeText(attempt.outcome)},
-                       {"recording", EncodeText(attempt.recording)},
-                       {"program", EncodeText(attempt.program)},
-                       {"metrics", ordered_json::array()}};
+std::string WriteAttemptJson(const Attempt& attempt, std::string_view seal) {
+  ordered_json json = {
+      {"recording_id", EncodeText(attempt.recording_id)},
+      {"started", EncodeText(attempt.started)},
+      {"trainee", TextOrNull(attempt.trainee)},
+      {"task", EncodeText(attempt.task)},
+      {"level", EncodeText(attempt.level)},
+      {"patient", EncodeText(attempt.patient)},
+      {"seed", std::to_string(attempt.seed)},
+      {"seconds", attempt.seconds},
+      {"completed", attempt.is_completed},
+      {"passed", attempt.is_passed ? ordered_json(*attempt.is_passed) : ordered_json()},
+      {"score", attempt.score ? ordered_json(*attempt.score) : ordered_json()},
+      {"outcome", EncodeText(attempt.outcome)},
+      {"recording", EncodeText(attempt.recording)},
+      {"program", EncodeText(attempt.program)},
+      {"verification", VerificationName(attempt.mark.state)},
+      {"verification_why", WhyName(attempt.mark.why)},
+      {"verified_by", EncodeText(attempt.mark.program)},
+      {"verified_ms", attempt.mark.time_ms ? ordered_json(*attempt.mark.time_ms) : ordered_json()},
+      {"claim", EncodeText(attempt.mark.claim)},
+      {"metrics", ordered_json::array()}};
   for (const training::MetricValue& m : attempt.metrics)
     json["metrics"].push_back(
         {EncodeText(m.metric), EncodeText(m.hand), EncodeText(m.phase), EncodeText(m.tool), m.value});
   const std::string text = json.dump();
   return "{\"format\": \"trocar-attempt\", \"version\": 1, \"crc32\": " + std::to_string(CalcChecksum(text)) +
-         ",\n\"attempt\": " + text + "}\n";
+         (seal.empty() ? "" : ", \"seal\": \"" + CalcSeal(text, seal) + "\"") + ",\n\"attempt\": " + text +
+         "}\n";
 }
 
-core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& source) {
+core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& source,
+                                      std::string_view seal) {
   const core::Error damaged{
       ErrorCode::kStoreDamaged,
       source + ": this waiting attempt is damaged; it is kept in the folder \"damaged\""};
-  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  const auto parsed = core::ParseJson<ordered_json>(text, source, kLimits);
+  if (!parsed.ok()) return damaged;
+  const ordered_json& json = *parsed;
   for (const char* key : {"format", "version", "crc32", "attempt"}) {
     if (!json.is_object() || !json.contains(key)) return damaged;
   }
@@ -121,7 +170,7 @@ core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& 
                        source + ": this attempt is of a later program; use that one"};
   if (json["crc32"].get<std::uint32_t>() != CalcChecksum(json["attempt"].dump())) return damaged;
   // what carries its checksum is as it was written; the fields are still checked, since anybody can write such a file
-  const auto document = core::JsonDocument::Parse(json["attempt"].dump(), source);
+  const auto document = core::JsonDocument::Parse(json["attempt"].dump(), source, kLimits);
   if (!document.ok()) return document.error();
   const core::JsonView view = document->Root();
   const auto text_of = [&](const char* key) { return DecodeText(view.Text(key)); };
@@ -141,6 +190,18 @@ core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& 
   attempt.outcome = text_of("outcome");
   attempt.recording = text_of("recording");
   attempt.program = text_of("program");
+  attempt.mark.why = view.Has("verification") ? WhyUnverified::kImported : WhyUnverified::kEarlier;
+  if (HasSeal(json, json["attempt"].dump(), seal)) {
+    const auto state = ParseVerification(view.Text("verification"));
+    const auto why = ParseWhy(view.Text("verification_why"));
+    if (!state || !why) view.Complain("verification or verification_why is not a word that is known");
+    attempt.mark.state = state.value_or(Verification::kUnverified);
+    attempt.mark.why = why.value_or(WhyUnverified::kNotYet);
+    attempt.mark.program = text_of("verified_by");
+    attempt.mark.claim = text_of("claim");
+    if (const auto time = json["attempt"].value("verified_ms", ordered_json()); time.is_number_integer())
+      attempt.mark.time_ms = time.get<std::int64_t>();
+  }
   for (const core::JsonView& row : view.Array("metrics")) {
     const std::vector<core::JsonView> fields = row.Elements();
     if (fields.size() != 5) {
@@ -156,7 +217,18 @@ core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& 
 }
 
 core::Status Spool::Keep(const Attempt& attempt) const {
-  return WritePrivateFile(folder_ / FileName(attempt), WriteAttemptJson(attempt));
+  const auto seal = ReadSeal(seal_, true);
+  if (!seal.ok()) return seal.error();
+  // what waits for one person is not replaced by another's
+  if (const auto there = core::ReadFile(folder_ / FileName(attempt)); there.ok()) {
+    const auto waiting = ReadAttemptJson(*there, "");
+    if (waiting.ok() && waiting->trainee != attempt.trainee) return Conflict();
+  }
+  return WritePrivateFile(folder_ / FileName(attempt), WriteAttemptJson(attempt, *seal));
+}
+
+core::Status Spool::TakeBack(const Attempt& attempt) const {
+  return EraseFile(folder_ / "held" / FileName(attempt));
 }
 
 namespace {
@@ -173,9 +245,15 @@ struct DeliveryPlaces {
   fs::path done;       // where else it goes; empty: it is removed
   fs::path held;       // of trainees that are unknown; empty: they are added
   fs::path damaged;
+  fs::path seal;
 };
 
 void DeliverFolder(Store& store, const DeliveryPlaces& places, DeliveryReport& report) {
+  const auto seal = ReadSeal(places.seal, false);
+  if (!seal.ok()) {
+    report.failure = seal.error();
+    return;
+  }
   for (const fs::path& file : ListFiles(places.from)) {
     const auto text = core::ReadFile(file);
     if (!text.ok()) {
@@ -190,7 +268,7 @@ void DeliverFolder(Store& store, const DeliveryPlaces& places, DeliveryReport& r
       }
       continue;
     }
-    const auto attempt = ReadAttemptJson(*text, file.filename().string());
+    const auto attempt = ReadAttemptJson(*text, file.filename().string(), *seal);
     core::Status moved;
     if (!attempt.ok()) {
       if (!IsOfAttempt(attempt.error().code)) {
@@ -206,10 +284,14 @@ void DeliverFolder(Store& store, const DeliveryPlaces& places, DeliveryReport& r
         const auto person = AddPerson(store, Viewer::Owner(), Role::kTrainee, attempt->trainee);
         if (person.ok()) added = AddAttempt(store, *attempt);
       }
+      const auto looked = added.ok() ? core::Result<bool>(false) : IsAnothers(store.GetDatabase(), *attempt);
+      const bool is_anothers = looked.ok() && *looked;
       if (added.ok()) {
         ++(*added ? report.added : report.known);
         if (!places.stays) moved = places.done.empty() ? EraseFile(file) : Move(file, places.done);
-      } else if (is_unknown && !places.held.empty()) {
+      } else if (is_anothers && places.held.empty()) {
+        ++report.known;
+      } else if ((is_unknown || is_anothers) && !places.held.empty()) {
         ++report.held;
         moved = Move(file, places.held);
       } else if (added.error().code == ErrorCode::kStoreInvalid) {
@@ -231,7 +313,7 @@ void DeliverFolder(Store& store, const DeliveryPlaces& places, DeliveryReport& r
 
 DeliveryReport Spool::Deliver(Store& store) const {
   DeliveryReport report;
-  DeliverFolder(store, {folder_, false, journal_, folder_ / "held", folder_ / "damaged"}, report);
+  DeliverFolder(store, {folder_, false, journal_, folder_ / "held", folder_ / "damaged", seal_}, report);
   return report;
 }
 
@@ -244,7 +326,7 @@ DeliveryReport Spool::DeliverHeld(Store& store) const {
 
 DeliveryReport Spool::DeliverJournal(Store& store) const {
   DeliveryReport report;
-  DeliverFolder(store, {journal_, true, {}, {}, folder_ / "damaged"}, report);
+  DeliverFolder(store, {journal_, true, {}, {}, folder_ / "damaged", seal_}, report);
   return report;
 }
 

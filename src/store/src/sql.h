@@ -23,6 +23,14 @@ std::string Put(Parameters& parameters, Value value);
 /// " AND ..." that leaves only people whom the viewer may see. \param column  that holds a person's id
 std::string OnlyVisible(const Viewer& viewer, const std::string& column, Parameters& parameters);
 
+inline core::Error Conflict() {
+  return {
+      core::ErrorCode::kStoreInvalid,
+      "this recording is in the store already, as the attempt of somebody else or of nobody in particular, "
+      "and "
+      "stays that; an administrator who knows whose it is gives it to them: trocar store add FILE --trainee "
+      "PSEUDONYM --move"};
+}
 inline core::Error Unknown(const std::string& what) {
   return {core::ErrorCode::kStoreUnknown, what};
 }

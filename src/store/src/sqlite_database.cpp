@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -15,6 +16,7 @@
 #include <utility>
 
 #include "database.h"
+#include "private_file.h"
 #include "trocar/core/clock.h"
 
 namespace trocar::store {
@@ -35,8 +37,22 @@ using Statement = std::unique_ptr<sqlite3_stmt, CloseStatement>;
 
 constexpr std::size_t kMostStatements = 200;  // kept prepared
 
-core::Error MakeError(int extended, const std::string& path) {
+/// Whether a disk can take no more: SQLite says so of its writes alone, not of its log's index, a new file or a folder.
+bool IsDiskFull(const std::string& path, int system_error) {
+  if (IsFull(system_error)) return true;
+  struct statvfs disk {};
+  const fs::path folder = fs::path(path).parent_path();
+  if (::statvfs(folder.empty() ? "." : folder.c_str(), &disk) != 0) return false;
+  return disk.f_bavail == 0 || (disk.f_files > 0 && disk.f_favail == 0);
+}
+
+/// \param system_error  errno, where it is known
+core::Error MakeError(int extended, const std::string& path, int system_error = 0) {
   const std::string why = path + ": " + ::sqlite3_errstr(extended);
+  const int primary = extended & 0xFF;
+  const bool may_be_full = primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN;
+  if (may_be_full && extended != SQLITE_IOERR_READ && IsDiskFull(path, system_error))
+    return {ErrorCode::kStoreFull, why + "; the disk is full: free space on it. Attempts wait in the spool"};
   switch (extended & 0xFF) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
@@ -164,7 +180,10 @@ class SqliteDatabase final : public Database {
   }
 
  private:
-  core::Error Failure() { return MakeError(::sqlite3_extended_errcode(connection_.get()), path_); }
+  core::Error Failure() {
+    return MakeError(::sqlite3_extended_errcode(connection_.get()), path_,
+                     ::sqlite3_system_errno(connection_.get()));
+  }
 
   core::Result<sqlite3_stmt*> Prepare(std::string_view sql) {
     std::string key(sql);
@@ -228,12 +247,16 @@ class SqliteDatabase final : public Database {
 /// Only its owner may read a store; SQLite gives its log the same rights.
 core::Status MakePrivateFile(const std::string& path) {
   std::error_code failure;
-  if (const fs::path folder = fs::path(path).parent_path(); !folder.empty())
-    fs::create_directories(folder, failure);
+  if (const fs::path folder = fs::path(path).parent_path(); !folder.empty()) {
+    if (auto made = MakePrivateFolder(folder); !made.ok() && made.error().code == ErrorCode::kStoreFull)
+      return made;
+  }
   const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (file < 0) {
     if (errno == EACCES && fs::exists(path, failure)) return {};  // may be readable; SQLite says what it can
-    return core::Error{errno == EROFS || errno == EACCES ? ErrorCode::kStoreReadOnly : ErrorCode::kStoreAway,
+    return core::Error{IsFull(errno)                       ? ErrorCode::kStoreFull
+                       : errno == EROFS || errno == EACCES ? ErrorCode::kStoreReadOnly
+                                                           : ErrorCode::kStoreAway,
                        path + ": " + std::strerror(errno) + "; check the path and its rights"};
   }
   ::close(file);
@@ -252,7 +275,7 @@ core::Result<std::unique_ptr<Database>> OpenSqlite(const std::string& path, doub
   const int flags = is_look ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
   const int code = ::sqlite3_open_v2(path.c_str(), &raw, flags | SQLITE_OPEN_FULLMUTEX, nullptr);
   Connection connection(raw);
-  if (code != SQLITE_OK) return MakeError(code, path);
+  if (code != SQLITE_OK) return MakeError(code, path, ::sqlite3_system_errno(raw));
   ::sqlite3_extended_result_codes(raw, 1);
   auto database = std::make_unique<SqliteDatabase>(std::move(connection), path, busy_seconds);
   // no temporary files: people's rows would lie outside of the store's folder
@@ -288,17 +311,17 @@ core::Status BackUpSqlite(Database& database, const std::string& to) {
   sqlite3* raw = nullptr;
   const int code = ::sqlite3_open_v2(to.c_str(), &raw, SQLITE_OPEN_READWRITE, nullptr);
   const Connection target(raw);
-  if (code != SQLITE_OK) return MakeError(code, to);
+  if (code != SQLITE_OK) return MakeError(code, to, ::sqlite3_system_errno(raw));
   sqlite3_backup* backup = ::sqlite3_backup_init(raw, "main", from.Handle(), "main");
-  if (backup == nullptr) return MakeError(::sqlite3_extended_errcode(raw), to);
+  if (backup == nullptr) return MakeError(::sqlite3_extended_errcode(raw), to, ::sqlite3_system_errno(raw));
   // in one step: a backup of many steps begins again whenever another program writes between them
   const int copied = ::sqlite3_backup_step(backup, -1);
   const int finished = ::sqlite3_backup_finish(backup);
-  if (copied != SQLITE_DONE) return MakeError(copied, to);
-  if (finished != SQLITE_OK) return MakeError(finished, to);
+  if (copied != SQLITE_DONE) return MakeError(copied, to, ::sqlite3_system_errno(raw));
+  if (finished != SQLITE_OK) return MakeError(finished, to, ::sqlite3_system_errno(raw));
   // one file, without a log beside it
   if (::sqlite3_exec(raw, "PRAGMA journal_mode=DELETE", nullptr, nullptr, nullptr) != SQLITE_OK)
-    return MakeError(::sqlite3_extended_errcode(raw), to);
+    return MakeError(::sqlite3_extended_errcode(raw), to, ::sqlite3_system_errno(raw));
   return {};
 }
 

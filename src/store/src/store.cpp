@@ -12,6 +12,8 @@
 #include "sql.h"
 #include "tables.h"
 #include "trocar/core/file_lock.h"
+#include "trocar/core/log.h"
+#include "trocar/core/partial_path.h"
 #include "trocar/store/maintenance.h"
 #include "trocar/store/spool.h"
 
@@ -117,7 +119,30 @@ core::Result<Store> Store::OpenSound(const Place& place, const StoreSettings& se
   return Store(place, std::move(*database));
 }
 
+core::Status EraseRemnants(const Place& place) {
+  std::vector<fs::path> folders = {place.folder, place.SpoolFolder(), place.JournalFolder(),
+                                   place.BackupFolder()};
+  for (const char* name : {"held", "damaged", "unmeasured"}) folders.push_back(place.SpoolFolder() / name);
+  for (const fs::path& folder : folders) {
+    if (auto gone = EraseRemnants(folder); !gone.ok()) return gone;
+  }
+  // the names as they were before their last change: another name of the same file, or a file of its own
+  std::error_code failure;
+  const fs::path old = place.NamesFile().string() + ".old";
+  if (!fs::exists(old, failure)) return {};
+  const auto lock = core::FileLock::Take(place.NamesFile().string() + ".lock");
+  if (!lock.ok()) return {};  // somebody is at it
+  if (!fs::equivalent(old, place.NamesFile(), failure)) return EraseFile(old);
+  fs::remove(old, failure);
+  return {};
+}
+
 core::Result<Store> Store::Open(const Place& place, const StoreSettings& settings) {
+  if (!settings.only_look) {
+    // what is left of a program that was killed hinders nobody; who erases a person hears of it
+    if (auto gone = EraseRemnants(place); !gone.ok())
+      core::Log(core::LogLevel::kWarning, gone.error().Text());
+  }
   if (place.IsPostgres()) return OpenSound(place, settings);
   std::error_code failure;
   const bool is_gone = !fs::exists(place.url, failure) &&
@@ -162,7 +187,8 @@ core::Result<Store> Store::Rebuild(const Place& place, const StoreSettings& sett
   }
   const fs::path backup = FindBackup(place);
   if (!backup.empty()) {
-    const fs::path partial = place.url + ".partial";
+    const core::PartialPath part(place.url);
+    const fs::path& partial = part.Path();
     fs::copy_file(backup, partial, fs::copy_options::overwrite_existing, failure);
     if (!failure) fs::permissions(partial, fs::perms::owner_read | fs::perms::owner_write, failure);
     if (!failure) fs::rename(partial, place.url, failure);

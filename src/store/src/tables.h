@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,8 @@ struct Column {
   ColumnKind kind = ColumnKind::kText;
   bool may_be_null = false;
   Reference refers = Reference::kNone;
+  std::optional<std::string_view> before =
+      {};  ///< text of a row that was written before there was this column
 };
 
 struct Table {

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <unordered_map>
@@ -15,6 +16,8 @@
 #include "schema.h"
 #include "sql.h"
 #include "tables.h"
+#include "trocar/core/json.h"
+#include "trocar/store/attempts.h"
 #include "trocar/store/maintenance.h"
 #include "trocar/store/people.h"
 
@@ -24,6 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 using core::ErrorCode;
 using nlohmann::ordered_json;
+
+/// Any number of rows; a course, a certificate or a remark may be long, with an escape for each of its letters.
+constexpr core::JsonLimits kExportLimits{0, 6, std::numeric_limits<std::size_t>::max(), 100, 16u << 20};
 
 ordered_json JsonOf(const Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return *whole;
@@ -40,7 +46,7 @@ core::Error BadRow(const Table& table, const std::string& what) {
 /// Takes rows of another store, in the order of Tables().
 class RowImporter {
  public:
-  explicit RowImporter(Database& database) : database_(database) {}
+  RowImporter(Database& database, Trust trust) : database_(database), trust_(trust) {}
 
   core::Status Take(const Table& table, const std::vector<Value>& row) {
     Parameters values;
@@ -48,7 +54,11 @@ class RowImporter {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Column& column = table.columns[c];
       Value value = row[c];
+      if (value.index() == 0 && column.before) value = std::string(*column.before);
       if (auto sound = CheckKind(table, column, value); !sound.ok()) return sound;
+      if (column.name == "outcome") {
+        if (auto sound = CheckOutcome(std::get<std::string>(value)); !sound.ok()) return sound;
+      }
       if (column.name == "id") {
         old_id = std::get<std::int64_t>(value);
         continue;
@@ -69,6 +79,16 @@ class RowImporter {
     // what belongs to an attempt that was there is there, too; ratings may have come later
     const bool is_rating = table.name == "rating";
     if (attempt != 0 && !is_rating && new_attempts_.count(attempt) == 0) return {};
+    if (table.owns == Reference::kPerson) {
+      if (auto sound = CheckPseudonym(std::get<std::string>(values.front())); !sound.ok())
+        return BadRow(table, sound.error().message);
+    } else if (table.owns == Reference::kGroup) {
+      if (auto sound = CheckGroupName(std::get<std::string>(values.front())); !sound.ok())
+        return BadRow(table, sound.error().message);
+    }
+    if (table.owns == Reference::kAttempt) {
+      if (auto marked = Mark(table, values); !marked.ok()) return marked;
+    }
     return Insert(table, values, old_id);
   }
 
@@ -94,6 +114,28 @@ class RowImporter {
       return {};
     }
     return BadRow(table, std::string(column.name) + " is missing or of the wrong kind");
+  }
+
+  /// Anybody can write a file: what it says of an attempt's truth counts only where whoever imports it says so.
+  core::Status Mark(const Table& table, Parameters& values) const {
+    const auto field = [&](std::string_view name) -> Value& {
+      std::size_t place = 0;
+      for (const Column& column : table.columns) {
+        if (column.name == name) break;
+        if (column.name != "id") ++place;
+      }
+      return values[place];
+    };
+    field("due_ms") = std::monostate{};  // how long it is kept is decided here
+    const auto state = ParseVerification(std::get<std::string>(field("verification")));
+    if (!state || !ParseWhy(std::get<std::string>(field("verification_why"))))
+      return BadRow(table, "verification or verification_why is a word that this program does not know");
+    if (trust_ == Trust::kAsItSays || *state == Verification::kRefused) return {};
+    field("verification") = std::string(VerificationName(Verification::kUnverified));
+    field("verification_why") = std::string(WhyName(WhyUnverified::kImported));
+    field("verified_by") = std::string();
+    field("verified_ms") = std::monostate{};
+    return {};
   }
 
   core::Status Insert(const Table& table, const Parameters& values, std::int64_t old_id) {
@@ -137,7 +179,14 @@ class RowImporter {
           "a course of the export is in the store with another text in the same version; nothing was "
           "imported");
     id = found->rows[0].Int(0);
-    if (table.owns == Reference::kAttempt) ++report.known;
+    if (table.owns == Reference::kAttempt) {
+      ++report.known;
+      const auto person = database_.Run("SELECT person_id FROM attempt WHERE id = $1", {id});
+      if (!person.ok()) return person.error();
+      const auto* theirs = std::get_if<std::int64_t>(&values[3]);
+      if (person->rows[0].IntOrNull(0) != (theirs == nullptr ? std::nullopt : std::optional(*theirs)))
+        ++report.conflicts;
+    }
     return {};
   }
 
@@ -163,6 +212,7 @@ class RowImporter {
   }
 
   Database& database_;
+  Trust trust_;
   std::array<std::unordered_map<std::int64_t, std::int64_t>, static_cast<std::size_t>(Reference::kCount)>
       ids_;
   std::unordered_set<std::int64_t> new_attempts_;
@@ -222,10 +272,8 @@ class ExportReader final : public nlohmann::json_sax<nlohmann::json> {
     }
     return Fail("a table that is not known or out of turn");
   }
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception&) override {
-    failure_ = {ErrorCode::kJsonSyntax,
-                "the export is no JSON at byte " + std::to_string(position) + "; export it again"};
-    return false;
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;  // core says it
   }
 
  private:
@@ -341,7 +389,7 @@ core::Status ExportCsv(Store& store, const Viewer& viewer, const fs::path& file)
   auto written = InTransaction(database, Access::kRead, [&]() -> core::Status {
     if (auto head =
             writer->Append("recording_id,started,trainee,task,level,patient,seed,completed,passed,metric,"
-                           "hand,phase,tool,value\r\n");
+                           "hand,phase,tool,value,verification\r\n");
         !head.ok())
       return head;
     for (std::int64_t done = -1;;) {
@@ -353,7 +401,8 @@ core::Status ExportCsv(Store& store, const Viewer& viewer, const fs::path& file)
       const auto rows = database.Run(
           "SELECT attempt.recording_id, attempt.started, person.pseudonym, attempt.task, attempt.level, "
           "attempt.patient, attempt.seed, attempt.completed, attempt.passed, metric.metric, metric.hand, "
-          "metric.phase, metric.tool, metric.value FROM attempt LEFT JOIN person ON person.id = "
+          "metric.phase, metric.tool, metric.value, attempt.verification FROM attempt LEFT JOIN person ON "
+          "person.id = "
           "attempt.person_id "
           "JOIN metric ON metric.attempt_id = attempt.id WHERE attempt.id > $1 AND attempt.id <= $2 ORDER BY "
           "attempt.id, metric.metric, metric.hand, metric.phase, metric.tool",
@@ -370,7 +419,7 @@ core::Status ExportCsv(Store& store, const Viewer& viewer, const fs::path& file)
   return written.ok() ? writer->Finish() : written;
 }
 
-core::Result<ImportReport> Import(Store& store, const Viewer& viewer, const fs::path& file) {
+core::Result<ImportReport> Import(Store& store, const Viewer& viewer, const fs::path& file, Trust trust) {
   if (auto may = MayManage(viewer); !may.ok()) return may.error();
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
@@ -381,12 +430,14 @@ core::Result<ImportReport> Import(Store& store, const Viewer& viewer, const fs::
   stream.seekg(0);
   Database& database = store.GetDatabase();
   return InTransaction(database, Access::kWrite, [&]() -> core::Result<ImportReport> {
-    RowImporter importer(database);
+    RowImporter importer(database, trust);
     if (head == "SQLite format 3") {
       if (auto taken = ImportSqlite(file, importer); !taken.ok()) return taken.error();
     } else {
       ExportReader reader(importer);
-      nlohmann::json::sax_parse(stream, &reader);
+      const auto read = core::ParseJsonEvents<nlohmann::json_sax<nlohmann::json>>(stream, file.string(),
+                                                                                  reader, kExportLimits);
+      if (!read.ok()) return read.error();
       if (auto taken = reader.Result(file.string()); !taken.ok()) return taken.error();
     }
     if (auto counted = importer.Finish(); !counted.ok()) return counted.error();

@@ -10,6 +10,7 @@
 
 #include "store_test.h"
 #include "trocar/store/courses.h"
+#include "trocar/store/keep_attempt.h"
 #include "trocar/store/maintenance.h"
 
 namespace trocar::store {
@@ -71,6 +72,39 @@ TEST_P(Attempts, ArriveOnce) {
   EXPECT_EQ(standing->latest, 1);
   attempt.started = "2026-01-01T00:00:01+01:00";  // the recording of another time is another attempt
   EXPECT_TRUE(Get(AddAttempt(Open(), attempt)));
+}
+
+TEST_P(Attempts, StayWhoseTheyAre) {
+  const std::string one = Add(Role::kTrainee), other = Add(Role::kTrainee);
+  const MetricKey key{"peg_transfer", "easy", "score", "", "", ""};
+  EXPECT_TRUE(Get(AddAttempt(Open(), MakeAttempt(1, one))));
+  EXPECT_FALSE(Get(AddAttempt(Open(), MakeAttempt(1, one)))) << "the control: again for the same";
+  for (const std::string& who : {other, std::string()})
+    EXPECT_CODE(AddAttempt(Open(), MakeAttempt(1, who)), kStoreInvalid);
+  EXPECT_TRUE(Get(AddAttempt(Open(), MakeAttempt(2, ""))));
+  EXPECT_CODE(AddAttempt(Open(), MakeAttempt(2, one)), kStoreInvalid);
+  // through the spool it is held, and not called damaged
+  const Spool spool(place_);
+  EXPECT_GOOD(spool.Keep(MakeAttempt(1, other)));
+  EXPECT_CODE(spool.Keep(MakeAttempt(1, one)), kStoreInvalid);
+  const DeliveryReport report = spool.Deliver(Open());
+  EXPECT_FALSE(report.failure);
+  EXPECT_EQ(report.held, 1);
+  EXPECT_EQ(report.damaged, 0);
+  EXPECT_EQ(spool.CountHeld(), 1u);
+  EXPECT_CODE(KeepAttempt(place_, MakeAttempt(1, other)), kStoreInvalid);
+  EXPECT_EQ(spool.CountHeld(), 0u) << "whoever was told keeps it";
+  EXPECT_EQ(Get(ListAttempts(Open(), kOwner, {one, "", ""})).attempts.size(), 1u);
+  // an administrator gives it over, with what it counts
+  EXPECT_CODE(MoveAttempt(Open(), Get(FindViewer(Open(), other)), MakeAttempt(1, "").recording_id,
+                          MakeAttempt(1, "").started, other),
+              kStoreRefused);
+  EXPECT_GOOD(
+      MoveAttempt(Open(), kOwner, MakeAttempt(1, "").recording_id, MakeAttempt(1, "").started, other));
+  EXPECT_FALSE(Get(FindStanding(Open(), kOwner, one, key)).has_value());
+  EXPECT_TRUE(Get(FindStanding(Open(), kOwner, other, key)).has_value());
+  EXPECT_FALSE(Get(AddAttempt(Open(), MakeAttempt(1, other))));
+  EXPECT_GOOD(Verify(Open()));
 }
 
 TEST_P(Attempts, ThatAreNotWholeAreRefused) {

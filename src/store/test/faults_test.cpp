@@ -374,8 +374,9 @@ TEST_P(PostgresFaults, AwayOrOfAnotherSchema) {
   ASSERT_FALSE(nowhere.ok());
   EXPECT_EQ(nowhere.error().code, core::ErrorCode::kStoreAway);
   EXPECT_THAT(nowhere.error().message, testing::Not(HasSubstr("secret")));
-  EXPECT_EQ((Place{"postgresql://u:secret@h/d?password=more&x=1", {}}).Text(), "postgresql://u@h/d?x=1");
-  EXPECT_EQ((Place{"postgresql://u:se/cret@h/d?password=a&password=b", {}}).Text(), "postgresql://u@h/d?");
+  EXPECT_EQ((Place{"postgresql://u:secret@h/d?password=more&sslmode=require&x=1", {}}).Text(),
+            "postgresql://u@h/d?sslmode=require");
+  EXPECT_EQ((Place{"postgresql://u:se/cret@h/d?password=a&password=b", {}}).Text(), "postgresql://u@h/d");
   EXPECT_TRUE(Open().GetDatabase().Run("UPDATE setting SET value = '99' WHERE name = 'schema'").ok());
   EXPECT_CODE(OpenResult(), kStoreSchema);
   Place other = MakePlace("other");

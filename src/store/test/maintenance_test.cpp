@@ -22,11 +22,11 @@ class Maintenance : public StoreTest {
   /// Something in every table.
   void Fill() {
     trainee_ = Add(Role::kTrainee), teacher_ = Add(Role::kInstructor);
-    EXPECT_GOOD(AddGroup(Open(), kOwner, "'evening'\n"));
+    EXPECT_GOOD(AddGroup(Open(), kOwner, "'evening'"));
     for (const auto& person : {trainee_, teacher_})
-      EXPECT_GOOD(JoinGroup(Open(), kOwner, "'evening'\n", person));
+      EXPECT_GOOD(JoinGroup(Open(), kOwner, "'evening'", person));
     EXPECT_GOOD(AddCourse(Open(), kOwner, {"basic", 1, "{}", {{"a", "peg_transfer", "easy"}}}));
-    EXPECT_GOOD(AddAssignment(Open(), kOwner, {"basic", 1, "", "'evening'\n", 9000, {{"a", 5000}}}));
+    EXPECT_GOOD(AddAssignment(Open(), kOwner, {"basic", 1, "", "'evening'", 9000, {{"a", 5000}}}));
     EXPECT_GOOD(
         SetThreshold(Open(), kOwner, {{"peg_transfer", "easy", "score", "", "", ""}, 50, true, "ours"}));
     for (int i = 0; i < 20; ++i)
@@ -128,14 +128,14 @@ TEST_P(Maintenance, ExportGoesIntoTheOtherDatabase) {
     EXPECT_GOOD(AddPerson(*other, kOwner, Role::kTrainee));
     EXPECT_GOOD(AddGroup(*other, kOwner, "another"));
     EXPECT_TRUE(Get(AddAttempt(*other, MakeAttempt(777, ""))));
-    const ImportReport report = Get(Import(*other, kOwner, from));
+    const ImportReport report = Get(Import(*other, kOwner, from, Trust::kAsItSays));
     EXPECT_EQ(report.people, 2);
     EXPECT_EQ(report.groups, 1);
     EXPECT_EQ(report.courses, 1);
     EXPECT_EQ(report.attempts, 20);
     EXPECT_EQ(report.known, 0);
     EXPECT_GOOD(Verify(*other));
-    const ImportReport again = Get(Import(*other, kOwner, from));
+    const ImportReport again = Get(Import(*other, kOwner, from, Trust::kAsItSays));
     EXPECT_EQ(again.people + again.groups + again.courses + again.attempts, 0);
     EXPECT_EQ(again.known, 20);
     for (const char* sql :
@@ -174,6 +174,10 @@ TEST_P(Maintenance, BadExportsChangeNothing) {
   EXPECT_CODE(import(replaced("\"role\":\"trainee\"", "\"role\":7")), kJsonField);
   EXPECT_CODE(import(replaced("\"group_id\":1", "\"group_id\":99")), kJsonField);
   EXPECT_CODE(import(replaced("\"membership\"", "\"sqlite_schema\"")), kJsonField);
+  EXPECT_CODE(import(replaced("\"verification\":\"verified\"", "\"verification\":\"sure\"")), kJsonField);
+  EXPECT_CODE(import(replaced("\"verification_why\":\"\"", "\"verification_why\":\"x\"")), kJsonField);
+  EXPECT_CODE(import(replaced("\"pseudonym\":\"", "\"pseudonym\":\"../../")), kJsonField);
+  EXPECT_CODE(import(replaced("\"pseudonym\":\"", "\"pseudonym\":\"\\n")), kJsonField);
   EXPECT_CODE(import("[]"), kJsonField);
   EXPECT_CODE(import("{}"), kStoreSchema);
   EXPECT_CODE(import("\"x\""), kJsonField);
@@ -185,8 +189,8 @@ TEST_P(Maintenance, BadExportsChangeNothing) {
 
 TEST_P(Maintenance, CsvHoldsEachNumber) {
   Fill();
-  Add(Role::kTrainee, "a \"b\", c\nd");
-  EXPECT_TRUE(Get(AddAttempt(Open(), MakeAttempt(50, "a \"b\", c\nd"))));
+  Add(Role::kTrainee, "a \"b\", c");
+  EXPECT_TRUE(Get(AddAttempt(Open(), MakeAttempt(50, "a \"b\", c"))));
   EXPECT_GOOD(ExportCsv(Open(), kOwner, folder_.Path() / "a.csv"));
   const std::string csv = ReadAll(folder_.Path() / "a.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\r'), 1 + 21 * 5);
@@ -194,7 +198,7 @@ TEST_P(Maintenance, CsvHoldsEachNumber) {
   EXPECT_TRUE(Get(AddAttempt(Open(), MakeAttempt(51, "=SUM(A1)"))));
   EXPECT_GOOD(ExportCsv(Open(), kOwner, folder_.Path() / "b.csv"));
   EXPECT_THAT(ReadAll(folder_.Path() / "b.csv"), HasSubstr(",'=SUM(A1),peg_transfer"));
-  EXPECT_THAT(csv, HasSubstr(",\"a \"\"b\"\", c\nd\",peg_transfer,easy,,7,1,1,path_length,left,,,"));
+  EXPECT_THAT(csv, HasSubstr(",\"a \"\"b\"\", c\",peg_transfer,easy,,7,1,1,path_length,left,,,"));
 }
 
 TEST_P(Maintenance, KeepsTheNewestBackups) {

@@ -26,17 +26,40 @@ const std::vector<std::string> kNastyTexts = {"../../etc/passwd",
                                               std::string("nul\0inside", 10),
                                               "two\nlines\r\n",
                                               "\xE2\x80\xAEright to left",
-                                              "\xD7\xA9\xD7\x9C\xD7\x95\xD7\x9D",
-                                              std::string(190, 'x') + "\xC3\xA9",
-                                              "O'Brien \"quoted\" `tick` \\ backslash",
-                                              "'); DROP TABLE person; --",
-                                              "$1 ? :name @x {id} %s",
                                               "\xFF\xFE no utf-8 \xC3",
                                               "\xED\xA0\x80 a lone surrogate",
                                               std::string("\x01 begins with the mark \\5c", 25),
+                                              "'); DROP TABLE person; --",
                                               "<script>alert(1)</script>",
-                                              " ",
-                                              "NULL"};
+                                              " "};
+/// Odd, and somebody's all the same.
+const std::vector<std::string> kGoodNames = {"\xD7\xA9\xD7\x9C\xD7\x95\xD7\x9D",
+                                             std::string(190, 'x') + "\xC3\xA9",
+                                             "O'Brien \"quoted\" `tick`",
+                                             "'); DROP TABLE person; --",
+                                             "$1 ? :name @x {id} %s",
+                                             "<b>",
+                                             "trainee-7",
+                                             "NULL"};
+/// No door takes them, for whatever they name.
+const std::vector<std::string> kBadNames = {std::string("nul\0inside", 10),
+                                            "two\nlines",
+                                            "returned\r",
+                                            "escape\x1B[31m",
+                                            "deleted\x7F",
+                                            "next line\xC2\x85",
+                                            "\xE2\x80\xAEright to left",
+                                            "line\xE2\x80\xA8separator",
+                                            "\xE2\x81\xA6isolated",
+                                            "nothing\xE2\x80\x8Bto see",
+                                            "\xFF\xFE no utf-8 \xC3",
+                                            "\xED\xA0\x80 a lone surrogate",
+                                            "\x01 begins with the mark",
+                                            " ",
+                                            " before",
+                                            "behind ",
+                                            std::string(10'000, 'x')};
+const std::vector<std::string> kPaths = {"../../x", "..", ".", "a/b", "/etc/passwd", "a\\b", "-h", "--yes"};
 
 TEST_P(People, AreKnownByPseudonymsThatAreNotMistaken) {
   const std::string one = Add(Role::kTrainee), other = Add(Role::kInstructor);
@@ -51,26 +74,18 @@ TEST_P(People, AreKnownByPseudonymsThatAreNotMistaken) {
 }
 
 TEST_P(People, KeepAnyTextAsData) {
+  const std::string who = Add(Role::kTrainee);
   for (const std::string& text : kNastyTexts) {
     SCOPED_TRACE(text);
-    EXPECT_EQ(Add(Role::kTrainee, text), text);
-    EXPECT_EQ(Get(AddGroup(Open(), kOwner, text)).name, text);
-    EXPECT_GOOD(JoinGroup(Open(), kOwner, text, text));
-    EXPECT_GOOD(SetName(place_.NamesFile(), text, text));
-    Attempt attempt = MakeAttempt(static_cast<int>(&text - kNastyTexts.data()), text, text);
+    Attempt attempt = MakeAttempt(static_cast<int>(&text - kNastyTexts.data()), who, text);
     attempt.patient = attempt.recording = attempt.outcome = text;
     attempt.metrics = {{text, text, text, 1, text}};
     EXPECT_TRUE(Get(AddAttempt(Open(), attempt)));
   }
-  EXPECT_GOOD(AddGroup(Open(), kOwner, std::string(300, 'y')));
   Reopen();
-  EXPECT_EQ(Count("person"), static_cast<std::int64_t>(kNastyTexts.size()));
-  const auto names = Get(ReadNames(place_.NamesFile()));
   for (const std::string& text : kNastyTexts) {
     SCOPED_TRACE(text);
-    EXPECT_EQ(Get(FindPerson(Open(), text)).pseudonym, text);
-    EXPECT_EQ(names.at(text), text);
-    const AttemptPage page = Get(ListAttempts(Open(), kOwner, {text, text, text}));
+    const AttemptPage page = Get(ListAttempts(Open(), kOwner, {who, "", text}));
     ASSERT_THAT(page.attempts, SizeIs(1));
     const Attempt attempt = Get(FindAttempt(Open(), kOwner, page.attempts[0].id)).attempt;
     EXPECT_EQ(attempt.patient, text);
@@ -78,6 +93,39 @@ TEST_P(People, KeepAnyTextAsData) {
     EXPECT_EQ(attempt.outcome, text);
     EXPECT_THAT(attempt.metrics, testing::Contains(training::MetricValue{text, text, text, 1, text}));
   }
+}
+
+TEST_P(People, AreNamedAsPeopleAre) {
+  const std::string who = Add(Role::kTrainee);
+  for (const std::string& text : kGoodNames) {
+    SCOPED_TRACE(text);
+    EXPECT_EQ(Add(Role::kTrainee, text), text);
+    EXPECT_EQ(Get(AddGroup(Open(), kOwner, text)).name, text);
+    EXPECT_GOOD(JoinGroup(Open(), kOwner, text, text));
+    EXPECT_GOOD(SetName(place_.NamesFile(), text, text));
+  }
+  Reopen();
+  const auto names = Get(ReadNames(place_.NamesFile()));
+  for (const std::string& text : kGoodNames) {
+    EXPECT_EQ(Get(FindPerson(Open(), text)).pseudonym, text);
+    EXPECT_EQ(names.at(text), text);
+  }
+  const auto people = Count("person"), groups = Count("training_group");
+  for (const std::string& text : kBadNames) {
+    SCOPED_TRACE(text.substr(0, 40));
+    EXPECT_CODE(AddPerson(Open(), kOwner, Role::kTrainee, text), kStoreInvalid);
+    EXPECT_CODE(RenamePerson(Open(), kOwner, who, text), kStoreInvalid);
+    EXPECT_CODE(AddGroup(Open(), kOwner, text), kStoreInvalid);
+    EXPECT_CODE(SetName(place_.NamesFile(), who, text), kStoreInvalid);
+  }
+  for (const std::string& text : kPaths) {
+    SCOPED_TRACE(text);
+    EXPECT_CODE(AddPerson(Open(), kOwner, Role::kTrainee, text), kStoreInvalid);
+    EXPECT_CODE(RenamePerson(Open(), kOwner, who, text), kStoreInvalid);
+  }
+  EXPECT_EQ(Count("person"), people);
+  EXPECT_EQ(Count("training_group"), groups);
+  EXPECT_EQ(Get(ReadNames(place_.NamesFile())).count(who), 0u);
 }
 
 TEST_P(People, ArePagedByPseudonym) {

@@ -2,6 +2,7 @@
 // Export and erasure of one person. What is left is looked for in the raw bytes of every file.
 #include <nlohmann/json.hpp>
 
+#include "private_file.h"
 #include "store_test.h"
 #include "trocar/store/keep_attempt.h"
 #include "trocar/store/maintenance.h"
@@ -101,6 +102,43 @@ TEST_P(Privacy, ErasureLeavesNotOneByte) {
   for (const char* mark : {"REMARK-ON-ADA", "Lovelace"}) EXPECT_THAT(Find(mark), Not(IsEmpty()));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.Path() / "recordings"), {}), 40);
   EXPECT_GOOD(Verify(Open()));
+}
+
+// A program that was killed while it wrote leaves a part of a file.
+TEST_P(Privacy, ErasureTakesWhatKilledProgramsLeft) {
+  const std::string nobody = ".part99999999";  // no such process
+  const fs::path spool = place_.SpoolFolder();
+  fs::create_directories(spool / "unmeasured");
+  fs::create_directories(place_.BackupFolder());
+  const std::vector<fs::path> remnants = {place_.folder / ".partial-AbCdEf",
+                                          spool / ".partial-AbCdEf",
+                                          spool / "unmeasured" / ("2026_peg.json" + nobody),
+                                          place_.BackupFolder() / ("store-1.sqlite" + nobody),
+                                          place_.BackupFolder() / ("store-1.sqlite" + nobody + "-journal"),
+                                          place_.BackupFolder() / "store-2.sqlite.partial",
+                                          place_.NamesFile().string() + ".old"};
+  const auto leave = [&] {
+    for (const fs::path& path : remnants) std::ofstream(path) << gone_ << " Zacharias Quux";
+  };
+  leave();
+  // what a program still writes stays
+  auto writer = PrivateFileWriter::Start(spool / "other.json");
+  ASSERT_TRUE(writer.ok());
+  EXPECT_EQ(Get(ErasePerson(Open(), kOwner, gone_)).attempts, 20);
+  EXPECT_THAT(Find("Quux"), IsEmpty());
+  EXPECT_THAT(Find(gone_), IsEmpty());
+  EXPECT_GOOD(writer->Append("x"));
+  EXPECT_GOOD(writer->Finish());
+  EXPECT_EQ(ReadAll(spool / "other.json"), "x");
+  fs::remove(spool / "other.json");
+  // and each opening sweeps
+  leave();
+  Reopen();
+  for (const fs::path& path : remnants) EXPECT_FALSE(fs::exists(path)) << path;
+  // the old names are another name of the present ones where the program was killed in between: these stay
+  fs::create_hard_link(place_.NamesFile(), place_.NamesFile().string() + ".old");
+  Reopen();
+  EXPECT_EQ(Get(ReadNames(place_.NamesFile())).at(other_), "Ada Lovelace");
 }
 
 TEST_P(Privacy, ErasureOfOneLeavesWhatIsOfANamesake) {
@@ -210,6 +248,25 @@ TEST_P(Privacy, ExportIsAllThatIsKnown) {
   EXPECT_CODE(ExportPerson(Open(), kOwner, "T-NOBODY", folder_.Path() / "x"), kStoreUnknown);
 }
 
+TEST_P(Privacy, AClockThatIsWrongRemovesNothing) {
+  EXPECT_GOOD(SetRetention(Open(), kOwner, 400));
+  const std::int64_t before = Count("attempt");
+  ASSERT_GT(before, 0);
+  const std::int64_t now = Get(ParseTime("2026-12-31T12:00:00+01:00"));
+  const std::int64_t late = Get(ParseTime("2040-01-31T12:00:00+01:00"));
+  EXPECT_FALSE(Get(Tidy(Open(), kOwner, now)).unsure) << "the control";
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(Get(Tidy(Open(), kOwner, late + i * 30 * 86'400'000LL)).unsure);
+  EXPECT_EQ(Count("attempt"), before);
+  // who says yes without a look has a week to notice
+  EXPECT_EQ(Get(Tidy(Open(), kOwner, late, true)).attempts, 0);
+  EXPECT_EQ(Count("attempt WHERE due_ms IS NOT NULL"), before);
+  EXPECT_EQ(Get(Tidy(Open(), kOwner, now, true)).due, 0) << "the clock is right again";
+  EXPECT_EQ(Count("attempt WHERE due_ms IS NOT NULL"), 0);
+  EXPECT_EQ(Count("attempt"), before);
+  // erasing a person waits for nothing
+  EXPECT_EQ(Get(ErasePerson(Open(), kOwner, gone_)).attempts, 20);
+}
+
 TEST_P(Privacy, NamesAreNowhereButInTheirFile) {
   const auto found = Find("Quux");
   for (const std::string& file : found) {
@@ -235,7 +292,25 @@ TEST_P(Privacy, OldAttemptsGoWithTheirTime) {
   const std::string gone =
       Get(ListAttempts(Open(), kOwner, {gone_, "", ""})).attempts.at(0).attempt.recording;
   fs::remove(gone);
-  const TidyReport report = Get(Tidy(Open(), kOwner, now));
+  const TidyReport asked = Get(Tidy(Open(), kOwner, now));
+  ASSERT_TRUE(asked.unsure.has_value()) << "more than half of them";
+  EXPECT_EQ(asked.unsure->code, core::ErrorCode::kUsage);
+  EXPECT_EQ(asked.attempts + asked.due, 0);
+  EXPECT_GOOD(VerifyBackup(asked.backup));
+  constexpr std::int64_t kDay = 86'400'000;
+  const TidyReport found = Get(Tidy(Open(), kOwner, now, true));
+  EXPECT_EQ(found.attempts, 0) << "none goes on the day on which it is found too old";
+  EXPECT_EQ(found.due, 44);
+  EXPECT_EQ(Count("attempt"), 50);
+  // longer: they may stay
+  EXPECT_GOOD(SetRetention(Open(), kOwner, 400));
+  EXPECT_EQ(Get(Tidy(Open(), kOwner, now)).due, 0);
+  EXPECT_GOOD(SetRetention(Open(), kOwner, 26));
+  EXPECT_EQ(Get(Tidy(Open(), kOwner, now, true)).due, 44);
+  EXPECT_GOOD(SetRetention(Open(), kOwner, 26 + kGraceDays));  // of the same days, a week on
+  EXPECT_EQ(Get(Tidy(Open(), kOwner, now + kGraceDays * kDay - 1)).attempts, 0);
+  const TidyReport report = Get(Tidy(Open(), kOwner, now + kGraceDays * kDay));
+  EXPECT_FALSE(report.unsure) << "they were asked about";
   EXPECT_EQ(report.attempts, 44);
   EXPECT_EQ(report.recordings, 43);
   EXPECT_THAT(report.left, testing::ElementsAre(testing::HasSubstr(gone)))

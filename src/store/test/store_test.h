@@ -63,6 +63,7 @@ inline Attempt MakeAttempt(int number, const std::string& trainee, const std::st
   attempt.score = number % 100;
   attempt.outcome = R"({"seconds":60})";
   attempt.program = "0.1.0";
+  attempt.mark = {Verification::kVerified, WhyUnverified::kNone, "0.1.0", 1'700'000'000'000, ""};
   attempt.metrics = {{"path_length", "left", "", 1.5 + number % 17, ""},
                      {"path_length", "right", "", 2.5, ""},
                      {"path_length", "right", "transfer", 0.5, "grasper"}};

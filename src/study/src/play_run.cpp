@@ -7,6 +7,7 @@
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/scene/find_scene.h"
+#include "trocar/simulation/attempt_end.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/study/study.h"
 
@@ -64,7 +65,7 @@ bool HasCome(Until moment, const simulation::Snapshot& now) {
 
 std::string NameOutcome(const simulation::Snapshot& last, Until until, bool has_finished) {
   if (HasCome(until, last)) return "completed";
-  if (last.operation.is_completed || last.task.phase == scene::TaskPhase::kCompleted) return "completed";
+  if (simulation::HasCompleted(last)) return "completed";
   if (last.task.phase == scene::TaskPhase::kTimeOver) return "time over";
   if (last.task.phase == scene::TaskPhase::kEnded) return "ended by an error";
   return has_finished ? "given up" : "cut off";

@@ -2,7 +2,9 @@
 #include "study_folder.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
 
@@ -20,22 +22,34 @@ ordered_json DescribeStudy(const std::string& plan_print, const std::string& pro
           {"plan_sha256", plan_print}};
 }
 
+/// Empty where the field is missing or no text.
+std::string TextOf(const ordered_json& json, const char* key) {
+  if (!json.is_object()) return {};
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
 }  // namespace
 
 core::Status StudyFolder::Begin(const std::filesystem::path& plan_file) const {
+  const std::filesystem::path head = folder_ / "study.json";
+  std::optional<ordered_json> theirs;
+  std::error_code ignored;
+  if (std::filesystem::exists(head, ignored)) {
+    const auto text = core::ReadFile(head);
+    if (!text) return text.error();
+    auto read = core::ParseJson<ordered_json>(*text, head.string(), core::kSmallJson);
+    if (!read.ok()) return read.error();
+    theirs = std::move(*read);
+  }
   const auto program = FingerprintFile("/proc/self/exe");
   if (!program) return program.error();
   const auto plan = FingerprintFile(plan_file);
   if (!plan) return plan.error();
-  const std::filesystem::path head = folder_ / "study.json";
   const ordered_json mine = DescribeStudy(*plan, *program);
-  std::error_code ignored;
-  if (!std::filesystem::exists(head, ignored)) return core::WriteFile(head, mine.dump(2) + "\n");
-  const auto text = core::ReadFile(head);
-  if (!text) return text.error();
-  const auto theirs = ordered_json::parse(*text, nullptr, false);
-  if (theirs == mine) return {};
-  const bool is_program = theirs.is_object() && theirs.value("plan_sha256", "") == *plan;
+  if (!theirs) return core::WriteFile(head, mine.dump(2) + "\n");
+  if (*theirs == mine) return {};
+  const bool is_program = TextOf(*theirs, "plan_sha256") == *plan;
   return core::Error{
       core::ErrorCode::kStudyChanged,
       head.string() + ": this study began with another " + (is_program ? "program" : "plan") +
@@ -52,13 +66,17 @@ std::filesystem::path StudyFolder::FailurePath(const Run& run) const {
 std::optional<RunResult> StudyFolder::FindResult(const Run& run) const {
   const auto text = core::ReadFile(ResultPath(run));
   if (!text) return std::nullopt;
-  const auto json = ordered_json::parse(*text, nullptr, false);
-  if (!json.is_object() || json.value("key", "") != run.key || !json.contains("numbers")) return std::nullopt;
+  const auto json = core::ParseJson<ordered_json>(*text, run.key, core::kSmallJson);
+  if (!json.ok() || TextOf(*json, "key") != run.key || !json->contains("numbers")) return std::nullopt;
   RunResult result;
-  result.outcome = json.value("outcome", "");
-  result.state_hash = json.value("state_hash", "");
-  for (const auto& [name, value] : json["numbers"].items())
+  result.outcome = TextOf(*json, "outcome");
+  result.state_hash = TextOf(*json, "state_hash");
+  const ordered_json& numbers = json->at("numbers");
+  if (!numbers.is_object()) return std::nullopt;
+  for (const auto& [name, value] : numbers.items()) {
+    if (!value.is_number()) return std::nullopt;
     result.numbers.emplace_back(name, value.get<double>());
+  }
   return result;
 }
 
@@ -86,8 +104,8 @@ void StudyFolder::ForgetFailure(const Run& run) const {
 std::optional<std::string> StudyFolder::FindFailure(const Run& run) const {
   const auto text = core::ReadFile(FailurePath(run));
   if (!text) return std::nullopt;
-  const auto json = ordered_json::parse(*text, nullptr, false);
-  return json.is_object() ? json.value("why", "") : std::string("its note is damaged");
+  const auto json = core::ParseJson<ordered_json>(*text, run.key, core::kSmallJson);
+  return json.ok() && json->is_object() ? TextOf(*json, "why") : std::string("its note is damaged");
 }
 
 std::string Describe(const StudyPlan& plan, const Run& run) {

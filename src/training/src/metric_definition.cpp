@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "metric_definitions_text.h"
+#include "trocar/core/assert.h"
+#include "trocar/core/json.h"
 
 namespace trocar::training {
 namespace {
@@ -26,6 +28,7 @@ BetterWhen ReadBetter(const std::string& text) {
   for (const BetterWhen better : {BetterWhen::kHigher, BetterWhen::kLower}) {
     if (text == NameOf(better)) return better;
   }
+  TROCAR_ASSERT(text == NameOf(BetterWhen::kNeither));  // delivered inside of the program
   return BetterWhen::kNeither;
 }
 
@@ -57,7 +60,7 @@ MetricDefinition ReadDefinition(const json& entry) {
 }
 
 const json& DefinitionsDocument() {
-  static const json document = json::parse(kMetricDefinitionsText);
+  static const json document = core::ParseJson<json>(kMetricDefinitionsText, "the metrics").value();
   return document;
 }
 

@@ -17,6 +17,8 @@ using nlohmann::ordered_json;
 constexpr const char* kFormat = "trocar-trace";
 constexpr int kVersion = 1;
 constexpr const char* kHandNames[] = {"left", "right"};
+/// Two hours at some 500 Hz; the same as text of columns may be longer.
+constexpr core::JsonLimits kLimits{std::size_t{2} << 30, 16, 100'000'000, 1000, 1u << 20};
 constexpr core::NumberRange kNotNegative{0.0, 1e300};
 constexpr core::NumberRange kLength{1e-9, 1e300};
 
@@ -337,7 +339,7 @@ std::string FormatTraceJson(const AttemptTrace& trace) {
 }
 
 core::Result<AttemptTrace> ParseTraceJson(std::string_view text, const std::string& name) {
-  auto document = core::JsonDocument::Parse(text, name);
+  auto document = core::JsonDocument::Parse(text, name, kLimits);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   AttemptTrace trace;
@@ -349,6 +351,10 @@ core::Result<AttemptTrace> ParseTraceJson(std::string_view text, const std::stri
   trace.dt = root.Number("dt", {1e-6, 10.0});
   // two hours at 1 kHz
   const auto ticks = static_cast<std::size_t>(root.Integer("ticks", {0, 7.2e6}));
+  // samples are made before their columns are read: a short text must not ask for gigabytes of them
+  constexpr std::size_t kFewTicks = 10'000, kLeastBytes = 2;  // of a value in a column
+  if (ticks > kFewTicks && ticks > text.size() / kLeastBytes)
+    root.Complain("there are " + std::to_string(ticks) + " ticks, but no column is that long");
   trace.tool_names = ReadNames(root, "tool_names");
   trace.organ_names = ReadNames(root, "organ_names");
   const JsonView hands = root.Object("hands");

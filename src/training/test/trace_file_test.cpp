@@ -95,6 +95,22 @@ TEST(TraceFile, RefusesWhatIsNoTrace) {
     EXPECT_FALSE(ParseTraceJson(text.substr(0, length), "trace").ok());
 }
 
+// two hours of samples are more than two gigabytes: some hundred bytes must not ask for them
+TEST(TraceFile, RefusesMoreTicksThanItsColumnsHave) {
+  const auto read = [](int ticks) {
+    nlohmann::json json = nlohmann::json::parse(FormatTraceJson(MakeFullTrace()));
+    json["ticks"] = ticks;
+    json["hands"] = {{"left", nlohmann::json::object()}, {"right", nlohmann::json::object()}};
+    json["camera"] = nlohmann::json::object();
+    return ParseTraceJson(json.dump(), "trace");
+  };
+  ASSERT_FALSE(read(7'200'000).ok());
+  EXPECT_NE(read(7'200'000).error().message.find("7200000 ticks, but no column is that long"),
+            std::string::npos);
+  EXPECT_EQ(read(100).value().Ticks(), 100u)
+      << "the control: columns that hold nothing but defaults are left out";
+}
+
 TEST(TraceFile, WritesATableWithALineForEachTick) {
   const AttemptTrace trace = MakeFullTrace();
   const std::string text = FormatTraceCsv(trace);

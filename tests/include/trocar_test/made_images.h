@@ -200,12 +200,18 @@ inline std::string Element(std::uint16_t group, std::uint16_t element, const std
 
 /// What stands in a made DICOM file.
 struct DicomFields {
-  std::string transfer_syntax = "1.2.840.10008.1.2.1";  // explicit VR, little endian
+  std::string transfer_syntax = "1.2.840.10008.1.2.1";                   // explicit VR, little endian
+  std::string sop_class = "1.2.840.10008.5.1.4.1.1.2", modality = "CT";  // CT Image Storage
+  std::string preamble = std::string(128, '\0');
   std::string patient = "Doe^Jane", series = "1.2.3.4", frame = "1.2.3.5";
+  std::string instance_uid;  ///< in place of one made of the instance number
   int instance = 1, rows = 6, columns = 8;
   std::string position = "-10\\-20\\30", orientation = "1\\0\\0\\0\\1\\0", spacing = "0.5\\0.5";
   std::string shown = "MONOCHROME2", slope = "1", intercept = "-1024", window;
   std::uint16_t allocated = 16, stored = 16, high = 15, is_signed = 1;
+  std::string image_type, acquisition;  ///< image type; acquisition number
+  std::string times;          ///< elements of group 8 between the instance and the modality, as bytes
+  std::string scanning;       ///< elements of group 18, as bytes
   std::string more;           ///< elements after group 20, as bytes
   std::string palette;        ///< elements before the pixels, as bytes
   std::string dimensions;     ///< in place of Rows and Columns
@@ -217,17 +223,20 @@ inline std::string MakeDicom(const DicomFields& f) {
   const auto number = [](std::uint16_t group, std::uint16_t element, std::uint16_t value) {
     return Element(group, element, "US", Bytes(value));
   };
-  const std::string meta = Element(2, 1, "OB", std::string("\0\1", 2)) +
-                           Element(2, 2, "UI", "1.2.840.10008.5.1.4.1.1.2") +
+  const std::string meta = Element(2, 1, "OB", std::string("\0\1", 2)) + Element(2, 2, "UI", f.sop_class) +
                            Element(2, 3, "UI", "1.2.3.4.5") + Element(2, 0x10, "UI", f.transfer_syntax) +
                            Element(2, 0x12, "UI", "1.2.3.4.6");
-  std::string file = std::string(128, '\0') + "DICM" +
-                     Element(2, 0, "UL", Bytes(static_cast<std::uint32_t>(meta.size()))) + meta;
-  file += Element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2") +
-          Element(8, 0x18, "UI", "1.2.3.4.5." + std::to_string(f.instance)) + Element(8, 0x60, "CS", "CT");
-  file += Element(0x10, 0x10, "PN", f.patient) + Element(0x10, 0x20, "LO", "ID of " + f.patient);
-  file += Element(0x20, 0xD, "UI", "1.2.3.3") + Element(0x20, 0xE, "UI", f.series) +
-          Element(0x20, 0x13, "IS", std::to_string(f.instance));
+  std::string file =
+      f.preamble + "DICM" + Element(2, 0, "UL", Bytes(static_cast<std::uint32_t>(meta.size()))) + meta;
+  if (!f.image_type.empty()) file += Element(8, 8, "CS", f.image_type);
+  const std::string instance =
+      f.instance_uid.empty() ? "1.2.3.4.5." + std::to_string(f.instance) : f.instance_uid;
+  file += Element(8, 0x16, "UI", f.sop_class) + Element(8, 0x18, "UI", instance) + f.times +
+          Element(8, 0x60, "CS", f.modality);
+  file += Element(0x10, 0x10, "PN", f.patient) + Element(0x10, 0x20, "LO", "ID of " + f.patient) + f.scanning;
+  file += Element(0x20, 0xD, "UI", "1.2.3.3") + Element(0x20, 0xE, "UI", f.series);
+  if (!f.acquisition.empty()) file += Element(0x20, 0x12, "IS", f.acquisition);
+  file += Element(0x20, 0x13, "IS", std::to_string(f.instance));
   if (!f.position.empty()) file += Element(0x20, 0x32, "DS", f.position);
   if (!f.orientation.empty()) file += Element(0x20, 0x37, "DS", f.orientation);
   file += Element(0x20, 0x52, "UI", f.frame) + f.more;
@@ -245,10 +254,22 @@ inline std::string MakeDicom(const DicomFields& f) {
     file += Element(0x28, 0x1050, "DS", f.window.substr(0, comma)) +
             Element(0x28, 0x1051, "DS", f.window.substr(comma + 1));
   }
-  file += Element(0x28, 0x1052, "DS", f.intercept) + Element(0x28, 0x1053, "DS", f.slope);
+  if (!f.intercept.empty()) file += Element(0x28, 0x1052, "DS", f.intercept);
+  if (!f.slope.empty()) file += Element(0x28, 0x1053, "DS", f.slope);
   file += f.palette;
   if (!f.pixel_element.empty()) return file + f.pixel_element;
   return file + Element(0x7FE0, 0x10, "OW", f.pixels.empty() ? Samples(f.columns, f.rows, 1) : f.pixels);
+}
+
+/// A sequence of items of known length; each item's elements as bytes.
+inline std::string Sequence(std::uint16_t group, std::uint16_t element,
+                            const std::vector<std::string>& items) {
+  std::string inside;
+  for (const std::string& item : items) {
+    inside += Bytes<std::uint16_t>(0xFFFE) + Bytes<std::uint16_t>(0xE000) +
+              Bytes(static_cast<std::uint32_t>(item.size())) + item;
+  }
+  return Element(group, element, "SQ", inside);
 }
 
 /// Pixel data in fragments, as compressed files have them; the offset table is empty.

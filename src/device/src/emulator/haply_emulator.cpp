@@ -52,6 +52,7 @@ class HaplyEmulator : public Emulator {
       const Vec3 p = emulation_.position(i, time);
       state.devices.push_back({"emulated-" + std::to_string(i), p});
     }
+    if (emulation_.buttons) state.buttons = emulation_.buttons(time);
     return bytes + web_socket::FormatFrame(Opcode::kText, haply::FormatState(state), 0);
   }
 

@@ -12,9 +12,10 @@ HandRig::HandRig(std::unique_ptr<Driver> hands, std::unique_ptr<Driver> jaws)
   TROCAR_ASSERT(hands_->GetChannelCount() == kChannelCount && jaws_->GetChannelCount() == kChannelCount);
 }
 
-std::string HandRig::DescribeHeldBack() const {
-  const std::string hands = hands_->DescribeHeldBack(), jaws = jaws_->DescribeHeldBack();
-  return hands + (hands.empty() || jaws.empty() ? "" : "; ") + jaws;
+std::vector<std::string> HandRig::DescribeHeldBack() const {
+  std::vector<std::string> all = hands_->DescribeHeldBack();
+  for (std::string& sentence : jaws_->DescribeHeldBack()) all.push_back(std::move(sentence));
+  return all;
 }
 
 core::Status HandRig::DoConfigure() {

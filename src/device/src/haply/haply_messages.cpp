@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
+
+#include "trocar/core/json.h"
 
 namespace trocar::device::haply {
 namespace {
@@ -16,6 +19,12 @@ Vec3 FromService(const Vec3& v) {
 }
 Vec3 ToService(const Vec3& v) {
   return {v.x, -v.z, v.y};
+}
+
+/// \return null where the text is no JSON, or more than the service ever sends
+json Parse(std::string_view text) {
+  auto root = core::ParseJson<json>(text, "", core::kSmallJson);
+  return root.ok() ? std::move(*root) : json();
 }
 
 /// A member of an object, or null.
@@ -67,7 +76,7 @@ void ReadGrip(const json& grip, State& state) {
 }  // namespace
 
 bool ParseState(std::string_view text, State& state) {
-  const json root = json::parse(text, nullptr, false);
+  const json root = Parse(text);
   const json* const devices = Find(&root, "inverse3");
   if (devices == nullptr || !devices->is_array()) return false;
   state = {};
@@ -116,7 +125,7 @@ std::string FormatForces(const std::vector<std::string>& ids, const std::array<V
 
 bool ParseForces(std::string_view text, std::vector<std::string>& ids,
                  std::array<Vec3, kMaxDevices>& forces) {
-  const json root = json::parse(text, nullptr, false);
+  const json root = Parse(text);
   const json* const devices = Find(&root, "inverse3");
   if (devices == nullptr || !devices->is_array() || devices->size() > kMaxDevices) return false;
   ids.clear();

@@ -22,6 +22,8 @@ class HdEnd {
   /// The library's process died or stands still. Real-time safe.
   virtual bool HasFailed() const noexcept { return false; }
   virtual ForceMailbox& Mailbox() noexcept = 0;
+  /// For the supervisor; nothing where the library is in this process.
+  virtual SupervisedLibrary Supervised() const { return {}; }
 };
 
 }  // namespace trocar::device

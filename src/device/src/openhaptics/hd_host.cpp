@@ -2,24 +2,17 @@
 #include "hd_host.h"
 
 #include <poll.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <time.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <cstring>
 #include <new>
 #include <thread>
 #include <utility>
 
-#include "hd_devices.h"
-#include "trocar/core/beat_watch.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/real_time.h"
+#include "trocar/device/file_messages.h"
 
 namespace trocar::device {
 namespace {
@@ -28,18 +21,14 @@ using core::ErrorCode;
 
 using hd_host::kLongestRequest;
 using hd_host::kOpen;
-using hd_host::kRescue;
 using hd_host::kStart;
 using hd_host::kStop;
+using hd_host::kWatch;
 using hd_host::Reply;
 
-constexpr int kOpenTime = 15'000;   // for the library to open its devices [ms]
+constexpr int kOpenTime = 15'000;   // for a program to start and the library to open its devices [ms]
 constexpr int kAnswerTime = 2'000;  // for the rest [ms]
-
-core::Error HostError(const std::string& what) {
-  return {ErrorCode::kDeviceLost,
-          "openhaptics: " + what + "; switch the device off and on, and check it with the maker's program"};
-}
+constexpr std::int64_t kMillisecond = 1'000'000;
 
 core::Result<Reply> TakeReply(int socket, int milliseconds) {
   pollfd waited{socket, POLLIN, 0};
@@ -61,36 +50,6 @@ core::Result<Reply> Ask(int socket, std::string_view request, int milliseconds) 
   return TakeReply(socket, milliseconds);
 }
 
-Reply MakeReply(const core::Status& status, const std::vector<ForceLimits>& limits) {
-  Reply reply;
-  if (!status) {
-    reply.code = static_cast<std::int32_t>(status.error().code);
-    status.error().message.copy(reply.text, sizeof reply.text - 1);
-    return reply;
-  }
-  reply.count = static_cast<std::uint32_t>(std::min(limits.size(), std::size(reply.limits)));
-  std::copy_n(limits.begin(), reply.count, reply.limits);
-  return reply;
-}
-
-OpenHapticsSettings ReadSettings(std::string_view lines) {
-  OpenHapticsSettings settings;
-  settings.names.clear();
-  for (bool is_first = true; !lines.empty(); is_first = false) {
-    const std::string line(lines.substr(0, lines.find('\n')));
-    lines.remove_prefix(std::min(line.size() + 1, lines.size()));
-    is_first ? settings.hd_file = line : settings.names.emplace_back(line);
-  }
-  return settings;
-}
-
-/// Above the haptic loop, below the supervisor. Threads that are started afterwards inherit it.
-constexpr int kPriorityAboveLowest = 15;
-
-void GoFirst() noexcept {
-  static_cast<void>(core::AskForRealTime(core::RealTimePolicy::kFirstInFirstOut, kPriorityAboveLowest));
-}
-
 core::Result<std::string> FormatOpen(const OpenHapticsSettings& settings) {
   std::string request = settings.hd_file + "\n";
   for (const std::string& name : settings.names) {
@@ -98,12 +57,23 @@ core::Result<std::string> FormatOpen(const OpenHapticsSettings& settings) {
       return core::Error{ErrorCode::kDeviceSettings, "openhaptics: a device's name is one line"};
     request += name + "\n";
   }
-  if (request.size() + kRescue.size() > kLongestRequest)
+  if (request.size() + kWatch.size() > kLongestRequest)
     return core::Error{ErrorCode::kDeviceSettings, "openhaptics: the devices' names are too long"};
   return request;
 }
 
 }  // namespace
+
+core::Error HostError(const std::string& what) {
+  return {ErrorCode::kDeviceLost,
+          "openhaptics: " + what + "; switch the device off and on, and check it with the maker's program"};
+}
+
+void GoFirst() noexcept {
+  /// Above the haptic loop, below the supervisor.
+  constexpr int kPriorityAboveLowest = 15;
+  static_cast<void>(core::AskForRealTime(core::RealTimePolicy::kFirstInFirstOut, kPriorityAboveLowest));
+}
 
 HdHost::~HdHost() {
   Close();
@@ -118,11 +88,16 @@ core::Result<Companion> HdHost::StartProcess(const OpenHapticsSettings& settings
   return started;
 }
 
-/// The spare has opened the devices after a failure: it is the one from now on.
+/// The spare has opened the devices after a failure: it is the one from now on. One that fails meanwhile is not waited for.
 bool HdHost::TakeRescued(std::vector<ForceLimits>& limits) {
   if (!is_rescued_) return false;
   is_rescued_ = false;
-  const core::Result<Reply> reply = TakeReply(spare_->Socket(), kOpenTime);
+  const std::int64_t begin = core::NowNanoseconds();
+  pollfd answered{spare_->Socket(), POLLIN, 0};
+  for (std::int64_t now = begin; now - begin < kOpenTime * kMillisecond; now = core::NowNanoseconds()) {
+    if (::poll(&answered, 1, 1) > 0 || spare_watch_->Look(now) != HostWatch::State::kRunning) break;
+  }
+  const core::Result<Reply> reply = TakeReply(spare_->Socket(), 0);
   if (!reply) {
     spare_->Kill();
     spare_.reset();
@@ -149,36 +124,53 @@ core::Status HdHost::Open(const OpenHapticsSettings& settings, std::vector<Force
     }
     limits.assign(reply->limits, reply->limits + reply->count);
   }
-  // without a spare the devices are opened again as any lost one
-  if (auto spare = StartProcess(settings)) spare_.emplace(std::move(*spare));
+  StartSpare(settings);
   is_ending_ = has_failed_ = false;
   if (kIsHostWatched) watch_ = std::thread([this] { Watch(); });
   return {};
 }
 
+/// A process that has loaded nothing yet and watches the one that has. Without it the devices are opened again as any lost ones.
+void HdHost::StartSpare(const OpenHapticsSettings& settings) {
+  auto started = StartProcess(settings);
+  if (!started) return;
+  const int files[] = {active_->PageFile(), active_->Handle()};
+  const bool has_gone = SendFiles(started->Socket(), std::string(kWatch) + request_, files);
+  if (has_gone && TakeReply(started->Socket(), kOpenTime)) {
+    spare_.emplace(std::move(*started));
+  } else {
+    started->Kill();
+  }
+}
+
 /// Of a thread of its own, from the open devices to their end or the process's failure.
 void HdHost::Watch() noexcept {
   GoFirst();
-  const HdHostPage& page = Page(*active_);
-  core::BeatWatch watch(kLongestBeatLook);
-  watch.Forget(core::NowNanoseconds());
+  HostWatch active(active_->PageFile(), active_->Handle());
+  if (spare_) spare_watch_.emplace(spare_->PageFile(), spare_->Handle());
   while (!is_ending_.load(std::memory_order_acquire)) {
-    // the socket closes with the process, however it ends
-    pollfd watched{active_->Socket(), POLLRDHUP, 0};
+    pollfd watched{active.Process(), POLLIN, 0};
     const timespec look{0, kBeatLook};
-    const bool has_died = ::ppoll(&watched, 1, &look, nullptr) > 0;
-    const std::uint64_t beats = page.beats.load(std::memory_order_acquire);
-    const std::int64_t silence = watch.Look(beats, core::NowNanoseconds());
-    if (!has_died && silence < kLongestBeatSilence) continue;
-    active_->Kill();
+    ::ppoll(&watched, 1, &look, nullptr);
+    const std::int64_t now = core::NowNanoseconds();
+    const bool has_spare = spare_ && spare_watch_->Look(now) == HostWatch::State::kRunning &&
+                           spare_watch_->Silence() < kLongestSpareSilence;
+    const HostWatch::State state = active.Look(now);
+    if (state == HostWatch::State::kRunning) continue;
+    // the spare sees it, too, and takes over by itself
+    is_rescued_ = has_spare && state == HostWatch::State::kFailed;
     has_failed_.store(true, std::memory_order_release);
-    if (spare_) {
-      const std::string request = std::string(kRescue) + request_;
-      is_rescued_ = ::send(spare_->Socket(), request.data(), request.size(), MSG_NOSIGNAL | MSG_DONTWAIT) ==
-                    static_cast<ssize_t>(request.size());
-    }
     return;
   }
+}
+
+SupervisedLibrary HdHost::Supervised() const {
+  SupervisedLibrary library;
+  if (!active_) return library;
+  library.request = request_;
+  library.files = {active_->PageFile(), active_->Handle()};
+  if (spare_) library.files.insert(library.files.end(), {spare_->PageFile(), spare_->Handle()});
+  return library;
 }
 
 void HdHost::EndWatch() noexcept {
@@ -200,79 +192,9 @@ void HdHost::Close() noexcept {
   if (HasFailed() && active_) active_->Kill();
   active_.reset();
   // what has taken over keeps the devices until they are wanted again
-  if (!is_rescued_) spare_.reset();
-}
-
-namespace {
-
-/// Looks every millisecond whether the library still calls; when it does not, its process ends, and with it every hold on
-/// the device. The simulator sees that at once, even where it is the simulator that has died.
-void GuardLibrary(HdDevices& devices, HdHostPage& page, const std::atomic<bool>& is_ending) noexcept {
-  core::BeatWatch watch(kLongestBeatLook);
-  while (!is_ending.load(std::memory_order_acquire)) {
-    const timespec look{0, kBeatLook};
-    ::nanosleep(&look, nullptr);
-    const std::int64_t now = core::NowNanoseconds();
-    if (!devices.IsCalled()) watch.Forget(now);
-    if (kIsHostWatched && watch.Look(devices.CountCalls(), now) >= kLongestCallSilence) {
-      // a library that is well but for its scheduler takes a zero; should it hang, the simulator's watch ends us
-      devices.PushZero();
-      ::_exit(hd_host::kLibraryStands);
-    }
-    page.beats.fetch_add(1, std::memory_order_release);
-  }
-}
-
-/// In place of a process that failed: zero to the devices, which then wait for somebody to ask for them.
-core::Status TakeOver(HdDevices& devices) {
-  if (core::Status started = devices.Start(); !started) return started;
-  devices.Stop();
-  return {};
-}
-
-}  // namespace
-
-int RunOpenHapticsHost(int socket, int page) {
-  // a terminal's signals to the group must not take the library away; the simulator's end is our end
-  for (const int ignored : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT}) ::signal(ignored, SIG_IGN);
-  // a crash has to end the process at once, not after a large file has been written about it
-  static_cast<void>(::prctl(PR_SET_DUMPABLE, 0UL));
-  void* memory = ::mmap(nullptr, sizeof(HdHostPage), PROT_READ | PROT_WRITE, MAP_SHARED, page, 0);
-  if (memory == MAP_FAILED) return 1;
-  auto& shared = *static_cast<HdHostPage*>(memory);
-  GoFirst();
-  HdDevices devices(shared.mailbox);
-  // watched from the moment the devices are open, not from the guard's first look
-  shared.beats.store(1, std::memory_order_release);
-  std::atomic<bool> is_ending{false};
-  std::thread guard([&] { GuardLibrary(devices, shared, is_ending); });
-  std::vector<ForceLimits> limits;
-  char bytes[kLongestRequest];
-  for (;;) {
-    // forces end by themselves meanwhile: the library's thread takes none that is older than kForceLife
-    const ssize_t size = ::recv(socket, bytes, sizeof bytes, 0);
-    if (size <= 0) break;
-    const std::string_view request(bytes, static_cast<std::size_t>(size));
-    core::Status done;
-    if (request == kStart) {
-      done = limits.empty() ? core::Status(HostError("nothing is open")) : devices.Start();
-    } else if (request == kStop) {
-      devices.Stop();
-    } else if (request.starts_with(kOpen) && limits.empty()) {
-      done = devices.Open(ReadSettings(request.substr(kOpen.size())), limits);
-    } else if (request.starts_with(kRescue) && limits.empty()) {
-      done = devices.Open(ReadSettings(request.substr(kRescue.size())), limits);
-      if (done) done = TakeOver(devices);
-    } else {
-      done = HostError("a request that is none");
-    }
-    const Reply reply = MakeReply(done, limits);
-    if (::send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof reply)) break;
-  }
-  devices.Close();
-  is_ending.store(true, std::memory_order_release);
-  guard.join();
-  return 0;
+  if (is_rescued_) return;
+  if (HasFailed() && spare_) spare_->Kill();
+  spare_.reset();
 }
 
 }  // namespace trocar::device

@@ -9,14 +9,19 @@
 #include <thread>
 
 #include "hd_end.h"
-#include "hd_host_page.h"
+#include "host_watch.h"
 #include "trocar/device/companion.h"
 
 namespace trocar::device {
 
+core::Error HostError(const std::string& what);
+/// The calling thread goes above the haptic loop and below the supervisor, where that is permitted. Threads that are started
+/// afterwards inherit it.
+void GoFirst() noexcept;
+
 /// Forces and reports go through a mailbox in shared memory, which neither side waits for; opening, starting and stopping
-/// through messages. A thread watches the process: when it dies, or its beat stops, it is ended at once, and a spare that
-/// already runs opens the devices and sends them zero.
+/// through messages. A spare that already runs watches the process: when it dies, or its beat stops, it is ended at once, and the
+/// spare opens the devices and sends them zero, whoever else is still there. A thread watches both for the simulator.
 class HdHost : public HdEnd {
  public:
   ~HdHost() override;
@@ -27,6 +32,7 @@ class HdHost : public HdEnd {
   bool HasFailed() const noexcept override { return has_failed_.load(std::memory_order_acquire); }
   /// \pre open
   ForceMailbox& Mailbox() noexcept override { return Page(*active_).mailbox; }
+  SupervisedLibrary Supervised() const override;
 
  private:
   static HdHostPage& Page(const Companion& process) noexcept {
@@ -34,6 +40,7 @@ class HdHost : public HdEnd {
   }
   static core::Result<Companion> StartProcess(const OpenHapticsSettings& settings);
   bool TakeRescued(std::vector<ForceLimits>& limits);
+  void StartSpare(const OpenHapticsSettings& settings);
   void Watch() noexcept;
   void EndWatch() noexcept;
 
@@ -41,7 +48,8 @@ class HdHost : public HdEnd {
   std::optional<Companion> active_, spare_;
   std::thread watch_;
   std::atomic<bool> is_ending_{false}, has_failed_{false};
-  bool is_rescued_ = false;  // the spare has been told to take over
+  std::optional<HostWatch> spare_watch_;  // of the thread, while it runs
+  bool is_rescued_ = false;               // the spare takes over
 };
 
 }  // namespace trocar::device

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file hd_host_page.h  What the simulator and the process of the maker's library share, and how soon each calls the
-/// other, or the library, dead.
+/// \file hd_host_page.h  What the process of the maker's library shares with the simulator and with all that watch it, and how soon
+/// each calls the other, or the library, dead.
 #pragma once
 
 #include <atomic>
@@ -17,6 +17,10 @@ struct HdHostPage {
   ForceMailbox mailbox;
   /// Of the library's process, every millisecond while the library calls us in time.
   std::atomic<std::uint64_t> beats{0};
+  /// The library's process itself; 0 until it runs.
+  std::atomic<int> process{0};
+  /// Its devices are at zero and given back: that it ends is no failure.
+  std::atomic<bool> is_closed{false};
 };
 
 // both ends are this program's, from one build; neither destroys what the other may still read
@@ -24,9 +28,10 @@ static_assert(std::is_trivially_destructible_v<HdHostPage>);
 
 namespace hd_host {
 
-/// Requests: "open", the library's file and the names of the devices on lines of their own; "rescue", the same after another
-/// process failed; "start"; "stop". Each is answered.
-inline constexpr std::string_view kOpen = "open\n", kRescue = "rescue\n", kStart = "start", kStop = "stop";
+/// Requests: "open", the library's file and the names of the devices on lines of their own; "watch", the same, with page and pidfd
+/// of the process that has opened them: should that fail, the devices are opened and sent zero, and a reply as to "open" comes;
+/// "start"; "stop". Each is answered.
+inline constexpr std::string_view kOpen = "open\n", kWatch = "watch\n", kStart = "start", kStop = "stop";
 inline constexpr std::size_t kLongestRequest = 4096;
 
 struct Reply {
@@ -48,6 +53,9 @@ inline constexpr std::int64_t kBeatLook = 1'000'000, kLongestBeatLook = 2'000'00
 inline constexpr std::int64_t kLongestCallSilence = 12'000'000;
 /// Without a beat for so long the process is ended from outside [ns]: it stands still as a whole.
 inline constexpr std::int64_t kLongestBeatSilence = 15'000'000;
+
+/// A spare that has not shown a beat for so long, when it is needed, is not waited for [ns].
+inline constexpr std::int64_t kLongestSpareSilence = 5'000'000;
 
 #ifdef TROCAR_WITHOUT_HOST_WATCH
 inline constexpr bool kIsHostWatched = false;  // the negative control

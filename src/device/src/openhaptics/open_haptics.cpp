@@ -60,6 +60,10 @@ ForceLimits OpenHaptics::GetLimits(int channel) const noexcept {
   return index < content_->limits.size() ? content_->limits[index] : ForceLimits{};
 }
 
+SupervisedLibrary OpenHaptics::GetSupervisedLibrary() const {
+  return content_->end->Supervised();
+}
+
 core::Status OpenHaptics::DoConfigure() {
   Content& c = *content_;
   if (c.settings.names.empty() || c.settings.names.size() > kMaxDevices)

@@ -3,7 +3,6 @@
 #include <bit>
 #include <cmath>
 
-#include "trocar/core/printable.h"
 #include "trocar/device/igtl.h"
 
 namespace trocar::device {
@@ -13,14 +12,16 @@ using math::Vec3;
 
 constexpr std::size_t kTypeAt = 2, kTypeSize = 12, kNameAt = 14, kNameSize = 20, kBodySizeAt = 42,
                       kCrcAt = 50;
-constexpr std::size_t kTransformSize = 48;
 constexpr std::size_t kToolSize = 70, kToolPoseAt = 22;
 constexpr std::size_t kExtendedHeaderSize = 12;
 /// Bodies of other kinds, pictures for example, are passed over up to this; more than that is a lie [bytes].
 constexpr std::uint64_t kMostSkipped = 1u << 28;
 /// Larger than any room [m].
 constexpr double kReach = 100.0;
-constexpr double kUnitTolerance = 0.02;
+/// An axis may be longer or shorter than 1, or lean towards another, by this much, and is put right: matrices that came through
+/// texts of three digits stay below 0.002. A scale that somebody meant, of a registration for example, is more.
+constexpr double kUnitTolerance = 0.005;
+constexpr double kDegrees = 57.29577951308232;
 
 std::uint64_t ReadWord(std::string_view bytes, std::size_t at, std::size_t size) noexcept {
   std::uint64_t word = 0;
@@ -34,23 +35,97 @@ std::string_view ReadName(std::string_view bytes, std::size_t at, std::size_t si
   return room.substr(0, std::min(room.find('\0'), room.size()));
 }
 
-/// \return false where the numbers are no rigid pose
-bool ReadPose(std::string_view bytes, math::Pose& pose) noexcept {
-  Vec3 columns[4];
-  for (std::size_t i = 0; i < 12; ++i) {
-    columns[i / 3][static_cast<int>(i % 3)] =
-        std::bit_cast<float>(static_cast<std::uint32_t>(ReadWord(bytes, 4 * i, 4)));
+struct PoseResult {
+  bool is_good = false;
+  IgtlFault fault{};
+  std::array<double, 3> numbers{};
+};
+
+/// Columns of a matrix and the place behind them [mm]; orthonormalised within the tolerance.
+PoseResult MakePose(const std::array<Vec3, 4>& columns, math::Pose& pose) noexcept {
+  const auto refuse = [](IgtlFault fault, std::array<double, 3> numbers = {}) {
+    return PoseResult{false, fault, numbers};
+  };
+  const auto& [x, y, z, place] = columns;
+  if (x == Vec3{} && y == Vec3{} && z == Vec3{}) return refuse(IgtlFault::kZero);
+  const std::array<double, 3> lengths = {math::Norm(x), math::Norm(y), math::Norm(z)};
+  const double volume = math::Dot(math::Cross(x, y), z);
+  if (!std::isfinite(volume) || !(math::Norm(place) / 1000.0 <= kReach)) return refuse(IgtlFault::kNumbers);
+  if (lengths[0] * lengths[1] * lengths[2] == 0) return refuse(IgtlFault::kScale, lengths);
+  // the largest cosine between two axes
+  const double skew = std::max({std::fabs(math::Dot(x, y)) / (lengths[0] * lengths[1]),
+                                std::fabs(math::Dot(x, z)) / (lengths[0] * lengths[2]),
+                                std::fabs(math::Dot(y, z)) / (lengths[1] * lengths[2])});
+  if (!(skew <= kUnitTolerance)) return refuse(IgtlFault::kSkew, {kDegrees * std::asin(std::min(skew, 1.0))});
+  if (volume < 0) return refuse(IgtlFault::kMirror, lengths);
+  for (const double length : lengths) {
+    if (!(std::fabs(length - 1.0) <= kUnitTolerance)) return refuse(IgtlFault::kScale, lengths);
   }
-  const auto is_unit = [](const Vec3& v) { return std::fabs(math::Norm(v) - 1.0) <= kUnitTolerance; };
-  if (!is_unit(columns[0]) || !is_unit(columns[1]) || !is_unit(columns[2])) return false;
-  if (!(math::Dot(math::Cross(columns[0], columns[1]), columns[2]) >= 1.0 - 3.0 * kUnitTolerance))
-    return false;
-  pose.translation = columns[3] / 1000.0;
-  if (!(math::Norm(pose.translation) <= kReach)) return false;
-  const Vec3 x = math::Normalized(columns[0]);
-  const Vec3 y = math::Normalized(columns[1] - x * math::Dot(x, columns[1]));
-  pose.rotation = math::RotationFromAxes(x, y, math::Cross(x, y));
-  return true;
+  const Vec3 right = math::Normalized(x);
+  const Vec3 up = math::Normalized(y - right * math::Dot(right, y));
+  pose = {math::RotationFromAxes(right, up, math::Cross(right, up)), place / 1000.0};
+  return {true};
+}
+
+float SwapBytes(float value) noexcept {
+  const auto word = std::bit_cast<std::uint32_t>(value);
+  return std::bit_cast<float>(word >> 24 | (word >> 8 & 0xff00) | (word << 8 & 0xff0000) | word << 24);
+}
+
+template <std::size_t kCount>
+std::array<float, kCount> ReadFloats(std::string_view bytes) noexcept {
+  std::array<float, kCount> numbers;
+  for (std::size_t i = 0; i < kCount; ++i)
+    numbers[i] = std::bit_cast<float>(static_cast<std::uint32_t>(ReadWord(bytes, 4 * i, 4)));
+  return numbers;
+}
+
+PoseResult MakePose(const std::array<float, 12>& numbers, math::Pose& pose) noexcept {
+  std::array<Vec3, 4> columns;
+  for (std::size_t i = 0; i < numbers.size(); ++i) columns[i / 3][static_cast<int>(i % 3)] = numbers[i];
+  return MakePose(columns, pose);
+}
+
+/// A place [mm] and a quaternion x, y, z, w.
+PoseResult MakePose(const std::array<float, 7>& numbers, math::Pose& pose) noexcept {
+  const math::Quaternion q{numbers[6], numbers[3], numbers[4], numbers[5]};
+  const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  const Vec3 place{numbers[0] / 1000.0, numbers[1] / 1000.0, numbers[2] / 1000.0};
+  if (length == 0) return {false, IgtlFault::kZero, {}};
+  if (!std::isfinite(length) || !(math::Norm(place) <= kReach)) return {false, IgtlFault::kNumbers, {}};
+  if (std::fabs(length - 1.0) > kUnitTolerance) return {false, IgtlFault::kScale, {length, length, length}};
+  pose = {math::Normalized(q), place};
+  return {true};
+}
+
+template <std::size_t kCount>
+PoseResult ReadPose(std::string_view bytes, math::Pose& pose) noexcept {
+  std::array<float, kCount> numbers = ReadFloats<kCount>(bytes);
+  PoseResult result = MakePose(numbers, pose);
+  if (result.is_good) return result;
+  for (float& number : numbers) number = SwapBytes(number);
+  if (math::Pose swapped; MakePose(numbers, swapped).is_good) result.fault = IgtlFault::kByteOrder;
+  return result;
+}
+
+/// How the kinds that are read are laid out [bytes].
+struct Layout {
+  std::string_view type;
+  std::size_t step;     // of one pose
+  std::size_t pose_at;  // in it
+  bool has_tools;       // several, each with its name before it
+  bool has_quaternion;
+};
+constexpr std::array<Layout, 4> kLayouts = {{{"TRANSFORM", 48, 0, false, false},
+                                             {"TDATA", kToolSize, kToolPoseAt, true, false},
+                                             {"POSITION", 28, 0, false, true},
+                                             {"QTDATA", 50, kToolPoseAt, true, true}}};
+constexpr std::size_t kPlaceSize = 12;  // of a POSITION without its quaternion
+
+const Layout* FindLayout(std::string_view type) noexcept {
+  const auto found = std::find_if(kLayouts.begin(), kLayouts.end(),
+                                  [&](const Layout& layout) { return layout.type == type; });
+  return found == kLayouts.end() ? nullptr : &*found;
 }
 
 bool IsPrintable(std::string_view text) noexcept {
@@ -63,9 +138,12 @@ void IgtlReader::Restart() noexcept {
   size_ = 0;
   wanted_ = kIgtlHeaderSize;
   to_skip_ = 0;
+  is_header_bad_ = false;
 }
 
 bool IgtlReader::Feed(std::string_view bytes, const Sink& sink) {
+  if (is_header_bad_) return false;
+  byte_count_ += bytes.size();
   while (!bytes.empty()) {
     if (to_skip_ > 0) {
       const std::size_t passed = static_cast<std::size_t>(std::min<std::uint64_t>(to_skip_, bytes.size()));
@@ -97,18 +175,19 @@ bool IgtlReader::ReadHeader() noexcept {
   const std::uint64_t body = ReadWord(header, kBodySizeAt, 8);
   if (version < 1 || version > 3 || type.empty() || !IsPrintable(type) || body > kMostSkipped) {
     ++counts_.bad;
+    is_header_bad_ = true;
     return false;
   }
-  const bool is_read = type == "TRANSFORM" || type == "TDATA";
+  const Layout* layout = FindLayout(type);
+  const bool is_read = layout != nullptr;
   if (is_read && body <= kCapacity - kIgtlHeaderSize) {
     wanted_ = kIgtlHeaderSize + static_cast<std::size_t>(body);
     return true;
   }
   ++(is_read ? counts_.bad : counts_.skipped);
+  IgtlSeen* seen = See(type, ReadName(header, kNameAt, kNameSize));
   if (is_read) {
-    ++counts_.large;
-    std::copy_n(buffer_.data() + kTypeAt, large_name_.size(), large_name_.begin());
-    large_size_ = body;
+    Refuse(seen, layout->has_tools ? IgtlFault::kManyTools : IgtlFault::kSize, {body});
   }
   to_skip_ = body;
   size_ = 0;
@@ -116,51 +195,89 @@ bool IgtlReader::ReadHeader() noexcept {
   return true;
 }
 
-std::string IgtlReader::DescribeLarge() const {
-  if (counts_.large == 0) return {};
-  const std::string_view name(large_name_.data(), large_name_.size());
-  return std::to_string(counts_.large) + " messages had more than " + std::to_string(kMostIgtlTools) +
-         " tools and were passed over, the last " + std::string(ReadName(name, 0, kTypeSize)) + " \"" +
-         core::Printable(ReadName(name, kTypeSize, kNameSize)) + "\" of " + std::to_string(large_size_) +
-         " bytes; let the server send fewer tools in one message";
+/// \return null where the table is full of others
+IgtlSeen* IgtlReader::See(std::string_view type, std::string_view name) noexcept {
+  const auto is_it = [](const auto& room, std::string_view text) {
+    return ReadName({room.data(), room.size()}, 0, room.size()) == text;
+  };
+  for (std::size_t i = 0; i < seen_count_; ++i) {
+    IgtlSeen& seen = seen_[i];
+    if (!is_it(seen.type, type) || !is_it(seen.name, name)) continue;
+    ++seen.came;
+    return &seen;
+  }
+  if (seen_count_ == seen_.size()) {
+    ++unseen_;
+    return nullptr;
+  }
+  IgtlSeen& seen = seen_[seen_count_++];
+  seen = {};
+  type.copy(seen.type.data(), seen.type.size());
+  name.copy(seen.name.data(), seen.name.size());
+  seen.came = 1;
+  return &seen;
+}
+
+void IgtlReader::Refuse(IgtlSeen* seen, IgtlFault fault, std::array<std::uint64_t, 2> words,
+                        std::array<double, 3> numbers) noexcept {
+  if (seen == nullptr) return;
+  ++seen->refused;
+  seen->fault = fault;
+  seen->words = words;
+  seen->numbers = numbers;
 }
 
 void IgtlReader::ReadBody(const Sink& sink) {
   const std::string_view header(buffer_.data(), kIgtlHeaderSize);
   std::string_view body(buffer_.data() + kIgtlHeaderSize, size_ - kIgtlHeaderSize);
-  if (ReadWord(header, kCrcAt, 8) != CalcIgtlCrc(body)) {
+  const std::string_view type = ReadName(header, kTypeAt, kTypeSize),
+                         device = ReadName(header, kNameAt, kNameSize);
+  const auto refuse = [&](IgtlFault fault, std::array<std::uint64_t, 2> words) {
     ++counts_.bad;
+    Refuse(See(type, device), fault, words);
+  };
+  const std::uint64_t told = ReadWord(header, kCrcAt, 8), belongs = CalcIgtlCrc(body);
+  if (told != belongs) {
+    refuse(told == 0 ? IgtlFault::kNoChecksum : IgtlFault::kChecksum, {told, belongs});
     return;
   }
   if (ReadWord(header, 0, 2) >= 2) {
     // extended header and metadata stand around the content
     const std::size_t before = body.size() < kExtendedHeaderSize ? body.size() + 1 : ReadWord(body, 0, 2);
-    if (before < kExtendedHeaderSize || before > body.size()) {
-      ++counts_.bad;
-      return;
-    }
-    const std::uint64_t behind = ReadWord(body, 2, 2) + ReadWord(body, 4, 4);
-    if (behind > body.size() - before) {
-      ++counts_.bad;
+    const std::uint64_t behind =
+        before > body.size() ? 0 : std::uint64_t{ReadWord(body, 2, 2)} + ReadWord(body, 4, 4);
+    if (before < kExtendedHeaderSize || before > body.size() || behind > body.size() - before) {
+      refuse(IgtlFault::kExtendedHeader, {body.size()});
       return;
     }
     body = body.substr(before, body.size() - before - static_cast<std::size_t>(behind));
   }
-  const bool is_transform = ReadName(header, kTypeAt, kTypeSize) == "TRANSFORM";
-  if (is_transform ? body.size() != kTransformSize : body.empty() || body.size() % kToolSize != 0) {
-    ++counts_.bad;
+  const Layout& layout = *FindLayout(type);
+  if (layout.has_tools && body.empty()) {  // none is seen just now
+    (void)See(type, device);
+    ++counts_.messages;
+    return;
+  }
+  if (layout.has_tools ? body.size() % layout.step != 0 : body.size() != layout.step) {
+    refuse(layout.has_quaternion && body.size() == kPlaceSize ? IgtlFault::kNoRotation : IgtlFault::kSize,
+           {body.size()});
     return;
   }
   bool is_good = true;
-  const std::size_t step = is_transform ? kTransformSize : kToolSize;
-  for (; !body.empty(); body.remove_prefix(step)) {
+  for (; !body.empty(); body.remove_prefix(layout.step)) {
     IgtlPose tool;
-    tool.name = is_transform ? ReadName(header, kNameAt, kNameSize) : ReadName(body, 0, kNameSize);
-    if (ReadPose(body.substr(is_transform ? 0 : kToolPoseAt), tool.pose)) {
-      sink(tool);
-    } else {
+    tool.name = layout.has_tools ? ReadName(body, 0, kNameSize) : device;
+    IgtlSeen* seen = See(type, tool.name);
+    const std::string_view bytes = body.substr(layout.pose_at);
+    const PoseResult result =
+        layout.has_quaternion ? ReadPose<7>(bytes, tool.pose) : ReadPose<12>(bytes, tool.pose);
+    if (!result.is_good) {
       is_good = false;
+      Refuse(seen, result.fault, {}, result.numbers);
+      continue;
     }
+    if (seen != nullptr) ++seen->poses;
+    sink(tool);
   }
   ++(is_good ? counts_.messages : counts_.bad);
 }

@@ -45,29 +45,50 @@ bool IgtlTracker::Drain(const IgtlReader::Sink& sink) {
   return true;
 }
 
+/// Says what came instead of a hand's pose.
+core::Error IgtlTracker::NoPose() const {
+  const std::vector<std::string> refused = reader_.DescribeRefused();
+  if (!refused.empty()) {
+    return {core::ErrorCode::kDeviceStale, "igtl: no pose of a hand came; " + refused[0] +
+                                               (refused.size() > 1 ? "; also, " + refused[1] : "")};
+  }
+  const std::string received = reader_.DescribeReceived();
+  if (!received.empty()) {
+    return {core::ErrorCode::kDeviceStale,
+            "igtl: no TRANSFORM or TDATA came whose name begins with " + settings_.names[0] + ", " +
+                settings_.names[1] + " or " + settings_.names[2] +
+                "; name the transforms so at the server. This came: " + received};
+  }
+  if (reader_.ByteCount() > 0) {
+    return {core::ErrorCode::kDeviceStale,
+            "igtl: " + std::to_string(reader_.ByteCount()) +
+                " bytes came and no whole message; is this the tracker's port?"};
+  }
+  return {core::ErrorCode::kDeviceStale,
+          "igtl: connected, but nothing came; let the server send TRANSFORM or TDATA without being asked"};
+}
+
 core::Status IgtlTracker::DoConfigure() {
   core::Result<std::unique_ptr<Transport>> opened = opener_();
   if (!opened) return opened.error();
   transport_ = std::move(*opened);
-  reader_.Restart();
+  reader_ = {};
   bool has_hand = false;
   const double end = clock_.Now() + settings_.answer_time;
   while (!has_hand && clock_.Now() < end) {
     if (!Drain([&](const IgtlPose& tool) { has_hand = has_hand || FindChannel(tool.name) >= 0; })) {
       transport_.reset();
-      return core::Error{core::ErrorCode::kDeviceLost,
-                         "igtl: the other side hung up or speaks no OpenIGTLink; check the port"};
+      if (const std::string why = reader_.DescribeBadHeader(); !why.empty())
+        return core::Error{core::ErrorCode::kDeviceLost, "igtl: cannot follow the server: " + why};
+      return core::Error{
+          core::ErrorCode::kDeviceLost,
+          "igtl: the other side hung up; check the port and whether another program is connected to it"};
     }
     clock_.Sleep(0.002);
   }
   if (has_hand) return {};
   transport_.reset();
-  if (const std::string large = reader_.DescribeLarge(); !large.empty())
-    return core::Error{core::ErrorCode::kDeviceStale, "igtl: " + large};
-  return core::Error{core::ErrorCode::kDeviceStale,
-                     "igtl: no TRANSFORM or TDATA came whose name begins with " + settings_.names[0] + ", " +
-                         settings_.names[1] + " or " + settings_.names[2] +
-                         "; name the transforms so at the server"};
+  return NoPose();
 }
 
 core::Status IgtlTracker::DoActivate() {

@@ -18,6 +18,11 @@
 #include "trocar/core/program.h"
 #include "trocar/device/ports.h"
 
+// glibc 2.36 declares these for C only
+extern "C" {
+#include <sys/pidfd.h>
+}
+
 extern char** environ;
 
 namespace trocar::device {
@@ -36,9 +41,8 @@ core::Result<Companion> Companion::Start(const std::filesystem::path& program, c
   companion.socket_ = ends[0];
   const int their_end = ::fcntl(ends[1], F_DUPFD_CLOEXEC, 10);
   ::close(ends[1]);
-  const int memory = ::memfd_create(program.filename().c_str(), MFD_CLOEXEC);
-  const int their_page = ::fcntl(memory, F_DUPFD_CLOEXEC, 10);
-  ::close(memory);
+  companion.page_file_ = ::memfd_create(program.filename().c_str(), MFD_CLOEXEC);
+  const int their_page = ::fcntl(companion.page_file_, F_DUPFD_CLOEXEC, 10);
   const auto close_theirs = [&] { ::close(their_end), ::close(their_page); };
   void* mapped = MAP_FAILED;
   if (their_end >= 0 && their_page >= 0 && ::ftruncate(their_page, static_cast<off_t>(bytes)) == 0)
@@ -68,6 +72,9 @@ core::Result<Companion> Companion::Start(const std::filesystem::path& program, c
     companion.process_ = -1;
     return fail("cannot start " + name + " (" + std::strerror(failed) + ")");
   }
+  companion.handle_ = ::pidfd_open(companion.process_, 0);
+  if (companion.handle_ < 0)
+    return fail("no handle of a process (" + std::string(std::strerror(errno)) + ")");
   return companion;
 }
 
@@ -78,6 +85,8 @@ Companion::Companion(Companion&& other) noexcept {
 Companion& Companion::operator=(Companion&& other) noexcept {
   std::swap(process_, other.process_);
   std::swap(socket_, other.socket_);
+  std::swap(page_file_, other.page_file_);
+  std::swap(handle_, other.handle_);
   std::swap(page_, other.page_);
   std::swap(bytes_, other.bytes_);
   return *this;
@@ -93,7 +102,9 @@ void Companion::Kill() noexcept {
 }
 
 void Companion::End() noexcept {
-  if (socket_ >= 0) ::close(socket_);
+  for (const int file : {socket_, page_file_, handle_}) {
+    if (file >= 0) ::close(file);
+  }
   if (page_ != nullptr) ::munmap(page_, bytes_);
   if (process_ <= 0) return;
   constexpr double kLook = 0.001;  // [s]

@@ -2,14 +2,15 @@
 #include "trocar/device/tcp_port.h"
 
 #include <fcntl.h>
+#include <linux/tcp.h>  // the C library's own lacks the newer fields
 #include <netdb.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 
 #include "file_transport.h"
@@ -66,11 +67,21 @@ core::Result<std::unique_ptr<Transport>> ConnectTcp(const std::string& host, int
   return Unreachable(host, port, std::strerror(why));
 }
 
-core::Result<std::unique_ptr<TcpListener>> TcpListener::Make(int port, bool is_local_only) {
+std::uint64_t GetTcpReach(const Transport& line) noexcept {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  constexpr socklen_t kNeeded = offsetof(tcp_info, tcpi_snd_wnd) + sizeof info.tcpi_snd_wnd;
+  if (::getsockopt(line.GetFile(), IPPROTO_TCP, TCP_INFO, &info, &size) != 0 || size < kNeeded) return 0;
+  return info.tcpi_bytes_acked + info.tcpi_snd_wnd;
+}
+
+core::Result<std::unique_ptr<TcpListener>> TcpListener::Make(int port, bool is_local_only, int send_buffer) {
   const int file = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   std::unique_ptr<TcpListener> listener(new TcpListener(file, port));
   const int yes = 1;
   ::setsockopt(file, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  // those who call inherit it
+  if (send_buffer > 0) ::setsockopt(file, SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof send_buffer);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));

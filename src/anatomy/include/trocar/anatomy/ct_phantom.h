@@ -23,8 +23,8 @@ struct CtPhantom {
 /// Draws wall, ribs, spine, gut, kidneys, spleen, heart and lungs around the map's liver and gallbladder, and the
 /// diaphragm on the liver, and renders all of it.
 ///
-/// Labels named as neighbours (roles.h), bile_ducts, arteries and hepatic_veins are drawn, too; other labels are not.
-/// Where no label is named portal vein, vessels are drawn inside the liver. The gallbladder has a wall of 2 mm.
+/// Labels that FindLabels understands as neighbours, bile ducts, arteries or hepatic veins are drawn, too; other labels are not.
+/// Where no label is the portal vein, vessels are drawn inside the liver. The gallbladder has a wall of 2 mm.
 /// \param labels  as FindLabels understands them; steps at right angles
 /// \return kLabelsMismatch without liver or gallbladder, or for oblique steps; kUsage for a setting out of range; kCancelled
 core::Result<CtPhantom> MakeCtPhantom(const images::LabelVolume& labels, const images::CtSettings& settings,

@@ -130,6 +130,16 @@ struct Table {
   friend bool operator==(const Table&, const Table&) = default;
 };
 
+/// What a label of the segmentation that a patient was made of was taken for.
+struct SourceLabel {
+  int label = 0;
+  std::string meaning;  ///< "gallbladder", "kidney_right"
+  std::string reason;   ///< a clause: why
+  std::string doubt;    ///< a clause: what speaks against it; empty: nothing
+
+  friend bool operator==(const SourceLabel&, const SourceLabel&) = default;
+};
+
 /// The first whose role one before it has, or null. The same name twice is another mistake, and no such one.
 template <class Thing>
 const Thing* FindSecondOfRole(const std::vector<Thing>& things) {
@@ -156,6 +166,7 @@ struct Patient {
   std::vector<Neighbour> neighbours;  ///< none: a picture shows the usual abdomen, which nothing touches
   std::vector<Port> ports;            ///< one of each use at most; a scene's own where there is none
   std::optional<Table> table;         ///< a scene's own where there is none
+  std::vector<SourceLabel> labels;    ///< none for a patient that was not made of a label map
 
   /// Index of the organ of that role, or -1.
   int OrganOf(OrganRole role) const;

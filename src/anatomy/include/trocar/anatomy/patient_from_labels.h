@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file patient_from_labels.h  A label map that somebody else drew or computed becomes a patient.
-/// Source of the numbers: TotalSegmentator (Wasserthal et al., Radiology: Artificial Intelligence 2023), its
-/// totalsegmentator/map_to_binary.py: gallbladder 4, liver 5 in the tasks total (both versions) and total_mr.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "trocar/anatomy/build_patient.h"
+#include "trocar/anatomy/structure.h"
 #include "trocar/core/result.h"
 #include "trocar/images/image_stack.h"
 
@@ -27,17 +28,29 @@ struct LabelOptions {
   std::stop_token stop;             ///< gives up before anything is written: kCancelled
 };
 
+/// Which labels of a map are what, and how that was found.
 struct OrganLabels {
   int liver = 0, gallbladder = 0;
-  int spleen = 0;          ///< 0: not known; it tells left from right
-  std::string convention;  ///< how they were found, in words
+  int spleen = 0;  ///< 0: not known; it tells left from right
+  std::string
+      convention;  ///< how they were found: "named on request", "the map's names", "the numbers of ..."
+  std::map<int, Structure>
+      structures;  ///< of the labels that occur and are understood, the two organs among them
+  std::map<int, int>
+      joined;  ///< labels that are part of an organ, as lobes, tumours and stones are, to that organ's label
+  std::vector<SourceLabel>
+      taken;  ///< liver and gallbladder, then the others that are used, each with its reason
 };
 
-/// Which labels are the organs: those that are named in `options`, else segments called liver and
-/// gallbladder, else TotalSegmentator's 5 and 4 where 5 occurs more often than 1 and 2, else 1 and 2.
-/// \return kLabelsMismatch when a label does not occur (it names the label and those that do), or when the
-///         file names one of the organs and not the other
+/// Which labels are the organs and their neighbours, the one decision for every reader of a label map:
+/// what `options` names; else the map's names, where it has any (an unknown name is asked for, never replaced by a number); else the
+/// numbers, where all labels fit one scheme of label_schemes.cpp and sizes and places agree (label_evidence.h). Where several schemes
+/// fit so, they must agree on both organs.
+/// \return kLabelsMismatch where that is not certain: it says what is seen, and asks for --names, --liver or --gallbladder
 core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options);
+
+/// Gives the parts of an organ (`joined`) the organ's label.
+void JoinParts(const OrganLabels& organs, images::LabelVolume& volume);
 
 /// Fills, meshes and assembles liver and gallbladder as BuildPatient does. The header's directions (LPS or
 /// RAS, turned or mirrored axes) are obeyed. Ducts and arteries are the generator's usual ones, placed by

@@ -31,6 +31,8 @@ struct LintFinding {
 
 struct LintReport {
   std::vector<MeshSummary> meshes;  ///< (organs)
+  std::vector<SourceLabel>
+      labels;  ///< what each label of the segmentation was taken for; none without a segmentation
   std::vector<LintFinding> findings;
 };
 

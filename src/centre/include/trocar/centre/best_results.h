@@ -14,7 +14,8 @@ namespace trocar::centre {
 
 struct BestResult {
   std::size_t attempts = 0;       ///< all, completed or not
-  std::size_t completed = 0;      ///< of them
+  std::size_t completed = 0;      ///< of them, that count
+  std::size_t unverified = 0;     ///< of all, that do not count until a replay has verified them
   std::optional<double> score;    ///< the highest of a completed attempt
   std::optional<double> seconds;  ///< the shortest of a completed attempt [s]
   bool is_score_percent = false;

@@ -51,7 +51,9 @@ struct CoursePage {
   std::string course;  ///< key of the one that is shown
   std::string name, about, who;
   std::vector<Step> steps;
-  std::string next;  ///< key of the step that comes next; empty where the course is done
+  std::string next;            ///< key of the step that comes next; empty where the course is done
+  std::size_t unverified = 0;  ///< attempts at its tasks that do not count until a replay has verified them
+  std::string note;            ///< of them, in words; may be empty
 };
 
 /// Where the store is away, the course is shown all the same: nothing is known to be done.

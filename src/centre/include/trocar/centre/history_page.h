@@ -24,6 +24,7 @@ struct HistoryPage {
   struct Row {
     std::int64_t id = 0;
     std::string when, task, person, outcome, score, time;
+    std::string mark;  ///< why it is not verified, in words; part of `outcome`; empty where it is
     Tone tone = Tone::kPlain;
     std::filesystem::path recording;  ///< empty where it is not on this computer
     store::Attempt attempt;           ///< without metrics

@@ -9,17 +9,13 @@
 
 #include "trocar/assessment/proficiency.h"
 #include "trocar/core/result.h"
+#include "trocar/record/outcome.h"
 #include "trocar/report/attempt_report.h"
 #include "trocar/store/attempts.h"
 
 namespace trocar::centre {
 
-/// The step of a course for which an attempt is made; both empty: for none.
-struct StepName {
-  std::string course, step;
-  bool IsSet() const { return !course.empty(); }
-  friend bool operator==(const StepName&, const StepName&) = default;
-};
+using StepName = record::CourseStep;
 
 struct JudgeSettings {
   int threads = 1;     ///< of the solver; the numbers are the same for any number

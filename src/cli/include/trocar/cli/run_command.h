@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace trocar::cli {
 
@@ -12,6 +13,9 @@ using TextVisitor = std::function<std::string(const std::string&)>;
 
 /// Visits every text that `trocar ... --help` prints, in English, for the test that each has been translated.
 void ListHelpTexts(const TextVisitor& visit);
+
+/// The words of every command below `trocar`, its own none first: {}, {"store"}, {"store", "add"}, ...
+std::vector<std::vector<std::string>> ListCommands();
 
 /// Reads the command line, runs one subcommand, prints.
 ///

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file json.h  Checked reading of JSON: every complaint says in which file and at which field.
+/// \file json.h  Reading of JSON within limits: every complaint says in which file and at which field.
+///
+/// Nothing else in this program parses JSON (tests/json_doors): whoever wrote a text, its size, depth, numbers, names
+/// and texts are looked at before anything is built of it.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <initializer_list>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +20,36 @@
 namespace trocar::core {
 
 class JsonDocument;
+
+/// What a text may hold at most. What goes beyond is refused with kFileTooLarge; what no limit governs (two fields of
+/// one name, bytes that are no UTF-8, zero bytes, numbers that no double or 64-bit integer holds), with kJsonSyntax.
+struct JsonLimits {
+  std::size_t bytes = std::size_t{16} << 20;
+  std::size_t depth = 64;          ///< lists and objects within each other
+  std::size_t values = 1'000'000;  ///< of the whole text
+  std::size_t fields = 100'000;    ///< of one object
+  std::size_t text = 1u << 20;     ///< of one text or field name [bytes]
+};
+
+/// Of what is small by nature, and read many times or unasked: outcomes, settings, messages.
+inline constexpr JsonLimits kSmallJson{1u << 20, 32, 50'000, 10'000, 1u << 18};
+/// Of what measures a whole person or attempt: outlines on each slice, traces.
+inline constexpr JsonLimits kLargeJson{std::size_t{64} << 20, 64, 8'000'000, 100'000, 1u << 20};
+
+/// A text as a value of the JSON library, for whoever passes on or changes fields that it does not know.
+///
+/// \tparam Json   nlohmann::json or nlohmann::ordered_json, whose header the caller includes
+/// \param source  name used in messages
+/// \return kJsonSyntax with line and column, or with the field; kFileTooLarge
+template <class Json>
+Result<Json> ParseJson(std::string_view text, std::string_view source, const JsonLimits& limits = {});
+
+/// Passes the events of a stream on, for what need not fit into memory; `limits.bytes` 0: any size.
+///
+/// \tparam Sax  nlohmann::json_sax<nlohmann::json>
+/// \return as ParseJson; success, too, where `events` itself ended it by returning false
+template <class Sax>
+Status ParseJsonEvents(std::istream& stream, std::string_view source, Sax& events, const JsonLimits& limits);
 
 /// Closed interval that a number must lie in.
 struct NumberRange {
@@ -76,9 +111,10 @@ class JsonView {
 class JsonDocument {
  public:
   /// \param source  name used in messages
-  /// \return kJsonSyntax with line and column, or with the field that an object gives twice
-  static Result<JsonDocument> Parse(std::string_view text, std::string source);
-  static Result<JsonDocument> Read(const std::filesystem::path& path);
+  /// \return kJsonSyntax with line and column, or with the field that an object gives twice; kFileTooLarge
+  static Result<JsonDocument> Parse(std::string_view text, std::string source, const JsonLimits& limits = {});
+  /// \return ReadFile's error, too
+  static Result<JsonDocument> Read(const std::filesystem::path& path, const JsonLimits& limits = {});
 
   JsonDocument(JsonDocument&&) noexcept;
   JsonDocument& operator=(JsonDocument&&) noexcept;

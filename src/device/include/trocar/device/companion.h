@@ -40,13 +40,17 @@ class Companion {
   int Socket() const noexcept { return socket_; }
   void* Page() const noexcept { return page_; }
   pid_t Process() const noexcept { return process_; }
+  /// For others that watch the program with us: the file behind Page(), and a descriptor of the process that no other process
+  /// can come to stand for.
+  int PageFile() const noexcept { return page_file_; }
+  int Handle() const noexcept { return handle_; }
 
  private:
   Companion() = default;
   void End() noexcept;
 
   pid_t process_ = -1;
-  int socket_ = -1;
+  int socket_ = -1, page_file_ = -1, handle_ = -1;
   void* page_ = nullptr;
   std::size_t bytes_ = 0;
 };

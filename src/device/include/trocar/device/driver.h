@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "trocar/core/result.h"
 #include "trocar/device/hand_sample.h"
@@ -66,9 +67,13 @@ class Driver {
   /// A sample that is not finite is ignored.
   virtual void PlaceHand(int /*channel*/, const HandSample& /*home*/) noexcept {}
 
-  /// What came in and was not used, where a person should know of it; empty where there is nothing to say.
+  /// What came in and was not used, where a person should know of it: a sentence for each reason, with what to do. English;
+  /// TranslateComposed knows them. Another sentence means another reason; counts in them change.
   /// \note Not real-time safe: allocates.
-  virtual std::string DescribeHeldBack() const { return {}; }
+  virtual std::vector<std::string> DescribeHeldBack() const { return {}; }
+  /// Kinds, names and counts of all that came, where the device has such; no prose.
+  /// \note Not real-time safe: allocates.
+  virtual std::string DescribeReceived() const { return {}; }
 
   DriverState GetState() const noexcept { return state_; }
   /// Name for messages, for example "mouse and keyboard".

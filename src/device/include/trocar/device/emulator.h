@@ -86,6 +86,8 @@ using CursorMotion = std::function<Vec3(int device, double time)>;
 struct HaplyEmulation {
   int devices = 1;  ///< 1 or 2
   CursorMotion position;
+  /// Of the grip, held at a time [s], bit 0 is the first; may be empty.
+  std::function<std::uint32_t(double time)> buttons = {};
 };
 /// What a driver last sent to the emulated service.
 struct HaplyForces {

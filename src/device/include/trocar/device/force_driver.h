@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "trocar/device/driver.h"
 #include "trocar/math/pose.h"
@@ -84,10 +86,18 @@ inline constexpr unsigned kStylusOwnButtons = 2;
 struct SupervisedWire {
   static constexpr std::size_t kMaxBytes = 512;
   int file = -1;         ///< descriptor, stays the driver's; -1: the device is reached through a library
-                         ///< of its maker, and only that library and the device can stop it
+                         ///< of its maker, see SupervisedLibrary
   std::size_t size = 0;  ///< of zero_frame, <= kMaxBytes
   std::array<std::uint8_t, kMaxBytes> zero_frame{};
   bool is_closed_after = false;  ///< sockets: shut down once the frame has been sent
+};
+
+/// Processes that hold devices through a library of their maker, for another process that ends the force when they, or ours,
+/// cannot any more.
+struct SupervisedLibrary {
+  std::string request;  ///< how the devices are opened
+  std::vector<int>
+      files;  ///< page and pidfd of the process that holds them, and of its spare where there is one; they stay the driver's
 };
 
 /// A device with force output. One thread, the haptic loop, calls everything but the life cycle; the life cycle is
@@ -121,6 +131,8 @@ class ForceDriver : public Driver {
 
   /// For the supervisor process; the descriptor is duplicated by whoever asks.
   virtual SupervisedWire GetSupervisedWire(int channel) const noexcept;
+  /// Of all channels together. A device that moves a hand has this or a wire.
+  virtual SupervisedLibrary GetSupervisedLibrary() const;
 
  protected:
   using Driver::Driver;

@@ -18,7 +18,8 @@ class HandRig : public Driver {
   HandRig(std::unique_ptr<Driver> hands, std::unique_ptr<Driver> jaws);
 
   void PlaceHand(int channel, const HandSample& home) noexcept override { hands_->PlaceHand(channel, home); }
-  std::string DescribeHeldBack() const override;
+  std::vector<std::string> DescribeHeldBack() const override;
+  std::string DescribeReceived() const override { return hands_->DescribeReceived(); }
   Driver& Hands() noexcept { return *hands_; }
   Driver& Jaws() noexcept { return *jaws_; }
 

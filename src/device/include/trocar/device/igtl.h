@@ -22,10 +22,38 @@ inline constexpr std::size_t kIgtlHeaderSize = 58;  // [bytes]
 /// CRC-64 of message bodies: polynomial 0x42F0E1EBA9EA3693, start 0, nothing reflected.
 std::uint64_t CalcIgtlCrc(std::string_view bytes) noexcept;
 
-/// A pose with a name: a TRANSFORM, or one element of a TDATA message.
+/// A pose with a name: a TRANSFORM or POSITION, or one element of a TDATA or QTDATA message.
 struct IgtlPose {
   std::string_view name;  ///< of the device or tool; valid during the call that it is given to
   math::Pose pose;        ///< [m]
+};
+
+/// Why something that came does not count.
+enum class IgtlFault : std::uint8_t {
+  kNoChecksum,      ///< 0 where another belongs: the sender computes none
+  kChecksum,        ///< another than belongs to the body
+  kSize,            ///< of the body, which is none of this kind of message
+  kManyTools,       ///< in one message, which is passed over whole
+  kExtendedHeader,  ///< of version 2, which is longer than the body
+  kNoRotation,      ///< a POSITION of a place alone
+  kZero,            ///< a rotation of zeros only, as trackers send for a tool that they do not see
+  kNumbers,         ///< not finite, or a place beyond every room
+  kByteOrder,       ///< a pose if the lowest byte came first
+  kMirror,          ///< left-handed axes
+  kSkew,            ///< axes that are not at right angles
+  kScale,           ///< axes, or a quaternion, of another length than 1
+};
+
+/// What came of one kind by one name: of messages, and of each tool in a message of several.
+struct IgtlSeen {
+  std::array<char, 12> type{};  ///< zeros behind its end; likewise:
+  std::array<char, 20> name{};
+  std::uint64_t came = 0, refused = 0;
+  std::uint64_t poses = 0;  ///< good ones
+  IgtlFault fault{};        ///< of the last one refused
+  std::array<std::uint64_t, 2>
+      words{};  ///< what was wrong with it: its checksum and the right one, its size [bytes]; or
+  std::array<double, 3> numbers{};  ///< the axes' lengths, the angle between them [degrees off a right one]
 };
 
 /// What came in, and what was held back.
@@ -33,13 +61,16 @@ struct IgtlCounts {
   std::uint64_t messages = 0;  ///< whole and right
   std::uint64_t skipped = 0;   ///< of kinds that are not read here
   std::uint64_t bad = 0;       ///< wrong checksum, size or content
-  std::uint64_t large = 0;     ///< of kinds that are read, with more tools than are read; among `bad`
 };
 
 /// Tools of one TDATA message that are read; a message of more is passed over whole, counted and named.
 inline constexpr std::size_t kMostIgtlTools = 256;
 
+/// Kinds and names that are told apart; what comes under further ones is counted together.
+inline constexpr std::size_t kMostIgtlSeen = 24;
+
 /// Takes a stream of messages apart; keeps at most one small message and never room for what a header promises.
+/// Reads TRANSFORM and TDATA, POSITION and QTDATA with their quaternions.
 class IgtlReader {
  public:
   using Sink = std::function<void(const IgtlPose&)>;
@@ -49,23 +80,35 @@ class IgtlReader {
   bool Feed(std::string_view bytes, const Sink& sink);
   void Restart() noexcept;
   const IgtlCounts& Counts() const noexcept { return counts_; }
-  /// What was too large: "2 messages had more than 256 tools and were passed over, the last TDATA \"Tools\" of 7000 bytes".
-  /// Empty where nothing was.
-  /// \note Not real-time safe: allocates.
-  std::string DescribeLarge() const;
+  /// What came and does not count, a sentence for each reason:
+  /// "TRANSFORM \"LeftTool\": 119 of 119 do not count, because ...".
+  /// \note Not real-time safe: allocates; likewise below.
+  std::vector<std::string> DescribeRefused() const;
+  /// All that came by kind and name: "TRANSFORM \"LeftTool\" (119), STATUS \"PlusServer\" (60)".
+  std::string DescribeReceived() const;
+  /// Why Feed() gave up, and what to do; empty where it did not since Restart().
+  std::string DescribeBadHeader() const;
+  std::span<const IgtlSeen> Seen() const noexcept { return {seen_.data(), seen_count_}; }
+  std::uint64_t ByteCount() const noexcept { return byte_count_; }
 
  private:
   bool ReadHeader() noexcept;
   void ReadBody(const Sink& sink);
+  IgtlSeen* See(std::string_view type, std::string_view name) noexcept;
+  void Refuse(IgtlSeen* seen, IgtlFault fault, std::array<std::uint64_t, 2> words = {},
+              std::array<double, 3> numbers = {}) noexcept;
 
   /// Largest message that is read: a header, a TDATA body of 70 bytes a tool, and what version 2 puts around it [bytes].
   static constexpr std::size_t kCapacity = kIgtlHeaderSize + 70 * kMostIgtlTools + 1024;
   std::array<char, kCapacity> buffer_{};
-  std::array<char, 12 + 20> large_name_{};  // kind and device of the last one that was too large
-  std::uint64_t large_size_ = 0;            // of its body [bytes]
-  std::size_t size_ = 0;                    // bytes there
+  std::size_t size_ = 0;  // bytes there
   std::size_t wanted_ = kIgtlHeaderSize;
-  std::uint64_t to_skip_ = 0;  // bytes of a body that is not read
+  std::uint64_t to_skip_ = 0;   // bytes of a body that is not read
+  bool is_header_bad_ = false;  // which is kept in the buffer
+  std::array<IgtlSeen, kMostIgtlSeen> seen_{};
+  std::size_t seen_count_ = 0;
+  std::uint64_t unseen_ = 0;      // came under further names
+  std::uint64_t byte_count_ = 0;  // since the start
   IgtlCounts counts_;
 };
 

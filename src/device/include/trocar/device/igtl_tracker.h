@@ -19,7 +19,7 @@ struct IgtlSettings {
   TrackedHandsSettings hands;
 };
 
-/// A client. Takes TRANSFORM and TDATA, passes other messages over, closes the connection at a size that is a lie.
+/// A client. Takes what IgtlReader reads, passes other messages over, closes the connection at a size that is a lie.
 class IgtlTracker : public PoseDriver {
  public:
   /// \param clock  outlives the driver
@@ -27,7 +27,8 @@ class IgtlTracker : public PoseDriver {
 
   const Pose* GetSensorPose(int channel) const noexcept override { return hands_.GetPose(channel); }
   PoseCounts GetPoseCounts() const noexcept override { return hands_.Counts(); }
-  std::string DescribeHeldBack() const override { return reader_.DescribeLarge(); }
+  std::vector<std::string> DescribeHeldBack() const override { return reader_.DescribeRefused(); }
+  std::string DescribeReceived() const override { return reader_.DescribeReceived(); }
   const IgtlCounts& GetMessageCounts() const noexcept { return reader_.Counts(); }
 
  private:
@@ -39,6 +40,7 @@ class IgtlTracker : public PoseDriver {
 
   bool Drain(const IgtlReader::Sink& sink);
   int FindChannel(std::string_view name) const noexcept;
+  core::Error NoPose() const;
 
   IgtlSettings settings_;
   TransportOpener opener_;

@@ -24,7 +24,8 @@ struct OpenHapticsSettings {
   math::Vec3 p_device_trocar{0, 0.12, 0};
 };
 
-/// The host's whole life: opens what it is told to, and sends zero when the other end falls silent or closes.
+/// The host's whole life: opens what it is told to, and sends zero when the other end falls silent or closes; or watches another
+/// host, and takes its place when it fails.
 /// \return exit status
 int RunOpenHapticsHost(int socket, int page);
 
@@ -36,6 +37,7 @@ class OpenHaptics : public ForceDriver {
   ~OpenHaptics() override;
 
   ForceLimits GetLimits(int channel) const noexcept override;
+  SupervisedLibrary GetSupervisedLibrary() const override;
 
  private:
   core::Status DoConfigure() override;

@@ -18,6 +18,7 @@ enum class SimulatedFault : std::uint8_t {
   kSilent,
   kNotFinite,
   kJumped,
+  kAlternating,  ///< jumped in every other report
   kWarm,
   kUncalibrated
 };

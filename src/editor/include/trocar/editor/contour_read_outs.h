@@ -19,6 +19,8 @@ std::string SliceNotes(ContourEditor& editor);
 std::string PointerText(const ContourEditor& editor);
 /// "1280 x 720 px of 0.528 mm, slices of 1 mm · columns to left, rows to anterior · file: LPS"
 std::string SeriesText(const images::ImageSeriesInfo& series);
+/// How the series was read, where that is not plain: which one was taken, what was interpolated; else empty.
+std::string SeriesNotes(const images::ImageSeriesInfo& series);
 /// "liver: 5,000 triangles, 1403 mL · 2.1 mm": the lattice it was made on
 std::string MeshText(const std::string& name, const contours::OrganMesh& mesh);
 

@@ -31,7 +31,8 @@ class EnvironmentModel {
   /// Of a layout, 0 to layouts - 1; made when it is asked for first.
   /// \note Any thread may call it. \return the file's error
   core::Result<std::shared_ptr<const simulation::SimulationModel>> FindLayout(int layout);
-  /// Whether an action can be used: each number finite, and in -1 to 1 or one of the choices.
+  /// Whether an action can be used: each number finite, and in -1 to 1 (what lies beyond by single precision's rounding, a
+  /// millionth, is cut by Step) or one of the choices.
   /// \param action  (ActionSize())
   /// \return kActionInvalid with the field that is wrong
   core::Status CheckAction(std::span<const double> action) const;

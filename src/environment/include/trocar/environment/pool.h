@@ -46,6 +46,7 @@ struct PoolRows {
   std::vector<double> features;                              ///< (count, kFeatureCount)
   std::vector<std::uint8_t> terminated, truncated, success;  ///< (count)
   std::vector<std::uint8_t> was_reset;                       ///< (count) this row begins an episode
+  std::vector<std::int32_t> layout;                          ///< (count) of the episode of `state`
 };
 
 /// Send and Receive may be called from one thread at a time. The results do not depend on the number of threads.
@@ -66,6 +67,11 @@ class Pool {
   /// \param seed  environment i gets seed + i; without one their rows of episodes go on
   /// \return kEnvironmentState, kUsage
   core::Status Reset(std::span<const std::int32_t> ids, std::optional<std::uint64_t> seed);
+  /// The same with a seed for each; one that has none goes on with its row of episodes.
+  /// \param seeds  (ids, or Count())
+  /// \return also kUsage for another number of seeds
+  core::Status ResetEach(std::span<const std::int32_t> ids,
+                         std::span<const std::optional<std::uint64_t>> seeds);
   /// Hands actions to the threads and returns.
   /// \param actions  (ids, ActionSize()) row after row
   /// \param ids      as in Reset

@@ -17,10 +17,9 @@ struct DeviceGuardSettings {
   double max_speed = 2.0;       ///< faster is a jump [m/s] (D5)
   double max_turn_rate = 30.0;  ///< [rad/s]
   double max_reach = 1.0;       ///< no device's workspace is larger, from its origin [m]
-  int max_bad_in_row = 3;       ///< at which bad reports are a fault (D4)
-  /// Bad reports and jumps among the last kWindow at which a device is not to be believed, whatever lies between them.
-  int max_bad_in_window = 8;
-  int max_jumps_in_row = 3;      ///< at which a jump is where the device now is, and a fault
+  /// Bad reports and jumps among the last kWindow at which a device is not believed any more, in a row or with good ones
+  /// between them (D4, D5); so many jumps in a row are where the device now is.
+  int max_refused = 3;
   double velocity_time = 0.003;  ///< time constant of the velocity that is derived from positions [s]
 };
 
@@ -60,6 +59,7 @@ class DeviceGuard {
 
  private:
   void Take(const device::ForceSample& sample, double now) noexcept;
+  void Refuse(Fault why) noexcept;
   void Accept(const device::ForceSample& sample, double elapsed) noexcept;
 
   DeviceGuardSettings settings_;
@@ -68,8 +68,9 @@ class DeviceGuard {
   double last_good_ = 0;  // [s]
   bool was_lost_ = true;
   bool was_stale_ = false;
-  int bad_in_row_ = 0, jumps_in_row_ = 0;
+  int jumps_in_row_ = 0;
   std::uint32_t window_ = 0;  // a bit for each of the last kWindow reports, set where it was bad or a jump
+  Fault last_refusal_ = Fault::kNone;
   DeviceGuardCounts counts_;
 };
 

@@ -45,6 +45,10 @@ struct ImageSeriesInfo {
   double tilt_deg = 0;            ///< largest angle between an axis and the patient direction that names it
   std::string pattern;            ///< of a stack of pictures: "image-{slice:04}.jpeg"; else empty
   std::size_t ignored_files = 0;  ///< in the folder, that are no part of the series
+  int series = 0,
+      series_id = 0;  ///< of a DICOM volume: what ImageSeriesOptions::series chooses it by; else 0
+  /// What a person should know of how it was read: why this series was taken, what was passed over, what was interpolated.
+  std::vector<std::string> notes;
 };
 
 /// What a person adds where the files do not say it, and what the import may use up. Where a file does say
@@ -57,7 +61,8 @@ struct ImageSeriesOptions {
   std::optional<std::array<std::string, 3>> axes;
   std::string pattern;      ///< only files with such names: "image-{slice:04}.jpeg"; empty: find it
   std::vector<int> slices;  ///< only these numbers, ascending; empty: all, which must have no gaps
-  int series = 0;           ///< of several DICOM series in a folder: 1, 2, ...; 0: there must be one
+  int series =
+      0;  ///< of several DICOM series or parts in a folder: number or id; 0: one must be the only volume
   std::size_t memory_bytes = std::size_t{2} << 30;  ///< most that the decoded series may take
 };
 

@@ -17,11 +17,12 @@ namespace trocar::images {
 struct ListedSeries {
   std::filesystem::path path;
   ImageSeriesOptions options;  ///< what chooses it there: number of the DICOM series or pattern of the names
-  std::string description;     ///< "CT, portal venous", else the name of its file or folder
+  std::string description;     ///< "CT, portal venous, acquisition 2", else the name of its file or folder
   std::string format;          ///< as ImageSeriesInfo has it
   std::size_t slices = 0;
   int width = 0, height = 0;           ///< [pixels]
   double pixel_mm = 0, slice_mm = 0;   ///< 0: the files do not say
+  bool is_volume = true;               ///< false: a localizer or a single slice
   ColorImage preview;                  ///< of the slice in the middle; empty where it cannot be read
   std::optional<core::Error> problem;  ///< why it cannot be opened as it is
 };

@@ -29,14 +29,18 @@ struct IgtlServerSettings {
 /// A server that only speaks: whatever a viewer sends is thrown away, so that no message from a network can change anything.
 ///
 /// Every set is a TRANSFORM each for LeftTool, RightTool and Laparoscope, and a TDATA "Tools" of the three; organs are
-/// POLYDATA by their names, the first of them as soon as somebody connects. A viewer that does not keep up misses sets; one
-/// that takes nothing for 10 s is let go. Of eight viewers, the slowest makes room for a ninth if it is behind for a second. Ducts and arteries, which have no surface of their own, are not sent.
+/// POLYDATA by their names, the first of them as soon as somebody connects. A viewer that does not keep up misses sets. It is
+/// judged once a second by what its program takes, not by what systems buffer for it: one that does not take the
+/// tools as they come for 10 s is let go, and of eight viewers the one that has been behind longest makes room for a ninth.
+/// Ducts and arteries, which have no surface of their own, are not sent.
 class IgtlServer {
  public:
   /// \param surfaces  of the simulation
+  /// \param clock     tells how long a viewer has been behind; outlives the server
   /// \return kDeviceBusy where the port is taken
   static core::Result<std::unique_ptr<IgtlServer>> Make(const IgtlServerSettings& settings,
-                                                        std::span<const scene::SurfaceInfo> surfaces);
+                                                        std::span<const scene::SurfaceInfo> surfaces,
+                                                        device::Clock& clock = device::SystemClock());
 
   /// Call it after every tick. Sends what is due and never waits.
   /// \note Not real-time safe: allocates
@@ -49,19 +53,28 @@ class IgtlServer {
   struct Viewer {
     std::unique_ptr<device::Transport> line;
     std::string unsent;
-    double last_sent = 0;   // simulated time at which it last took anything [s]
-    double last_level = 0;  // and at which it had taken everything [s]
+    std::uint64_t sent = 0;  // to its line [bytes]
     bool has_organs = false;
+    double judged_at = 0;                            // serving time of the last look [s]
+    std::uint64_t taken_then = 0, offered_then = 0;  // by then [bytes]
+    double last_level = 0;  // serving time of the last look that found it keeping up [s]
+    double Behind() const noexcept { return judged_at - last_level; }
   };
-  IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<device::TcpListener> listener);
-  void Accept(double time);
-  void Serve(Viewer& viewer, double time);
+  IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<device::TcpListener> listener,
+             device::Clock& clock);
+  void Accept();
+  void Serve(Viewer& viewer);
+  void Judge(Viewer& viewer);
 
   IgtlServerSettings settings_;
+  device::Clock& clock_;
   std::unique_ptr<device::TcpListener> listener_;
   std::vector<scene::SurfaceInfo> organs_;
   std::vector<Viewer> viewers_;
   double next_tools_ = 0, next_organs_ = 0;  // simulated time [s]
+  double last_call_ = 0;                     // by the clock [s]
+  double serving_time_ = 0;                  // real time without pauses of the simulation [s]
+  std::uint64_t offered_ = 0;                // tools since the start [bytes]
 };
 
 }  // namespace trocar::net

@@ -76,10 +76,16 @@ class Replay {
   /// The first hash that was not the recorded one since Open, in the ticks that were stepped.
   const std::optional<Divergence>& GetDivergence() const { return divergence_; }
 
+  /// Sees each state that is computed, the first one with the inputs of nobody.
+  using Watch = std::function<void(const simulation::Snapshot&, const Input&)>;
   /// From the first tick to the last, comparing hashes, keyframes and outcome. Uses no kept state.
   /// \param progress  told the share done, 0 to 1; false gives up; may be empty
   /// \return kCancelled where progress gave up; a keyframe's error
-  core::Result<Verification> Verify(const std::function<bool(double)>& progress = {});
+  core::Result<Verification> Verify(const std::function<bool(double)>& progress = {},
+                                    const Watch& watch = {});
+  /// Whether the ending is what was computed, hash and outcome; true where none is recorded.
+  /// \pre IsAtEnd()
+  bool IsEndingSame() const;
 
   /// Takes over here: one more simulation that stands where this one does, to be played on by somebody else.
   /// \param threads  of its solver
@@ -90,7 +96,7 @@ class Replay {
   Replay(std::shared_ptr<const Recording> recording, Model model, simulation::Simulation simulation,
          int threads, double visit_seconds);
   core::Status GoTo(std::uint64_t tick);
-  core::Status CompareAll(const std::function<bool(double)>& progress);
+  core::Status CompareAll(const std::function<bool(double)>& progress, const Watch& watch);
   void Keep();
   std::uint64_t TicksIn(double seconds) const;
 

@@ -10,10 +10,14 @@
 namespace trocar::render {
 
 /// An OpenGL 3.3 core context of its own, current on the thread that made it.
+///
+/// Drivers have threads and locks that are not there, or not free, in a child of fork(): once a process has made a context, its
+/// forks can neither use that one nor make one. They are refused, and destroying a context does nothing there.
 class OffscreenContext {
  public:
   /// Tries Mesa's surfaceless platform, then every EGL device.
-  /// \return kNoGraphics with the packages to install, or kGraphicsTooOld with the version that was found
+  /// \return kNoGraphics with the packages to install, kGraphicsTooOld with the version that was found, or kEnvironmentState in
+  ///     a fork
   static core::Result<OffscreenContext> Make();
 
   OffscreenContext(OffscreenContext&&) noexcept;
@@ -21,7 +25,7 @@ class OffscreenContext {
   ~OffscreenContext();
 
   /// Makes it current on the calling thread.
-  /// \return kNoGraphics when it is current on another one
+  /// \return kNoGraphics when it is current on another one; kEnvironmentState in a fork
   core::Status MakeCurrent();
   /// Leaves the calling thread without a context, so that another one may take it.
   void Release();

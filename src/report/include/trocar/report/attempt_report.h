@@ -37,6 +37,8 @@ struct AttemptFacts {
   /// The score that an able surgeon gets at this level, and nobody more: scene::Task::best_score [%]. Nothing: the score is in
   /// points without a limit.
   std::optional<double> best_score;
+  /// Of a recording that was replayed: whether it came to the outcome that its file says. Nothing: it was not read from a file.
+  std::optional<bool> is_as_recorded;
 };
 /// Of a recording. \param task  its name for a person
 AttemptFacts DescribeAttempt(const record::Description& description, std::string task);

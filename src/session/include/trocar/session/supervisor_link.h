@@ -12,7 +12,8 @@
 namespace trocar::session {
 
 /// Our end of the supervisor. The supervisor sees our end close when we die, and our heart beat stop when we hang; then
-/// it writes the zero frame of every wire, again and again, until the beat comes back.
+/// it writes the zero frame of every wire, again and again, until the beat comes back. It also ends processes of a maker's library that
+/// stand still, and takes their force away where nobody else does (device::LibraryGuard).
 class SupervisorLink {
  public:
   /// Silence after which the supervisor acts [s], as long as a force lives that nobody renews.
@@ -31,7 +32,10 @@ class SupervisorLink {
   /// Gives the supervisor a copy of a wire.
   /// \return kHapticSupervisor
   core::Status AddWire(const device::SupervisedWire& wire);
-  /// The supervisor closes its copies: the device is gone, or comes back on another wire.
+  /// Lets the supervisor watch the processes of a maker's library; instead of those that it watched before.
+  /// \return kHapticSupervisor
+  core::Status AddLibrary(const device::SupervisedLibrary& library);
+  /// The supervisor closes its copies, and watches no library any more: the device is gone, or comes back on another wire.
   void ForgetWires() noexcept;
 
   /// We live. Watching begins with the first.

@@ -17,6 +17,50 @@
 
 namespace trocar::store {
 
+/// Whether what is kept of an attempt was computed by playing its recording again, or is what a file says.
+enum class Verification : std::uint8_t {
+  kUnverified,    ///< as a file says; it counts nowhere until it was replayed
+  kVerified,      ///< replayed from the first tick: it is what came out
+  kRecordedHere,  ///< the window recorded it here, and a replay measured it
+  kAccepted,  ///< as a file says, and counts: kept by a version that did not ask, or let through by an administrator
+  kRefused  ///< replayed, and its file says otherwise: what came out is kept, and counts nowhere
+};
+/// "unverified", "verified", "recorded_here", "accepted", "refused".
+std::string_view VerificationName(Verification verification) noexcept;
+std::optional<Verification> ParseVerification(std::string_view name) noexcept;
+
+/// Why an attempt is not verified.
+enum class WhyUnverified : std::uint8_t {
+  kNone,
+  kNotYet,        ///< nobody has replayed it
+  kEarlier,       ///< kept by a version that did not ask
+  kImported,      ///< came with a file of another store
+  kNoRecording,   ///< there is no such recording on this computer, or another one has its name
+  kOtherVersion,  ///< recorded by another version, and this one computes something else
+  kSavedState,    ///< its recording begins from a saved state, of which nobody knows how it came about
+  kCannotReplay,  ///< its scene or patient is missing, or not what it was
+  kDiverged,      ///< refused: its states are not those that were recorded
+  kOtherEnding    ///< refused: its file says that it ended otherwise
+};
+/// "", "not_yet", "earlier", ... as the databases and files hold it.
+std::string_view WhyName(WhyUnverified why) noexcept;
+std::optional<WhyUnverified> ParseWhy(std::string_view name) noexcept;
+
+/// What is known of an attempt's truth.
+struct VerificationMark {
+  Verification state = Verification::kUnverified;
+  WhyUnverified why = WhyUnverified::kNotYet;
+  std::string program;                  ///< version that replayed it; empty: none did
+  std::optional<std::int64_t> time_ms;  ///< when [ms since 1970 UTC]
+  std::string claim;                    ///< of kRefused: the outcome that its file says
+
+  /// Whether the attempt counts: in standings, places, courses and the bests.
+  bool Counts() const { return state != Verification::kUnverified && state != Verification::kRefused; }
+  bool IsVerified() const { return state == Verification::kVerified || state == Verification::kRecordedHere; }
+};
+/// For a person, untranslated; empty where it is verified: "not verified: nobody has replayed it".
+std::string DescribeMark(const VerificationMark& mark);
+
 /// One attempt. Its key is recording_id and started: the same attempt arrives once, however often it is sent.
 struct Attempt {
   std::string recording_id;  ///< random id of the recording's file, 16 hexadecimal digits
@@ -33,6 +77,9 @@ struct Attempt {
   std::string recording;          ///< absolute path of its file, or empty
   std::string program;            ///< version
   std::vector<training::MetricValue> metrics;
+  VerificationMark mark;
+
+  bool CountsAsCompleted() const { return is_completed && mark.Counts(); }
 };
 
 struct StoredAttempt {
@@ -45,8 +92,21 @@ struct StoredAttempt {
 core::Result<std::int64_t> ParseTime(std::string_view text);
 
 /// Stores an attempt, and what it changes in the standings. Whoever can open the store may add attempts.
-/// \return whether it is new; kStoreUnknown where its trainee is; kStoreInvalid where it lacks its key or a number is not finite
+/// \return whether it is new; kStoreUnknown where its trainee is; kStoreInvalid where it is there as somebody else's; kStoreInvalid where it lacks its key or a number is not finite
 core::Result<bool> AddAttempt(Store& store, const Attempt& attempt);
+
+/// Gives an attempt to another person, with what it counts. Nothing where the store has no such attempt.
+/// \return kStoreUnknown where the trainee is
+core::Status MoveAttempt(Store& store, const Viewer& viewer, std::string_view recording_id,
+                         std::string_view started, std::string_view trainee);
+/// What a replay of a stored attempt came to: replaces what was kept of it, and counts the standings again.
+/// \param attempt  with its key; its trainee, remarks and ratings stay
+/// \return kStoreUnknown where it is gone
+core::Status UpdateAttempt(Store& store, const Viewer& viewer, const Attempt& attempt);
+/// Attempts that no replay has verified, the oldest first.
+/// \param after  id behind which to go on
+core::Result<std::vector<StoredAttempt>> ListUnverified(Store& store, const Viewer& viewer,
+                                                        std::int64_t after, int limit);
 
 /// Stores many at once, much faster than one by one: for what comes from elsewhere. They are not judged by thresholds.
 /// \return how many are new; all are stored, or none

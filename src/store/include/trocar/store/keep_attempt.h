@@ -2,6 +2,7 @@
 /// \file keep_attempt.h  The way of an attempt into the store, for the window and the command line.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,20 @@ namespace trocar::store {
 /// \return kRecordingInvalid, kFileUnreadable
 core::Result<Attempt> DescribeAttempt(const record::Recording& recording, const std::filesystem::path& path);
 
+/// Whether a recording is replayed, and how.
+struct ReplayChoice {
+  int threads = 1;  ///< of the solver; the numbers are the same for any number
+  /// Told the share done, 0 to 1; false gives up. May be empty.
+  std::function<bool(double)> progress;
+};
+
+/// The same, played again from its first tick to its last: outcome, score, metrics and length are what came out, and the mark says how
+/// that compares with the file. Where it does not play, they are as the file says, and it is not verified.
+/// \return kRecordingInvalid, kFileUnreadable; kCancelled where `progress` gave up
+/// \note Takes about as long as the attempt took, or less.
+core::Result<Attempt> ReplayAttempt(record::Recording recording, const std::filesystem::path& path,
+                                    const ReplayChoice& choice = {});
+
 struct KeepReport {
   bool is_in_store = false;            ///< else it waits in the spool
   std::optional<core::Error> failure;  ///< why it waits
@@ -23,7 +38,7 @@ struct KeepReport {
 };
 
 /// Spools the attempt, then tries to deliver it and whatever else waits.
-/// \return why it could not even be spooled; then it is kept nowhere
+/// \return why it could not even be spooled, or is somebody else's in the store; then it is kept nowhere
 /// \note Blocks for up to StoreSettings::answer_seconds: call it from a thread of its own.
 core::Result<KeepReport> KeepAttempt(const Place& place, const Attempt& attempt,
                                      const StoreSettings& settings = {});

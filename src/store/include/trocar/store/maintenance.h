@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,15 +29,22 @@ core::Status Verify(Store& store);
 struct ImportReport {
   std::int64_t people = 0, groups = 0, courses = 0, attempts = 0;  ///< that are new
   std::int64_t known = 0;                                          ///< attempts that were there already
+  std::int64_t conflicts = 0;  ///< of these, another person's here; they stay theirs
 };
 
 /// All tables as one JSON file (schemas/store-export.schema.json), row by row: nothing is held in memory whole. Names are not in it.
 core::Status ExportJson(Store& store, const Viewer& viewer, const std::filesystem::path& file);
 /// Attempts with their metrics, one line per number.
 core::Status ExportCsv(Store& store, const Viewer& viewer, const std::filesystem::path& file);
+/// What is believed of a file that says that an attempt was verified.
+enum class Trust : std::uint8_t {
+  kNone,     ///< nothing: attempts are not verified until they are replayed here
+  kAsItSays  ///< all: it is one's own backup
+};
 /// Adds what an export or a backup holds; what is there stays. Everything or nothing.
 /// \return kJsonSyntax, kJsonField, kStoreInvalid, kStoreSchema
-core::Result<ImportReport> Import(Store& store, const Viewer& viewer, const std::filesystem::path& file);
+core::Result<ImportReport> Import(Store& store, const Viewer& viewer, const std::filesystem::path& file,
+                                  Trust trust = Trust::kNone);
 
 /// Writes all that is known of a person to a new folder: person.json, and their recordings.
 /// \return how many recordings
@@ -60,12 +68,20 @@ core::Result<int> ReadRetention(Store& store);
 struct TidyReport {
   std::int64_t attempts = 0;
   int recordings = 0;
+  std::int64_t due =
+      0;  ///< attempts that are older than they may be, and go kGraceDays after they were found so
   std::vector<std::string> left;  ///< recordings that are not here, or could not be removed; for a person
   std::filesystem::path backup;
+  /// kUsage: nothing was removed or found due, since a person has to say whether the clock and the number are right.
+  std::optional<core::Error> unsure;
 };
-/// Removes attempts that are older than they may be, with their recordings; gives their bytes back; makes a backup.
-/// \param now_ms  [ms since 1970 UTC]
-core::Result<TidyReport> Tidy(Store& store, const Viewer& viewer, std::int64_t now_ms);
+/// Between a tidying that finds an attempt too old and the first that removes it: a clock or a limit that was wrong is noticed.
+inline constexpr int kGraceDays = 7;
+/// Finds attempts that are older than they may be, and removes those that it found so kGraceDays ago, with their recordings; gives
+/// their bytes back; makes a backup.
+/// \param now_ms   [ms since 1970 UTC]
+/// \param is_sure  a person has said that the clock and the number of attempts are right
+core::Result<TidyReport> Tidy(Store& store, const Viewer& viewer, std::int64_t now_ms, bool is_sure = false);
 
 /// Lets a server count its tables anew, as it does by itself after a while; worthwhile after much was added.
 core::Status UpdateStatistics(Store& store);

@@ -20,6 +20,13 @@ struct Person {
   std::vector<std::string> groups;  ///< of ListPeople, in alphabetical order
 };
 
+/// What every door takes as a pseudonym, a name or a group's: bounded, UTF-8, without control characters, line ends or characters
+/// that turn the direction of writing. A pseudonym is no part of a path, and no option.
+/// \return kStoreInvalid
+core::Status CheckPseudonym(std::string_view text);
+core::Status CheckName(std::string_view text);
+core::Status CheckGroupName(std::string_view text);
+
 /// Letters and digits that are not mistaken for one another, at random, behind the role's letter: "T-7F3K2Q".
 std::string MakePseudonym(Role role);
 

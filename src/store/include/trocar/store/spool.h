@@ -17,14 +17,19 @@
 namespace trocar::store {
 
 /// The attempt as JSON with a checksum (schemas/attempt.schema.json).
-std::string WriteAttemptJson(const Attempt& attempt);
-/// \param source  for messages \return kStoreDamaged where the checksum does not fit
-core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& source);
+/// \param seal  secret of this computer's store: it tells its own program's attempts from files that others put there; may be empty
+std::string WriteAttemptJson(const Attempt& attempt, std::string_view seal = {});
+/// \param source  for messages
+/// \param seal    what it was written with; without it, or with another one, the attempt is not verified
+/// \return kStoreDamaged where the checksum does not fit
+core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& source,
+                                      std::string_view seal = {});
 
 struct DeliveryReport {
   int added = 0, known = 0;  ///< `known`: the store had them already
-  int held = 0;              ///< of trainees that the store does not know; they stay in the folder "held"
-  int damaged = 0;           ///< put aside in the folder "damaged"
+  int held =
+      0;  ///< of trainees that the store does not know, or another's in the store; they stay in the folder "held"
+  int damaged = 0;                     ///< put aside in the folder "damaged"
   std::optional<core::Error> failure;  ///< why the rest waits
 };
 
@@ -33,11 +38,14 @@ class Spool {
  public:
   explicit Spool(const Place& place)
       : folder_(place.SpoolFolder()),
+        seal_(place.folder / "seal.key"),
         journal_(place.IsPostgres() ? std::filesystem::path() : place.JournalFolder()) {}
 
   /// Returns once the attempt survives a power cut.
   /// \return kFileUnwritable
   core::Status Keep(const Attempt& attempt) const;
+  /// Removes an attempt that is held. \return kFileUnwritable
+  core::Status TakeBack(const Attempt& attempt) const;
   /// Sends what waits, oldest first. What a SQLite store has moves to the journal, which is kept until the next backup;
   /// what a server has is removed here.
   DeliveryReport Deliver(Store& store) const;
@@ -54,6 +62,7 @@ class Spool {
 
  private:
   std::filesystem::path folder_;
+  std::filesystem::path seal_;
   std::filesystem::path journal_;  // empty: none
 };
 

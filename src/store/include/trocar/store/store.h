@@ -53,7 +53,8 @@ struct Place {
 };
 
 /// \param url  as of Place; empty: TROCAR_STORE, else store/store.sqlite in core::FindUserDataFolder()
-Place FindPlace(std::string url = {});
+/// \return kUsage for anything else, such as a mistyped scheme or libpq's keywords; the message never holds the text
+core::Result<Place> FindPlace(std::string url = {});
 
 struct StoreSettings {
   double busy_seconds = 2;     ///< how long it waits for another writer [s]

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file structure.h  What a label of a segmentation can be, and what people and programs call it.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "trocar/roles/roles.h"
+
+namespace trocar::anatomy {
+
+/// Structures that a label map may hold, as finely as it matters round the gallbladder.
+enum class Structure : std::uint8_t {
+  kUnknown,  ///< has no name, or one that the table has not
+  kOther,    ///< known, and of no account here
+  kLiver,
+  kLiverPart,    ///< a lobe or segment: several make the liver
+  kLiverLesion,  ///< tumour or cyst of the liver, which is drawn as liver
+  kLiverVessel,
+  kGallbladder,
+  kGallbladderPart,  ///< its wall, its lumen or stones in it
+  kBileDuct,
+  kArtery,  ///< hepatic and cystic
+  kSpleen,
+  kStomach,
+  kDuodenum,
+  kColon,
+  kSmallBowel,
+  kPancreas,
+  kKidneyRight,
+  kKidneyLeft,
+  kKidneys,  ///< both, or one of which the side is not said
+  kAdrenalRight,
+  kAdrenalLeft,
+  kAdrenals,
+  kVenaCava,
+  kAorta,
+  kPortalVein,
+  kEsophagus,
+  kLungRight,
+  kLungLeft,
+  kLungs,
+  kHeart,
+  kChest,  ///< what else lies above the diaphragm
+  kHead,   ///< head and neck
+  kBladder,
+  kPelvis,  ///< what else lies in the pelvis or below
+  kRibsRight,
+  kRibsLeft,
+  kRibs,
+  kUpperVertebra,  ///< cervical, and thoracic down to T6
+  kVertebra,       ///< further down
+  kVertebraL3,
+  kVertebraL4,
+  kSacrum,
+  kBody,  ///< the whole body's surface
+  kCount
+};
+
+/// "liver", "kidney_right"
+const char* NameOf(Structure structure) noexcept;
+
+/// What a segment's name means. Case, accents, blanks and lines between words, their order, and words such as "mask" or "whole" do
+/// not matter; the table holds Latin (Terminologia Anatomica), English, German, French, Spanish, Italian, Portuguese, Dutch, Russian,
+/// Chinese, Japanese and Korean names and what public data sets write. Nothing is guessed: "liver 2" is unknown.
+/// \param name  UTF-8, or Latin-1
+Structure FindStructure(std::string_view name);
+
+/// Whether a program made that name up for a label that nobody named: "Segment_1", "Label 3", "7".
+bool IsPlaceholder(std::string_view name);
+
+/// The neighbour that a structure is, or kOther.
+roles::NeighbourRole RoleOf(Structure structure) noexcept;
+
+}  // namespace trocar::anatomy
