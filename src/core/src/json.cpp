@@ -57,6 +57,7 @@ class Watch {
   /// Whether a value has ended or begun since this was asked before.
   bool HasMoved() { return std::exchange(has_moved_, false); }
 
+  // NOLINTBEGIN(readability-identifier-naming): the library calls its events so
   bool null() { return Count() && sink_.null(); }
   bool boolean(bool value) { return Count() && sink_.boolean(value); }
   bool number_integer(std::int64_t value) { return Count() && sink_.number_integer(value); }
@@ -104,6 +105,7 @@ class Watch {
     if (at != std::string_view::npos) what.remove_prefix(at + kBefore.size());
     return Refuse(ErrorCode::kJsonSyntax, Source() + ": not valid JSON: " + Excerpt(what));
   }
+  // NOLINTEND(readability-identifier-naming)
 
   /// "slices[3].contours"
   std::string Path() const {
@@ -195,6 +197,7 @@ class Builder {
  public:
   explicit Builder(Json& root) : next_(&root) {}
 
+  // NOLINTBEGIN(readability-identifier-naming): the library calls its events so
   bool null() { return Put(nullptr) != nullptr; }
   bool boolean(bool value) { return Put(value) != nullptr; }
   bool number_integer(std::int64_t value) { return Put(value) != nullptr; }
@@ -216,6 +219,7 @@ class Builder {
     }
     return true;
   }
+  // NOLINTEND(readability-identifier-naming)
 
  private:
   template <class Value>

@@ -3,8 +3,7 @@
 // through each kind of driver; then simulator, supervisor and, where there is one, the process of the maker's library are killed,
 // stopped, hung or starved together, in every combination. The device's end keeps its last force until somebody sends another: a
 // device without a watchdog of its own.
-// TROCAR_REPEATS sets how often each combination is done (1 by default); TROCAR_SLOW_TESTS=1 adds the rarer ones and judges by what
-// is promised.
+// TROCAR_REPEATS sets how often each combination is done (1 by default); TROCAR_SLOW_TESTS=1 judges by what is promised.
 #include <dirent.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -416,12 +415,7 @@ TEST_P(ForceEnds, ByAnyOneThatIsLeft) {
 }
 
 /// The rarer ones.
-class ForceEndsSlow : public ForceEnds {
- protected:
-  void SetUp() override {
-    if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "TROCAR_SLOW_TESTS=1 runs it";
-  }
-};
+class ForceEndsSlow : public ForceEnds {};
 TEST_P(ForceEndsSlow, ByAnyOneThatIsLeft) {
   Run();
 }
