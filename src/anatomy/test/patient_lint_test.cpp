@@ -164,7 +164,8 @@ const Wrong kWrongs[] = {
      "repair the mesh"},
     {"DoubtfulLabel",
      [](Patient& p) {
-       p.labels = {{1, "liver", "its name", ""}, {2, "gallbladder", "as asked", "it does not touch the liver"}};
+       p.labels = {{1, "liver", "its name", ""},
+                   {2, "gallbladder", "as asked", "it does not touch the liver"}};
      },
      {"L-LABEL-DOUBT"},
      "gallbladder",
