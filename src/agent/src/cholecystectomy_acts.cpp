@@ -239,6 +239,7 @@ void CholecystectomySurgeon::VisitState(core::StateArchive& archive) {
   archive.Field("stops", stops_);
   archive.Field("bail_out", bail_out_);
   archive.Field("triangle_ways_left", triangle_ways_left_);
+  archive.Field("sharp_rounds_left", sharp_rounds_left_);
   archive.Field("has_begun_at_fundus", has_begun_at_fundus_);
   archive.Field("fibres_left", progress_.fibres_left);
   archive.Field("stuck_seconds", progress_.stuck_seconds);

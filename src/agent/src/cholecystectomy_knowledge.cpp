@@ -62,15 +62,19 @@ double CholecystectomySurgeon::EndDistance(const Snapshot& seen, const collision
 }
 
 /// Fibres that cover the ends of the tubes that enter the gallbladder.
-std::vector<std::uint32_t> CholecystectomySurgeon::CoveringStrands() const {
+std::vector<std::uint32_t> CholecystectomySurgeon::CoveringStrands(const Snapshot& seen) const {
   std::vector<std::uint8_t> is_end(known_.rest.size(), 0);
   for (const std::size_t tube : known_.entering) {
-    double arc = 0;
+    double arc = 0, length = 0;
     const auto& nodes = known_.tube_nodes[tube];
-    // a covered node ends what is bare at the node before it
-    for (std::size_t k = 1; k < nodes.size() && arc < known_.exposable[tube]; ++k) {
+    const double wanted = std::min(kBare, known_.exposable[tube]);
+    // a covered node ends what is bare at the node before it; a tube that is pushed together shows less than at rest
+    for (std::size_t k = 1; k < nodes.size(); ++k) {
+      const bool is_short = length < wanted;
+      const bool is_exposable = arc < known_.exposable[tube];
       arc += math::Distance(known_.rest[nodes[k - 1]], known_.rest[nodes[k]]);
-      if (arc < kSkeletonised) is_end[nodes[k]] = 1;
+      length += math::Distance(seen.positions[nodes[k - 1]], seen.positions[nodes[k]]);
+      if (is_short || (is_exposable && arc < kSkeletonised)) is_end[nodes[k]] = 1;
     }
   }
   std::vector<std::uint32_t> found;

@@ -102,7 +102,7 @@ void CholecystectomySurgeon::ClearTriangle(int rounds, bool is_second_look) {
 void CholecystectomySurgeon::PlanTriangle(const SurgeonAct& act, const Snapshot& seen) {
   std::vector<std::uint32_t> fat = known_.window_strands;
   std::vector<std::uint32_t> covering;
-  if (!AreTubesBare(seen)) covering = CoveringStrands();
+  if (!AreTubesBare(seen)) covering = CoveringStrands(seen);
   const bool is_clear = seen.operation.facts.cleared_share >= kCleared && covering.empty();
   if (is_clear) return;
   if (act.count <= 0) return OpenTriangle(act, seen);
@@ -127,7 +127,7 @@ void CholecystectomySurgeon::CheckTriangle(const SurgeonAct& act, const Snapshot
   if (!IsTriangleClear(seen)) {
     std::vector<std::uint32_t> left = act.strands;
     if (!AreTubesBare(seen)) {
-      const std::vector<std::uint32_t> over = CoveringStrands();
+      const std::vector<std::uint32_t> over = CoveringStrands(seen);
       left.insert(left.end(), over.begin(), over.end());
     }
     std::vector<double> order;
@@ -160,7 +160,9 @@ void CholecystectomySurgeon::SwingOutOfWay(const Snapshot& seen, DissectionGoal&
 void CholecystectomySurgeon::OpenTriangle(const SurgeonAct& act, const Snapshot& seen) {
   // fibres on duct and artery alone may come off with the lower third
   const bool is_fat_left = seen.operation.facts.cleared_share < kCleared;
-  if (triangle_ways_left_ <= 0 || (!is_fat_left && !act.is_on)) return;
+  if (!is_fat_left && !act.is_on) return;
+  if ((!is_fat_left || triangle_ways_left_ <= 0) && CutLastFibres(act, seen)) return;
+  if (triangle_ways_left_ <= 0) return;
   const int way = kTriangleWays - triangle_ways_left_--;
   if (way >= kTriangleWays / 2) HoldOn(Place::AtNode(known_.neck));
   SurgeonAct& turn = Decide(SurgeonAct::Kind::kTurnNeck, "turn the neck");
@@ -168,6 +170,32 @@ void CholecystectomySurgeon::OpenTriangle(const SurgeonAct& act, const Snapshot&
   // the second way comes from the first one's side
   turn.amount = way == 1 ? 2 * kOpenNeck : kOpenNeck;
   ClearTriangle(kRoundsOfWay, act.is_on);
+}
+
+/// A fibre in the corner between duct, artery and gallbladder is too near to them for jaws that open and for current: scissors
+/// take it.
+bool CholecystectomySurgeon::CutLastFibres(const SurgeonAct& act, const Snapshot& seen) {
+  if (sharp_rounds_left_ <= 0) return false;
+  Spreading work;
+  work.is_sharp = true;
+  for (const std::uint32_t i : CoveringStrands(seen))
+    if (seen.operation.strand_is_intact[i] != 0) work.strands.push_back(i);
+  if (seen.operation.facts.cleared_share < kCleared) {
+    for (const std::uint32_t i : known_.window_strands) {
+      const bool is_new = std::find(work.strands.begin(), work.strands.end(), i) == work.strands.end();
+      if (is_new && seen.operation.strand_is_intact[i] != 0) work.strands.push_back(i);
+    }
+  }
+  work.weights.assign(work.strands.size(), 1.0);
+  std::vector<std::uint32_t> index;
+  const SpreadField field = SeeSpreadField(work, seen, index);
+  if (!FindSnip(field, std::vector<std::uint8_t>(index.size(), 0))) return false;
+  --sharp_rounds_left_;
+  spreading_ = std::move(work);
+  Take(ToolKind::kScissors);
+  Spread();
+  ClearTriangle(0, act.is_on);
+  return true;
 }
 
 /// Draws what the left hand holds about the cystic duct.

@@ -77,8 +77,9 @@ class CholecystectomySurgeon final : public Surgeon {
 
  private:
   static constexpr int kHoldTries = 3;
-  static constexpr int kNeckTurns = 7;      // of the hold, to show the neck from another side
-  static constexpr int kTriangleWays = 4;   // other ways to hold the neck, where fat cannot be reached
+  static constexpr int kNeckTurns = 7;     // of the hold, to show the neck from another side
+  static constexpr int kTriangleWays = 4;  // other ways to hold the neck, where fat cannot be reached
+  static constexpr int kSharpRounds = 2;  // with scissors, where jaws and hook do not come to the last fibres
   static constexpr double kCleared = 0.91;  // of the triangle: a little more than the view asks [-]
   static constexpr std::uint64_t kNever = ~std::uint64_t{0};
 
@@ -135,6 +136,9 @@ class CholecystectomySurgeon final : public Surgeon {
   void HoldOn(const Place& near, int tries = kHoldTries, const HoldFilter& may = {});
   void Spread();
   bool GoOnSpreading(Spreading& work, const Snapshot& seen);
+  SpreadField SeeSpreadField(const Spreading& work, const Snapshot& seen, std::vector<std::uint32_t>& index);
+  static const instrument::Tool* ToolOf(const Spreading& work);
+  bool MayClose(const Spreading& work, const Snapshot& seen);
   void GoOn();
   bool GoOnOrHoldAnew(const Snapshot& seen);
   bool IsEnough(const DissectionGoal& goal, const Snapshot& seen) const;
@@ -148,6 +152,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void CheckTriangle(const SurgeonAct& act, const Snapshot& seen);
   void SwingOutOfWay(const Snapshot& seen, DissectionGoal& goal);
   void OpenTriangle(const SurgeonAct& act, const Snapshot& seen);
+  bool CutLastFibres(const SurgeonAct& act, const Snapshot& seen);
   void TurnNeck(const Snapshot& seen, int side, double by, double turn = 0);
   void GoRoundDuct(const Snapshot& seen, double angle);
   void FreeFromFundus(int rounds);
@@ -188,7 +193,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void Remove();
 
   // knowledge
-  std::vector<std::uint32_t> CoveringStrands() const;
+  std::vector<std::uint32_t> CoveringStrands(const Snapshot& seen) const;
   std::vector<std::uint32_t> BedStrands(double share) const;
   double EndDistance(const Snapshot& seen, const collision::Segment& segment) const;
   double CalcAzimuth(std::span<const Vec3> positions, const Vec3& eye) const;
@@ -273,7 +278,7 @@ class CholecystectomySurgeon final : public Surgeon {
   bool stops_ = false;     // bails out: it is not safe to go on
   bool operates_ = true;   // means to finish; constant
   std::string bail_out_;   // why it stopped
-  int triangle_ways_left_ = kTriangleWays;
+  int triangle_ways_left_ = kTriangleWays, sharp_rounds_left_ = kSharpRounds;
   bool has_begun_at_fundus_ = false;
   /// Whether the work gets on: fibres that are left, and since when none parted while it dissected.
   struct Progress {

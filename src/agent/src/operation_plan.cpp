@@ -145,6 +145,7 @@ void Dissection::VisitState(core::StateArchive& archive) {
 void Spreading::VisitState(core::StateArchive& archive) {
   archive.Field("strands", strands);
   archive.Field("weights", weights);
+  archive.Field("is_sharp", is_sharp);
   archive.Field("tries", tries);
   archive.Field("stage", stage);
   archive.Field("pose_tip", pose.tip);

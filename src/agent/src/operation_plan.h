@@ -220,10 +220,11 @@ struct Dissection {
   void VisitState(core::StateArchive& archive);
 };
 
-/// Fibres that are parted bluntly, by opening jaws among them.
+/// Fibres that are parted bluntly, by opening jaws among them, or cut one by one.
 struct Spreading {
   std::vector<std::uint32_t> strands;
   std::vector<double> weights;  ///< (strands)
+  bool is_sharp = false;        ///< with scissors
   std::vector<std::uint8_t> tries;
   enum class Stage : std::uint8_t { kChoose, kApproach, kEnter, kOpen } stage = Stage::kChoose;
   SpreadPose pose;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "trocar/agent/hand_motion.h"
 
@@ -24,6 +26,17 @@ constexpr double kBesideOrgan = 0.0012;  // likewise from an organ [m]
 constexpr double kLeastWorth = 0.8;
 /// A spread takes a second, and longer after a way or a turn [1/m], [1/rad].
 constexpr double kSlowerByWay = 8.0, kSlowerByTurn = 0.3;
+
+/// Shares of a fibre at which blades take it, how far their tips go beyond it [m], and how wide they stand [-].
+constexpr double kSnipShares[] = {0.5, 0.3, 0.7, 0.15, 0.85}, kSnipBeyond[] = {0.0008, 0.0016},
+                 kSnipOpenings[] = {0.15, 0.3};
+constexpr int kSnipSpins = 12;        // over half a turn
+constexpr double kSnipRoom = 0.0004;  // at least, from blades to the skin of a duct and to an organ [m]
+constexpr double kAmpleRoom = 0.0020;
+constexpr double kSnipInside =
+    0.7;  // of the opening, within which the fibre has to cross the blades' plane [-]
+constexpr std::size_t kMostSnipsLooked = 200;
+constexpr double kSnipNear = 0.020;  // of the fibre, what ducts are looked at [m]
 
 /// Distance from a point in the opening plane's half y >= 0 to the sector that a jaw sweeps, hinge at the origin.
 double SectorDistance(double along, double aside, double length, double wide) {
@@ -68,6 +81,31 @@ double FindClearance(const SpreadField& field, const Pose& X, double opening) {
   return least;
 }
 
+/// Whether blades of this opening have the fibre between them.
+bool IsBetween(const instrument::Tool& tool, const collision::Segment& fibre, const Pose& X_world_tool,
+               double opening) {
+  const Pose X_tool_world = math::Inverse(X_world_tool);
+  const Vec3 a = X_tool_world * fibre.start, b = X_tool_world * fibre.end;
+  if ((a.x > 0.0) == (b.x > 0.0)) return false;
+  const Vec3 p = math::Lerp(a, b, a.x / (a.x - b.x));
+  const double along = tool.jaw_length - p.z;
+  return along > 0.0 && std::hypot(along, p.y) < tool.jaw_length &&
+         std::atan2(std::fabs(p.y), along) < kSnipInside * opening * 0.5 * tool.max_jaw;
+}
+
+double FindTubeRoom(const instrument::Tool& tool, std::span<const SpreadField::Round> tubes,
+                    const Pose& X_world_tool, double opening) {
+  const Pose X_tool_world = math::Inverse(X_world_tool);
+  const double wide = opening * 0.5 * tool.max_jaw;
+  double room = kAmpleRoom;
+  for (const SpreadField::Round& tube : tubes) {
+    const Vec3 p = X_tool_world * tube.p;
+    const double off = SectorDistance(tool.jaw_length - p.z, std::fabs(p.y), tool.jaw_length, wide);
+    room = std::min(room, std::hypot(p.x, off) - tube.radius);
+  }
+  return room;
+}
+
 }  // namespace
 
 std::optional<SpreadPose> FindSpread(const SpreadField& field, std::span<const std::uint8_t> tries) {
@@ -108,6 +146,59 @@ std::optional<SpreadPose> FindSpread(const SpreadField& field, std::span<const s
         instrument::CalcToolPose(field.port, instrument::FindJoints(field.port, pose.tip, pose.spin, 0.0));
     pose.worth -= kPushed * std::max(0.0, kBesideOrgan - FindClearance(field, X, pose.opening));
     if (pose.worth > kLeastWorth && (!best || rate(pose) > rate(*best))) best = pose;
+  }
+  return best;
+}
+
+std::optional<double> FindSnipRoom(const SpreadField& field, std::size_t fibre, const Pose& X_world_tool,
+                                   double opening) {
+  if (!IsBetween(*field.tool, field.fibres[fibre], X_world_tool, opening)) return std::nullopt;
+  double room = FindTubeRoom(*field.tool, field.tubes, X_world_tool, opening);
+  if (room >= kSnipRoom) room = std::min(room, FindClearance(field, X_world_tool, opening));
+  return room >= kSnipRoom ? std::optional(room) : std::nullopt;
+}
+
+std::optional<SpreadPose> FindSnip(const SpreadField& field, std::span<const std::uint8_t> tries) {
+  std::vector<SpreadPose> poses;
+  for (std::size_t i = 0; i < field.fibres.size(); ++i) {
+    if (tries[i] >= kMostTries) continue;
+    const collision::Segment& fibre = field.fibres[i];
+    std::vector<SpreadField::Round> near;
+    std::copy_if(
+        field.tubes.begin(), field.tubes.end(), std::back_inserter(near),
+        [&](const SpreadField::Round& tube) { return math::Distance(tube.p, fibre.start) < kSnipNear; });
+    for (const double share : kSnipShares) {
+      const Vec3 p = math::Lerp(fibre.start, fibre.end, share);
+      for (const double beyond : kSnipBeyond) {
+        SpreadPose pose;
+        pose.tip = p + beyond * math::Normalized(p - field.port, {0, 0, -1});
+        pose.aim = i;
+        for (int turn = 0; turn < kSnipSpins; ++turn) {
+          pose.spin = M_PI * turn / kSnipSpins - 0.5 * M_PI;
+          const Pose X = instrument::CalcToolPose(
+              field.port, instrument::FindJoints(field.port, pose.tip, pose.spin, 0.0));
+          for (const double opening : kSnipOpenings) {
+            if (!IsBetween(*field.tool, fibre, X, opening)) continue;
+            pose.opening = opening;
+            pose.worth = FindTubeRoom(*field.tool, near, X, opening);
+            if (pose.worth >= kSnipRoom) poses.push_back(pose);
+          }
+        }
+      }
+    }
+  }
+  std::stable_sort(poses.begin(), poses.end(), [&](const SpreadPose& a, const SpreadPose& b) {
+    return std::pair(tries[a.aim], -a.worth) < std::pair(tries[b.aim], -b.worth);
+  });
+  poses.resize(std::min(poses.size(), kMostSnipsLooked));
+  std::optional<SpreadPose> best;
+  for (SpreadPose pose : poses) {
+    const Pose X =
+        instrument::CalcToolPose(field.port, instrument::FindJoints(field.port, pose.tip, pose.spin, 0.0));
+    const auto room = FindSnipRoom(field, pose.aim, X, pose.opening);
+    if (!room || (best && *room <= best->worth)) continue;
+    pose.worth = *room;
+    best = pose;
   }
   return best;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file spread_plan.h  Where a dissector's jaws open so that they part as many fibres as can be, and push nothing else.
+/// \file spread_plan.h  Where a dissector's jaws open so that they part as many fibres as can be, and push nothing else; and
+/// where the tips of scissors take a single fibre beside what must stay whole.
 #pragma once
 
 #include <functional>
@@ -46,5 +47,16 @@ inline constexpr double kNarrow = 0.25;
 /// \param tries  (fibres) how often a spread at each came to nothing; tried ones come later
 /// \return nothing where no spread is worth it
 std::optional<SpreadPose> FindSpread(const SpreadField& field, std::span<const std::uint8_t> tries);
+
+/// Where blades that close part a fibre and come near nothing else: the fibre that can be taken with the most room.
+/// \param tries  (fibres) how often a cut at each came to nothing
+/// \return nothing where none can be; the worth is the room about the blades [m]
+std::optional<SpreadPose> FindSnip(const SpreadField& field, std::span<const std::uint8_t> tries);
+
+/// Room between blades that stand so and what must stay whole, no less than they want [m].
+/// \param fibre  of the field
+/// \return nothing where they would not cut the fibre, or would come too near
+std::optional<double> FindSnipRoom(const SpreadField& field, std::size_t fibre,
+                                   const math::Pose& X_world_tool, double opening);
 
 }  // namespace trocar::agent

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a dissector opens: among many fibres rather than at one, and not into a duct.
+// Where a dissector opens: among many fibres rather than at one, and not into a duct; and where scissors take a single one.
 #include "spread_plan.h"
 
 #include <gtest/gtest.h>
@@ -85,6 +85,77 @@ TEST(SpreadPlan, GivesUpWhereNothingIsLeftOrEverythingWasTried) {
   field.fibres.clear();
   field.weights.clear();
   EXPECT_FALSE(FindSpread(field, {}));
+}
+
+/// A fibre of 3 mm in the corner between two ducts that meet before it, as seen from the port.
+SpreadField FieldInACorner(double gap) {
+  SpreadField field = FieldWithRow(0);
+  field.tool = instrument::FindTool("scissors");
+  field.fibres.push_back({{0.01, 0, -0.0015}, {0.01, 0, 0.0015}});
+  field.weights.push_back(1.0);
+  constexpr double kRadius = 0.0015;
+  for (int i = 0; i <= 40; ++i) {
+    const double along = 0.0005 * i;
+    // one to each side, and away from the port
+    field.tubes.push_back({{0.01 - gap - kRadius - 0.3 * along, -along, 0}, kRadius});
+    field.tubes.push_back({{0.01 + gap + kRadius + 0.3 * along, -along, 0}, kRadius});
+  }
+  return field;
+}
+
+/// By looking at many points between the blades: how far they are from a duct's skin.
+double LeastRoom(const SpreadField& field, const SpreadPose& pose) {
+  const instrument::Tool& tool = *field.tool;
+  const math::Pose X =
+      instrument::CalcToolPose(field.port, instrument::FindJoints(field.port, pose.tip, pose.spin, 0.0));
+  double least = 1.0;
+  for (int k = 0; k <= 100; ++k) {
+    for (int side = -20; side <= 20; ++side) {
+      const double angle = 0.5 * tool.max_jaw * pose.opening * side / 20.0,
+                   away = tool.jaw_length * k / 100.0;
+      const Vec3 p = X * Vec3{0, away * std::sin(angle), tool.jaw_length - away * std::cos(angle)};
+      for (const auto& tube : field.tubes) least = std::min(least, math::Distance(p, tube.p) - tube.radius);
+    }
+  }
+  return least;
+}
+
+TEST(SnipPlan, TakesAFibreThatJawsCannotPart) {
+  const SpreadField field = FieldInACorner(0.0012);
+  const std::vector<std::uint8_t> tries(1, 0);
+  SpreadField blunt = field;
+  blunt.tool = instrument::FindTool("maryland");
+  EXPECT_FALSE(FindSpread(blunt, tries)) << "the scene is one for scissors";
+  const auto pose = FindSnip(field, tries);
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(pose->aim, 0u);
+  const double room = LeastRoom(field, *pose);
+  EXPECT_GE(room, 0.0004);
+  EXPECT_NEAR(pose->worth, std::min(room, 0.002), 0.0002);
+}
+
+TEST(SnipPlan, LeavesAFibreThatADuctTouches) {
+  EXPECT_FALSE(FindSnip(FieldInACorner(0.0002), std::vector<std::uint8_t>(1, 0)));
+  SpreadField field = FieldInACorner(0.0012);
+  EXPECT_FALSE(FindSnip(field, std::vector<std::uint8_t>(1, 3))) << "it was tried often enough";
+  field.clearance = [](const collision::Segment&) { return 0.0003; };
+  EXPECT_FALSE(FindSnip(field, std::vector<std::uint8_t>(1, 0))) << "no room beside an organ";
+}
+
+// blades that were pushed aside on their way
+TEST(SnipPlan, BladesBesideTheFibreOrOnADuctDoNotClose) {
+  const SpreadField field = FieldInACorner(0.0012);
+  const auto pose = FindSnip(field, std::vector<std::uint8_t>(1, 0));
+  ASSERT_TRUE(pose);
+  const auto stand = [&](const Vec3& tip) {
+    return instrument::CalcToolPose(field.port, instrument::FindJoints(field.port, tip, pose->spin, 0.0));
+  };
+  EXPECT_TRUE(FindSnipRoom(field, 0, stand(pose->tip), pose->opening));
+  const Vec3 back = math::Normalized(field.port - pose->tip);
+  EXPECT_FALSE(FindSnipRoom(field, 0, stand(pose->tip + 0.003 * back), pose->opening)) << "before the fibre";
+  SpreadField crossed = field;
+  crossed.tubes.push_back({pose->tip + 0.004 * back, 0.0005});
+  EXPECT_FALSE(FindSnipRoom(crossed, 0, stand(pose->tip), pose->opening)) << "an artery between the blades";
 }
 
 }  // namespace
