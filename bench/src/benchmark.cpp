@@ -10,6 +10,8 @@ constexpr BenchmarkSuite kSuites[] = {
      RunCollisionBenchmark},
     {"contours", "the contour window: refit while a point is dragged, preview of an organ",
      RunContoursBenchmark},
+    {"elementary", "sine, exponential, power and their like: our own beside the C library's",
+     RunElementaryBenchmark},
     {"environments", "environments for learning: ticks a second, pictures, a pool beside processes, memory",
      RunEnvironmentBenchmark},
     {"growth",

@@ -48,6 +48,14 @@ TEST(EnvironmentBenchmarkSlow, MeasuresEveryEnvironmentAndItsPictures) {
   EXPECT_EQ(result->ratios.size(), 4U);
 }
 
+TEST(ElementaryBenchmark, ComparesEveryFunctionWithTheLibrarys) {
+  const auto result = RunElementaryBenchmark({.repeats = 0});
+  ASSERT_TRUE(result.ok()) << result.error().Text();
+  EXPECT_EQ(result->ratios.size(), 14U);
+  ASSERT_EQ(result->cases.size(), 28U);
+  for (const BenchmarkCase& entry : result->cases) EXPECT_GT(entry.value, 0) << entry.name;
+}
+
 TEST(SoakBenchmark, TakesActionsInEveryEnvironment) {
   const auto result = RunSoakBenchmark({.steps = 110, .seed = 2});
   ASSERT_TRUE(result.ok()) << result.error().Text();

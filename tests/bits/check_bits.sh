@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Compiles the tissue solvers with g++ and clang++ at -O1, -O2 and -O3 and compares what they find, bit by bit.
+# Compiles the elementary functions and the tissue solvers with g++ and clang++ at -O1, -O2 and -O3 (the former also at -O0, and for
+# processors with fused multiply-add) and compares what they find, bit by bit.
 # usage: check_bits.sh SOURCE_FOLDER SCRATCH_FOLDER [COMPILER...]     exit status 77: a compiler is missing
 set -euo pipefail
 source_folder=$1 scratch=$2
@@ -12,13 +13,42 @@ for compiler in "${compilers[@]}"; do
   command -v "$compiler" > /dev/null || { echo "skipped: there is no $compiler here; tools/install-packages brings it"; exit 77; }
 done
 
+architecture=$(uname -m)
+# elementary_bits COMPILER FLAG...: what the program prints
+elementary_bits() {
+  "$1" -std=c++20 -fno-math-errno -fno-trapping-math -w "-I$source_folder"/src/{math/include,math/src,math/test,core/include} \
+    "${@:2}" "$source_folder"/tests/bits/elementary_bits.cpp "$source_folder"/src/math/src/elementary_*.cpp -o "$scratch/elementary_bits"
+  "$scratch/elementary_bits"
+}
+mkdir -p "$scratch"
+machines=("")
+fused=-mfma
+[ "$architecture" = x86_64 ] && grep -qw fma /proc/cpuinfo && machines+=("$fused -mavx2") || fused=
+elementary_bits "${compilers[0]}" -ffp-contract=off -O1 > "$scratch/elementary"
+[ -s "$scratch/elementary" ] || { echo "the elementary functions: nothing was printed"; exit 1; }
+cat "$scratch/elementary"
+for compiler in "${compilers[@]}"; do
+  for level in -O0 "${levels[@]}"; do
+    for machine in "${machines[@]}"; do
+      elementary_bits "$compiler" -ffp-contract=off "$level" $machine | diff "$scratch/elementary" - ||
+        { echo "elementary functions: $compiler $level $machine gives other bits than the first"; exit 1; }
+      echo "elementary functions, $compiler $level $machine: the same"
+    done
+  done
+done
+# a control: where products and sums are fused, it must be noticed
+if [ -n "$fused" ]; then
+  elementary_bits "${compilers[0]}" -ffp-contract=fast -O2 "$fused" > "$scratch/elementary_fused"
+  ! cmp -s "$scratch/elementary" "$scratch/elementary_fused" ||
+    { echo "elementary functions: fused multiply-add was not noticed"; exit 1; }
+fi
+
 tissue=$source_folder/src/tissue
 sources=("$source_folder/tests/bits/solve_bits.cpp" "$tissue"/src/*.cpp "$source_folder"/src/core/src/{assert,simd_level,state_archive}.cpp
   "$source_folder"/src/math/src/pose.cpp "$source_folder"/src/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp)
 # what CMakeLists.txt gives them, but for the optimisation
 flags=(-std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w -I"$tissue/src")
 for module in tissue geometry math core; do flags+=(-I"$source_folder/src/$module/include"); done
-architecture=$(uname -m)
 
 first=
 for compiler in "${compilers[@]}"; do

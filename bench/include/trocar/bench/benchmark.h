@@ -56,6 +56,7 @@ std::span<const BenchmarkSuite> BenchmarkSuites() noexcept;
 core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunContoursBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunElementaryBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunEnvironmentBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunSoakBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunGrowthBenchmark(const BenchmarkOptions& options);
