@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "binding.h"
+#include "trocar/core/simd_choice.h"
 #include "trocar/core/version.h"
 
 namespace trocar::python {
@@ -63,6 +64,7 @@ PYBIND11_MODULE(_trocar, module) {
   module.doc() = "The compiled part of the package trocar.";
   module.attr("__version__") = trocar::core::VersionText();
   trocar::python::BindErrors(module);
+  trocar::python::Check(trocar::core::CheckSimdLevel());
   trocar::python::BindGuard(module);
   trocar::python::BindSimulation(module);
   trocar::python::BindEnvironment(module);

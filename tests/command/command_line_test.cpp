@@ -3,6 +3,7 @@
 
 #include "command_fixture.h"
 #include "trocar/core/error_codes.h"
+#include "trocar/core/simd_choice.h"
 
 namespace trocar {
 namespace {
@@ -94,16 +95,35 @@ TEST_F(CommandLine, DoctorFindsThatTheDataIsGone) {
   EXPECT_EQ(nlohmann::json::parse(result.out).at("checks").at(0).at("state"), "missing");
 }
 
+TEST_F(CommandLine, DoctorSaysWhichVectorInstructionsRun) {
+  const auto ask = [](const std::vector<std::string>& environment) {
+    const auto json = nlohmann::json::parse(Run({"doctor", "--json"}, environment).out);
+    for (const auto& check : json.at("checks")) {
+      if (check.at("name") == "processor") return check.at("found").get<std::string>();
+    }
+    return std::string();
+  };
+  EXPECT_THAT(ask({"TROCAR_SIMD=baseline"}), testing::StartsWith("baseline; "));
+  EXPECT_THAT(ask({}), testing::EndsWith(std::string(core::SimdLevelName(core::FindWidestSimdLevel()))));
+  const auto refused = Run({"doctor"}, {"TROCAR_SIMD=avx9"});
+  ExpectError(refused, "E-CLI-001", 2);
+  EXPECT_THAT(refused.err, HasSubstr("baseline"));
+}
+
 // No GL: the loader is told of no driver.
 TEST_F(CommandLine, DoctorFindsThatThereIsNoOpenGl) {
   Write("empty.json", "{}");
   const auto result = Run({"doctor", "--json"}, {"__EGL_VENDOR_LIBRARY_FILENAMES=" + Path("empty.json")});
   EXPECT_EQ(result.status, 1);
-  for (const auto& check : nlohmann::json::parse(result.out).at("checks")) {
+  const auto json = nlohmann::json::parse(result.out);
+  int looked = 0;
+  for (const auto& check : json.at("checks")) {
     if (check.at("name") != "opengl") continue;
+    ++looked;
     EXPECT_EQ(check.at("state"), "missing");
     EXPECT_THAT(std::string(check.at("remedy")), HasSubstr("libegl1"));
   }
+  EXPECT_EQ(looked, 1);
 }
 
 TEST_F(CommandLine, BenchListsItsSuites) {

@@ -156,9 +156,11 @@ void PrintAssets(const fs::path& assets) {
       PrintFields(step, {"name", "goal", "briefing", "after_pass", "after_fail"});
     }
   }
-  for (const json& level : ReadJson(assets / "operation" / "levels.json")["levels"])
-    PrintFields(level, {"key", "about"});
-  for (const json& rule : ReadJson(assets / "coach" / "rules.json")["rules"])
+  // held: of what a temporary lends, a loop over it reads after its end
+  const json levels = ReadJson(assets / "operation" / "levels.json"),
+             rules = ReadJson(assets / "coach" / "rules.json");
+  for (const json& level : levels["levels"]) PrintFields(level, {"key", "about"});
+  for (const json& rule : rules["rules"])
     PrintFields(rule, {"sentence", "sentence_alone", "why", "practise"});
   for (const fs::path& file : ListJson(assets / "rating")) {
     const json form = ReadJson(file);

@@ -20,6 +20,7 @@
 #include "trocar/centre/centre_window.h"
 #include "trocar/core/log.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/core/simd_choice.h"
 #include "trocar/core/translate.h"
 #include "trocar/editor/contour_window.h"
 #include "trocar/editor/patient_editor_window.h"
@@ -288,6 +289,10 @@ int main(int argc, char** argv) {
   if (command->is_text_only) {
     std::fputs(command->text.c_str(), stdout);
     return EXIT_SUCCESS;
+  }
+  if (const core::Status level = core::CheckSimdLevel(); !level) {
+    std::fprintf(stderr, "%s\n", core::ShownText(level.error()).c_str());
+    return 2;
   }
   app::Program program(*command);
   gtk_disable_setlocale();  // glibmm does it, and what Run() sets after that would be undone

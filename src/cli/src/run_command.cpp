@@ -18,6 +18,7 @@
 #include "help_language.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/printable_output.h"
+#include "trocar/core/simd_choice.h"
 #include "trocar/core/translate.h"
 #include "trocar/core/version.h"
 
@@ -205,6 +206,7 @@ int RunCommand(int argc, char** argv) {
   core::RemovePartialPathsOnSignals();
   std::set_terminate(OnTerminate);
   core::UseLanguage(core::FindLocaleFolder());
+  if (const core::Status level = core::CheckSimdLevel(); !level) return Fail(level.error(), kExitUsage);
   // the last fence: nothing below should throw, and if memory ends the person still gets a line
   try {
     return CheckOutput(ParseAndRun(argc, argv));

@@ -22,6 +22,7 @@
 #include "child_process.h"
 #include "trocar/core/program.h"
 #include "trocar/core/real_time.h"
+#include "trocar/core/simd_choice.h"
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/video_writer.h"
@@ -273,6 +274,21 @@ Finding CheckSupervisor(const fs::path& program_folder) {
           "build it: run ./run, or ninja trocar-supervisor"};
 }
 
+Finding CheckProcessor() {
+  std::vector<std::string> levels;
+  for (const core::SimdLevel level : core::ListSimdLevels()) levels.emplace_back(core::SimdLevelName(level));
+  Finding finding{
+      "processor", Health::kGood,
+      std::string(core::SimdLevelName(core::FindSimdLevel())) + "; this processor has " + Join(levels),
+      "the widest vector instructions that there are", ""};
+  if (core::FindSimdLevel() != core::FindWidestSimdLevel()) {
+    finding.health = Health::kLimited;
+    finding.meaning = "TROCAR_SIMD asks for narrower vector instructions: ticks take longer";
+    finding.remedy = "leave TROCAR_SIMD unset where nothing is to be compared";
+  }
+  return finding;
+}
+
 Finding CheckRealTime() {
   rlimit limit{};
   ::getrlimit(RLIMIT_RTPRIO, &limit);
@@ -386,6 +402,7 @@ std::vector<Finding> CheckAll() {
           CheckImageReader(core::FindProgramFolder()),
           CheckSupervisor(core::FindProgramFolder()),
           CheckGpu(),
+          CheckProcessor(),
           CheckRealTime(),
           CheckInputDevices("/"),
           CheckSerialDevices("/"),

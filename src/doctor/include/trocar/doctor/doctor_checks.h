@@ -33,6 +33,8 @@ Finding CheckWindow(const std::filesystem::path& program_folder);
 Finding CheckImageReader(const std::filesystem::path& program_folder);
 /// Can the process be started that takes the force away when the simulator dies?
 Finding CheckSupervisor(const std::filesystem::path& program_folder);
+/// Which vector instructions the inner loops use, and whether that was asked for.
+Finding CheckProcessor();
 Finding CheckRealTime();
 /// \param root  "/", or a folder that stands for it in a test; reads dev/ and sys/class/ below it
 Finding CheckInputDevices(const std::filesystem::path& root);
