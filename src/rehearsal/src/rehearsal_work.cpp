@@ -150,11 +150,12 @@ core::Result<LabelMap> ReadLabelMap(const fs::path& file, int liver, int gallbla
     anatomy::JoinParts(*found, *volume);
   } else {
     // what FindLabels says names options of the command line
-    map.problem = Error{found.error().code,
-                        "which labels of this map are liver and gallbladder is not certain by their names, "
-                        "their numbers, sizes, "
-                        "places and densities; say which label is which. A map without a gallbladder, as after its removal "
-                        "or of the chest, is of no use here: take another one"};
+    map.problem = Error{
+        found.error().code,
+        "which labels of this map are liver and gallbladder is not certain by their names, "
+        "their numbers, sizes, "
+        "places and densities; say which label is which. A map without a gallbladder, as after its removal "
+        "or of the chest, is of no use here: take another one"};
     map.liver = liver, map.gallbladder = gallbladder;
   }
   auto aligned = images::AlignLabels(std::move(*volume), series);

@@ -21,15 +21,15 @@ struct LabelOptions {
   std::filesystem::path output;  ///< patient folder to write; empty: nothing is written
   std::filesystem::path names;   ///< table of labels, in place of the file's own names; empty: none
   std::filesystem::path
-      images;                ///< the series that the labels were drawn on, for their densities; empty: none
+      images;  ///< the series that the labels were drawn on, for their densities; empty: none
   images::ImageSeriesOptions opening;  ///< of `images`
-  int liver = 0;             ///< label, 1 to kLargestLabel; 0: found by FindLabels
-  int gallbladder = 0;       ///< likewise
-  double spacing_mm = 1.0;   ///< of the volume's lattice, 0.4 to 4
-  double gap_mm = 0.7;       ///< left free around the gallbladder
-  bool is_mirrored = false;  ///< left and right of the map are swapped: take it the other way round
-  bool takes_largest_part = false;  ///< also where a large part does not hang together with it
-  std::stop_token stop;             ///< gives up before anything is written: kCancelled
+  int liver = 0;                       ///< label, 1 to kLargestLabel; 0: found by FindLabels
+  int gallbladder = 0;                 ///< likewise
+  double spacing_mm = 1.0;             ///< of the volume's lattice, 0.4 to 4
+  double gap_mm = 0.7;                 ///< left free around the gallbladder
+  bool is_mirrored = false;            ///< left and right of the map are swapped: take it the other way round
+  bool takes_largest_part = false;     ///< also where a large part does not hang together with it
+  std::stop_token stop;                ///< gives up before anything is written: kCancelled
 };
 
 /// Which labels of a map are what, and how that was found.
