@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A child of fork: what works there, what is refused, and that nothing waits for threads that did not come along."""
 import argparse
+import hashlib
 import inspect
 import multiprocessing
 import os
@@ -81,12 +82,16 @@ CASES = {
 }
 
 
+class Said(str):
+    """What a call has to tell of its child."""
+
+
 def answer(call, parent):
     try:
-        call(parent)
+        said = call(parent)
     except trocar.Error as error:
         return error.code
-    return "done"
+    return said if isinstance(said, Said) else "done"
 
 
 def run_forked(call, parent, ends_like_a_program):
@@ -146,6 +151,63 @@ class Forked(unittest.TestCase):
                     child.kill()
                 self.assertEqual(child.exitcode, 0)
                 self.assertEqual(answers.get(), "done" if can else REFUSED)
+
+
+def steps_of_a_simulation(simulation, count):
+    """One call a tick, so that each begins and ends the work of its threads."""
+    inputs = simulation.home()
+    home = np.array(inputs.hands)
+    for i in range(count):
+        inputs.hands = home + 0.02 * np.sin(0.1 * i)
+        simulation.step(inputs, 1)
+    return Said(simulation.hash())
+
+
+def steps_of_a_pool(count, threads):
+    pool = trocar.make_vec(TASK, 8, threads=threads)
+    pool.reset(seed=3)
+    actions = np.random.default_rng(5).uniform(-1, 1, (count, *pool.action_space.shape)).astype(np.float32)
+    digest = hashlib.sha256()
+    for action in actions:
+        digest.update(np.asarray(pool.step(action)[0]).tobytes())
+    return Said(digest.hexdigest())
+
+
+def steps_of_an_environment(env, count):
+    actions = np.random.default_rng(7).uniform(-1, 1, (count, *env.action_space.shape)).astype(np.float32)
+    digest = hashlib.sha256()
+    env.reset(seed=4)
+    for action in actions:
+        observation, _, ended, cut, _ = env.step(action)
+        digest.update(np.asarray(observation).tobytes())
+        if ended or cut:
+            env.reset()
+    return Said(digest.hexdigest())
+
+
+class Work(unittest.TestCase):
+    """A child does not only begin: it goes on for long, and comes to the parent's bits."""
+
+    def check(self, call, parent=None):
+        self.assertEqual(run_forked(call, parent, False), (call(parent), 0))
+
+    def test_a_simulation_of_four_threads_goes_on_in_a_child(self):
+        simulation = trocar.Simulation("clip_and_cut", threads=4)
+        simulation.step(simulation.home(), 5)
+        self.check(lambda _: steps_of_a_simulation(simulation, 40))
+
+    def test_a_thousand_steps_in_a_child(self):
+        simulation, env = trocar.Simulation(TASK, threads=4), trocar.make(TASK)
+        simulation.step(simulation.home(), 1)
+        env.reset(seed=1)
+        self.check(lambda _: steps_of_a_simulation(simulation, 1000))
+        self.check(lambda _: steps_of_an_environment(env, 1000))
+
+    def test_environments_of_four_threads_made_in_a_child(self):
+        pool = trocar.make_vec(TASK, 8, threads=4)  # its threads stay behind
+        pool.reset(seed=1)
+        pool.step(zeros(pool))
+        self.assertEqual(run_forked(lambda _: steps_of_a_pool(50, 4), None, False), (steps_of_a_pool(50, 1), 0))
 
 
 class Patients(unittest.TestCase):

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What commands print, in Spanish: no line of it has an English word. JSON stays as it is.
+#include <functional>
 #include <regex>
 #include <sstream>
 
 #include "command_fixture.h"
+#include "trocar_test/made_images.h"
 
 namespace trocar {
 namespace {
@@ -88,6 +90,37 @@ TEST_F(SpanishConsole, PatientsAndTheStoreAreSpanish) {
   EXPECT_THAT(with_store({"store", "migrate"}), HasSubstr("las tablas son de la versión"));
   EXPECT_THAT(with_store({"store", "info"}), HasSubstr("para siempre"));
   EXPECT_THAT(with_store({"store", "attempts"}), HasSubstr("ningún intento"));
+}
+
+TEST_F(SpanishConsole, VolumesOfAFolderAreListedInSpanish) {
+  const auto write = [&](int series, const std::function<void(test::DicomFields&)>& change) {
+    for (int slice = 1; slice <= 4; ++slice) {
+      test::DicomFields fields;
+      fields.instance = slice + 10 * series;
+      fields.position = "0\\0\\" + std::to_string(5 * slice);
+      change(fields);
+      Write("ct/IM" + std::to_string(fields.instance), test::MakeDicom(fields));
+    }
+  };
+  for (const int acquisition : {1, 2})
+    write(acquisition, [&](test::DicomFields& f) { f.acquisition = std::to_string(acquisition); });
+  // another series, of two echoes and a localizer
+  for (const char* echo : {"2.5", "7.5"}) {
+    write(echo[0] - '0' + 10, [&](test::DicomFields& f) {
+      f.series = "1.2.3.9", f.modality = "MR", f.sop_class = "1.2.840.10008.5.1.4.1.1.4";
+      f.scanning = test::Element(0x18, 0x81, "DS", echo);
+    });
+  }
+  test::DicomFields localizer;
+  localizer.instance = 99, localizer.image_type = "ORIGINAL\\PRIMARY\\LOCALIZER";
+  Write("ct/IM99", test::MakeDicom(localizer));
+  const auto asked = Run({"anatomy", "images", Path("ct")}, kSpanish);
+  EXPECT_THAT(EnglishLinesOf(asked.err), IsEmpty());
+  for (const char* said : {"(CT, adquisición 1, cortes: 4); ", "(CT, adquisición 2, cortes: 4)",
+                           "tiempo de eco 2,5 ms", "(CT, localizador, cortes: 1)"})
+    EXPECT_THAT(asked.err, HasSubstr(said));
+  for (const char* word : {"slices", "acquisition", "echo", "localizer"})
+    EXPECT_THAT(asked.err, Not(HasSubstr(word)));
 }
 
 TEST_F(SpanishConsole, EnglishIsAsItWasAndNoticed) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "label_sights.h"
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/core/printable.h"
+#include "trocar/roles/roles.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -31,6 +33,29 @@ struct NamedLabel {
   Structure structure = Structure::kUnknown;
 };
 
+/// The organ to operate on that a structure is or belongs to, else kOther.
+Structure OrganOf(Structure structure) {
+  switch (structure) {
+    case Structure::kLiver:
+    case Structure::kLiverPart:
+    case Structure::kLiverLesion:
+    case Structure::kLiverVessel:
+      return Structure::kLiver;
+    case Structure::kGallbladder:
+    case Structure::kGallbladderPart:
+      return Structure::kGallbladder;
+    default:
+      return Structure::kOther;
+  }
+}
+
+/// Whether a name beside it may say more: which side, or which part.
+bool IsCoarse(Structure structure) {
+  using enum Structure;
+  constexpr Structure kCoarse[] = {kLiver, kGallbladder, kKidneys, kAdrenals, kLungs, kRibs, kVertebra};
+  return std::find(std::begin(kCoarse), std::end(kCoarse), structure) != std::end(kCoarse);
+}
+
 /// A scheme that has every label of the map and a liver among them.
 struct Candidate {
   const LabelScheme* scheme = nullptr;
@@ -41,12 +66,19 @@ struct Candidate {
 
 class Decision {
  public:
-  Decision(const images::LabelVolume& volume, const LabelOptions& options, const VoxelFrame& frame)
+  Decision(const images::LabelVolume& volume, const LabelOptions& options, const VoxelFrame& frame,
+           const LabelDensities& densities)
       : volume_(volume), options_(options), frame_(frame), sights_(LookAtLabels(volume, frame)) {
+    AddDensities(densities, sights_);
     for (const auto& [name, label] : volume.names) {
       if (IsPlaceholder(name)) continue;
       has_names_ = true;
       if (Occurs(label)) named_.push_back({label, name, FindStructure(name)});
+    }
+    for (const auto& [code, label] : volume.codes) {
+      if (IsGenericCode(code)) continue;
+      has_names_ = true;
+      if (Occurs(label)) AddCode(label, code);
     }
   }
 
@@ -63,7 +95,36 @@ class Decision {
   }
 
  private:
+  static void AddDensities(const LabelDensities& densities, LabelSights& sights) {
+    for (const auto& [label, hu] : densities) {
+      if (const auto sight = sights.labels.find(label); sight != sights.labels.end())
+        sight->second.density_hu = hu;
+    }
+  }
+
   bool Occurs(int label) const { return sights_.Find(label) != nullptr; }
+
+  /// A code of SNOMED decides where the name beside it is free text. A name that is known to mean another organ contradicts it, unless it
+  /// only says more, as "liver tumour" does beside the code of the liver.
+  void AddCode(int label, const std::string& code) {
+    const Structure coded = FindCodedStructure(code);
+    bool is_named = false;
+    for (NamedLabel& one : named_) {
+      if (one.label != label) continue;
+      is_named = true;
+      if (coded == Structure::kUnknown || one.structure == coded) continue;
+      if (one.structure == Structure::kUnknown) {
+        one.structure = coded;
+      } else if (OrganOf(one.structure) != OrganOf(coded)) {
+        contradiction_ = "label " + std::to_string(label) + " is called \"" + core::Printable(one.name, 40) +
+                         "\", and its code " + core::Printable(code, 40) + " means the " +
+                         roles::SpokenName(NameOf(coded));
+      } else if (!IsCoarse(coded)) {
+        one.structure = coded;
+      }
+    }
+    if (!is_named) named_.push_back({label, "code " + code, coded});
+  }
   bool Is(int label, std::initializer_list<Structure> wanted, const Meanings& meanings) const {
     const auto found = meanings.find(label);
     return found != meanings.end() && std::find(wanted.begin(), wanted.end(), found->second) != wanted.end();
@@ -165,6 +226,7 @@ class Decision {
   }
 
   core::Result<OrganLabels> ByNames() {
+    if (!contradiction_.empty()) return Ask(contradiction_);
     // a table that a person gives may call several labels the same, and means one organ
     const bool may_join = !options_.names.empty();
     std::set<int> livers, gallbladders, parts, stones;
@@ -375,6 +437,7 @@ class Decision {
       images::LabelVolume whole = volume_;
       JoinParts(found, whole);
       joint = LookAtLabels(whole, frame_);
+      for (auto& [label, sight] : joint.labels) sight.density_hu = sights_.labels.at(label).density_hu;
     }
     const LabelSights& sights = found.joined.empty() ? sights_ : joint;
     std::erase_if(meanings, [](const auto& entry) { return entry.second == Structure::kUnknown; });
@@ -412,14 +475,16 @@ class Decision {
   LabelSights sights_;
   std::vector<NamedLabel> named_;
   bool has_names_ = false;
+  std::string contradiction_;  // of a label's name and its code
 };
 
 }  // namespace
 
-core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options) {
+core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options,
+                                     const LabelDensities& densities) {
   const auto frame = MakeVoxelFrame(volume, options.is_mirrored);
   if (!frame.ok()) return frame.error();
-  return Decision(volume, options, *frame).Make();
+  return Decision(volume, options, *frame, densities).Make();
 }
 
 void JoinParts(const OrganLabels& organs, images::LabelVolume& volume) {

@@ -30,6 +30,21 @@ constexpr VolumeRange kVolumes[] = {
 /// Less is a speck that a program puts anywhere, and is not judged.
 constexpr double kSpeckMl = 1.5;
 
+struct DensityRange {
+  Structure structure;
+  double least_hu, most_hu;
+};
+/// Medians in CT, with and without contrast, from below severe steatosis to the arterial phase. Bile has 0 to 25 HU, sludge and pus some
+/// tens; with contrast or milk of calcium in it a gallbladder has more, and is asked for. Hollow organs hold anything, from gas to
+/// contrast. Margins round the tables of attenuation in textbooks of radiology [M].
+constexpr DensityRange kDensities[] = {
+    {kLiver, -40, 250},       {kGallbladder, -30, 80},    {kSpleen, 20, 260},    {kPancreas, -60, 220},
+    {kKidneyRight, 0, 400},   {kKidneyLeft, 0, 400},      {kKidneys, 0, 400},    {kVenaCava, 10, 500},
+    {kAorta, 10, 800},        {kPortalVein, 10, 400},     {kHeart, 0, 600},      {kLungRight, -1100, -200},
+    {kLungLeft, -1100, -200}, {kLungs, -1100, -200},      {kVertebra, 40, 2000}, {kVertebraL3, 40, 2000},
+    {kVertebraL4, 40, 2000},  {kUpperVertebra, 40, 2000}, {kSacrum, 20, 2000},   {kRibsRight, 60, 2000},
+    {kRibsLeft, 60, 2000},    {kRibs, 60, 2000}};
+
 enum class Axis { kLeft, kCranial, kAnterior };
 
 /// The centre of `a` lies at least `least_mm` further along the axis than that of `b`.
@@ -226,6 +241,7 @@ class Court {
     if (liver != 0 && gallbladder != 0) JudgeGallbladder(liver, gallbladder);
     if (liver != 0) JudgeLesions(liver);
     JudgeOrders();
+    JudgeDensities();
     return std::move(against_);
   }
 
@@ -331,6 +347,17 @@ class Court {
     }
   }
 
+  void JudgeDensities() {
+    for (const DensityRange& range : kDensities) {
+      for (const int label : labels_[range.structure]) {
+        const auto& hu = Sight(label).density_hu;
+        if (!hu || (*hu >= range.least_hu && *hu <= range.most_hu)) continue;
+        against_.push_back(Would(label) + "has " + Number(*hu) + " HU in the images; " +
+                           Number(range.least_hu) + " to " + Number(range.most_hu) + " HU are usual");
+      }
+    }
+  }
+
   const LabelSights& sights_;
   const Meanings& meanings_;
   bool mirrored_;
@@ -359,7 +386,8 @@ std::string DescribeGallbladder(const LabelSights& sights, int liver, int gallbl
   const LabelSight *organ = sights.Find(liver), *it = sights.Find(gallbladder);
   if (organ == nullptr || it == nullptr) return "";
   const Vec3 offset = it->centre - organ->centre;
-  return Ml(it->volume_ml) + " mL, " + Number(100 * it->ContactWith(liver)) +
+  const std::string density = it->density_hu ? Number(*it->density_hu) + " HU, " : "";
+  return Ml(it->volume_ml) + " mL, " + density + Number(100 * it->ContactWith(liver)) +
          " % of its surface at the liver, " + Number(std::fabs(offset.y)) +
          (offset.y > 0 ? " mm above and " : " mm below and ") + Number(std::fabs(offset.z)) +
          (offset.z < 0 ? " mm behind the liver's middle" : " mm in front of the liver's middle");

@@ -28,6 +28,7 @@ using Names = std::vector<std::pair<std::string, int>>;
 struct Table {
   Names names;
   bool has_regions = false;  ///< a label may be in several
+  Names codes;
 };
 
 constexpr std::size_t kMostBytes = 1u << 20;
@@ -220,7 +221,7 @@ class JsonTable {
 
   /// dcmqi's description of a DICOM segmentation.
   core::Result<Table> ReadDcmqi(const json& groups) const {
-    Names names;
+    Names names, codes;
     for (const json& group : groups) {
       for (const json& segment : group.is_array() ? group : json::array({group})) {
         if (!segment.is_object() || !segment.contains("labelID") || !LabelIn(segment["labelID"]))
@@ -239,10 +240,31 @@ class JsonTable {
         if (name.empty())
           return Wrong("segmentAttributes",
                        "a segment has no SegmentLabel, SegmentDescription or CodeMeaning");
-        names.emplace_back(name, *LabelIn(segment["labelID"]));
+        const int label = *LabelIn(segment["labelID"]);
+        names.emplace_back(name, label);
+        if (const std::string code = CodeOf(segment); !code.empty()) codes.emplace_back(code, label);
       }
     }
-    return Table{std::move(names)};
+    return Table{std::move(names), false, std::move(codes)};
+  }
+
+  /// As LabelVolume::codes has it; empty where there is none of SNOMED.
+  static std::string CodeOf(const json& segment) {
+    const auto code = [&](const char* sequence) -> std::string {
+      if (!segment.contains(sequence) || !segment[sequence].is_object()) return {};
+      const json& entry = segment[sequence];
+      const auto text = [&](const char* member) {
+        return entry.contains(member) && entry[member].is_string() ? entry[member].get<std::string>() : "";
+      };
+      const std::string scheme = text("CodingSchemeDesignator");
+      const bool is_snomed = scheme == "SCT" || scheme == "SRT" || scheme == "SNM3" || scheme == "99SDM";
+      return is_snomed ? text("CodeValue") : "";
+    };
+    const std::string type = code("SegmentedPropertyTypeCodeSequence");
+    if (type.empty()) return {};
+    const std::string side = code("SegmentedPropertyTypeModifierCodeSequence");
+    const std::string region = code("AnatomicRegionSequence");
+    return type + (side.empty() ? "" : " " + side) + (region.empty() ? "" : " @" + region);
   }
 
   std::string source_;
@@ -451,7 +473,7 @@ core::Result<Table> ReadTextTable(std::string_view text, const std::string& sour
 
 }  // namespace
 
-core::Result<Names> ReadLabelNames(const std::filesystem::path& path) {
+core::Result<LabelTable> ReadLabelNames(const std::filesystem::path& path) {
   auto read = core::ReadFile(path, kMostBytes);
   if (!read.ok()) return read.error();
   const std::string source = core::Printable(path.string());
@@ -479,7 +501,7 @@ core::Result<Names> ReadLabelNames(const std::filesystem::path& path) {
     if (is_new || table->has_regions) continue;
     return TwoNames(source, label, other->second, name);
   }
-  return std::move(names);
+  return LabelTable{std::move(names), std::move(table->codes)};
 }
 
 }  // namespace trocar::anatomy

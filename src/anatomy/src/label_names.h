@@ -11,6 +11,12 @@
 
 namespace trocar::anatomy {
 
+/// Names of labels, and what they are in SNOMED.
+struct LabelTable {
+  std::vector<std::pair<std::string, int>> names;
+  std::vector<std::pair<std::string, int>> codes;  ///< as LabelVolume::codes; of dcmqi's tables
+};
+
 /// Reads a table of labels, UTF-8 or UTF-16, with or without a byte order mark:
 /// - JSON: {"liver": 5} or {"5": "liver"}, also as the member `labels` of nnU-Net's dataset.json, with regions ({"liver": [1, 2]});
 ///   {"5": {"name": "liver"}}; a list of {"label": 5, "name": "liver"}; dcmqi's segmentAttributes.
@@ -20,6 +26,6 @@ namespace trocar::anatomy {
 /// Label 0 is left out. A label of several regions has the name of the smallest first.
 /// \return kFileMissing, kJsonSyntax, kJsonField, or kLabelsMismatch where something is no table (it says what it is, or which line or
 ///         field is no entry), a label is no whole number from 0 to kLargestLabel, or one has two names
-core::Result<std::vector<std::pair<std::string, int>>> ReadLabelNames(const std::filesystem::path& path);
+core::Result<LabelTable> ReadLabelNames(const std::filesystem::path& path);
 
 }  // namespace trocar::anatomy

@@ -86,7 +86,10 @@ const std::vector<LabelScheme>& LabelSchemes() {
             {17, 18, kPelvis},    {19, 19, kLiverVessel}, {20, 20, kSmallBowel},   {21, 21, kLungLeft},
             {22, 22, kLungRight}, {23, 23, kPortalVein},  {24, 25, kPelvis}}),
       Make("BTCV",
-           "synapse.org, syn3193805, Beyond the Cranial Vault; with the duodenum: zenodo.org/record/1169361",
+           "synapse.org, syn3193805, Beyond the Cranial Vault; with the duodenum: zenodo.org/record/1169361; "
+           "numbers: "
+           "github.com/uni-medical/A-Eval, Evaluation/label_systems.py, and "
+           "github.com/ljwztc/CLIP-Driven-Universal-Model, label_transfer.py, templates 01 and 02",
            {{1, 1, kSpleen},
             {2, 2, kKidneyRight},
             {3, 3, kKidneyLeft},
@@ -103,13 +106,19 @@ const std::vector<LabelScheme>& LabelSchemes() {
             {14, 14, kDuodenum}}),
       Count("BTCV with eight organs", "github.com/Beckschen/TransUNet, the prepared Synapse data",
             {kAorta, kGallbladder, kKidneyLeft, kKidneyRight, kLiver, kPancreas, kSpleen, kStomach}),
-      Count("AMOS", "amos22.grand-challenge.org, dataset.json (Ji et al., NeurIPS 2022)",
+      Count("AMOS",
+            "amos22.grand-challenge.org, dataset.json (Ji et al., NeurIPS 2022); numbers: A-Eval's "
+            "label_systems.py, CLIP-Driven-Universal-Model's template 09",
             {kSpleen, kKidneyRight, kKidneyLeft, kGallbladder, kEsophagus, kLiver, kStomach, kAorta,
              kVenaCava, kPancreas, kAdrenalRight, kAdrenalLeft, kDuodenum, kBladder, kPelvis}),
-      Count("FLARE 2022", "flare22.grand-challenge.org; from 2023 on with 14, a tumour of any organ",
+      Count("FLARE 2022",
+            "flare22.grand-challenge.org; from 2023 on with 14, a tumour of any organ; numbers: A-Eval's "
+            "label_systems.py, huggingface.co/datasets/YongchengYAO/FLARE22-Lite",
             {kLiver, kKidneyRight, kSpleen, kPancreas, kAorta, kVenaCava, kAdrenalRight, kAdrenalLeft,
              kGallbladder, kEsophagus, kStomach, kDuodenum, kKidneyLeft, kOther}),
-      Make("WORD", "github.com/HiLab-git/WORD (Luo et al., Medical Image Analysis 2022)",
+      Make("WORD",
+           "github.com/HiLab-git/WORD (Luo et al., Medical Image Analysis 2022); numbers: A-Eval's "
+           "label_systems.py, CLIP-Driven-Universal-Model's template 07",
            {{1, 1, kLiver},
             {2, 2, kSpleen},
             {3, 3, kKidneyLeft},
@@ -125,6 +134,11 @@ const std::vector<LabelScheme>& LabelSchemes() {
             {13, 13, kPelvis},
             {14, 14, kBladder},
             {15, 16, kPelvis}}),
+      // the 50 cases of AbdomenCT-1K with twelve organs
+      Count("AbdomenCT-12organ",
+            "github.com/JunMa11/AbdomenCT-1K, README; numbers: CLIP-Driven-Universal-Model's template 13",
+            {kLiver, kKidneys, kSpleen, kPancreas, kAorta, kVenaCava, kStomach, kGallbladder, kEsophagus,
+             kAdrenalRight, kAdrenalLeft, kOther}),
       Make("VISTA3D", "github.com/Project-MONAI/VISTA, vista3d/data/jsons/label_dict.json",
            {{1, 1, kLiver},         {2, 2, kKidneys},         {3, 3, kSpleen},       {4, 4, kPancreas},
             {5, 5, kKidneyRight},   {6, 6, kAorta},           {7, 7, kVenaCava},     {8, 8, kAdrenalRight},
@@ -188,13 +202,18 @@ const std::vector<LabelScheme>& LabelSchemes() {
       Count("LiTS",
             "Bilic et al., Medical Image Analysis 2023; the same in medicaldecathlon.com, Task03_Liver",
             {kLiver, kLiverLesion}),
-      Count("CHAOS counted from 1 on", "chaos.grand-challenge.org/Data, the organs in its order",
+      Count("CHAOS counted from 1 on",
+            "github.com/MIC-DKFZ/nnUNet, nnunetv2/dataset_conversion/Dataset047_Chaos_Challenge.py",
             {kLiver, kKidneyRight, kKidneyLeft, kSpleen}),
-      Make("CHAOS", "chaos.grand-challenge.org/Data",
+      Make("CHAOS",
+           "chaos.grand-challenge.org/Data; the ranges as in nnU-Net's Dataset047_Chaos_Challenge.py",
            {{55, 70, kLiver}, {110, 135, kKidneyRight}, {175, 200, kKidneyLeft}, {240, 255, kSpleen}}),
-      Count("AbdomenCT-1K", "Ma et al., IEEE TPAMI 2022; the same in FLARE 2021",
+      Count("AbdomenCT-1K",
+            "Ma et al., IEEE TPAMI 2022; the same in FLARE 2021; numbers: CLIP-Driven-Universal-Model's "
+            "template 08, huggingface.co/datasets/MedOtter/FLARE21",
             {kLiver, kKidneys, kSpleen, kPancreas}),
-      Count("CT-ORG", "Rister et al., Scientific Data 2020",
+      Count("CT-ORG",
+            "Rister et al., Scientific Data 2020; numbers: the data set's README (cancerimagingarchive.net)",
             {kLiver, kBladder, kLungs, kKidneys, kOther, kHead})};
   return schemes;
 }

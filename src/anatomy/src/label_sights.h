@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "label_measures.h"
@@ -17,9 +18,10 @@ struct LabelSight {
   Vec3 centre, min, max;  ///< left, cranial, anterior [mm]
   double elongation =
       1;  ///< longest by shortest axis of the distribution of its voxels, as standard deviations
-  double largest_part = 1;       ///< share of it that hangs together
-  bool is_at_border = false;     ///< of the map, which may cut it
-  std::map<int, double> beside;  ///< share of its surface that lies within 6 mm of each other label
+  double largest_part = 1;           ///< share of it that hangs together
+  bool is_at_border = false;         ///< of the map, which may cut it
+  std::optional<double> density_hu;  ///< median of its voxels in the CT, where that is there
+  std::map<int, double> beside;      ///< share of its surface that lies within 6 mm of each other label
 
   double ContactWith(int label) const {
     const auto found = beside.find(label);

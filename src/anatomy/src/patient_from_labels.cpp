@@ -150,20 +150,32 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   if (!options.names.empty()) {
     auto names = ReadLabelNames(options.names);
     if (!names.ok()) return names.error();
-    volume->names = std::move(*names);
+    volume->names = std::move(names->names);
+    volume->codes = std::move(names->codes);
   }
   const auto frame = MakeVoxelFrame(*volume, options.is_mirrored);
   if (!frame.ok())
     return Error{frame.error().code, core::Printable(options.labels.string()) + ": " + frame.error().message};
   report_progress("looking at the labels", 0.05);
-  const auto labels = FindLabels(*volume, options);
+  BuildReport report;
+  LabelDensities densities;
+  if (!options.images.empty()) {
+    const auto series = images::ImageSeries::Open(options.images, options.opening);
+    if (!series.ok()) return series.error();
+    auto measured_hu = MeasureDensities(*volume, *series);
+    if (!measured_hu.ok()) return measured_hu.error();
+    densities = std::move(*measured_hu);
+    if (densities.empty())
+      report.notes.emplace_back(
+          "the images hold no Hounsfield units, so the densities of the labels were not looked at");
+  }
+  const auto labels = FindLabels(*volume, options, densities);
   if (!labels.ok()) return labels.error();
   JoinParts(*labels, *volume);
   if (options.stop.stop_requested()) return GivenUp();
   const MeasuredLabels measured = MeasureOrgans(*volume, *labels, *frame);
   if (const auto status = CheckBody(measured, options.is_mirrored); !status.ok()) return status.error();
 
-  BuildReport report;
   auto meshes = MeshOrgans(*volume, measured, *frame, options, report_progress, report);
   if (!meshes.ok()) return meshes.error();
 

@@ -92,14 +92,14 @@ constexpr Names kTable[] = {
     {Structure::kKidneyRight,
      "right kidney|kidney right|ren dexter|rechte niere|niere rechts|rein droit|rinon derecho|rene "
      "destro|rim direito|rechter nier|"
-     "rechternier|правая почка|右肾|右腎|右肾脏|右腎臓"},
+     "rechternier|правая почка|右肾|右腎|右肾脏|右腎臟|右腎臓|오른쪽 신장|우측 신장"},
     {Structure::kKidneyLeft,
      "left kidney|kidney left|ren sinister|linke niere|niere links|rein gauche|rinon izquierdo|rene "
      "sinistro|rim esquerdo|linker nier|"
-     "linkernier|левая почка|左肾|左腎|左肾脏|左腎臓"},
+     "linkernier|левая почка|左肾|左腎|左肾脏|左腎臟|左腎臓|왼쪽 신장|좌측 신장"},
     {Structure::kKidneys,
      "kidney|kidneys|ren|renes|niere|nieren|rein|reins|rinon|rinones|rene|reni|rim|rins|nier|почка|почки|肾|"
-     "腎|肾脏|腎臓|신장"},
+     "腎|肾脏|腎臟|腎臓|신장|콩팥"},
     {Structure::kAdrenalRight,
      "right adrenal|right adrenal gland|right suprarenal gland|rag|glandula suprarenalis dextra|rechte "
      "nebenniere|surrenale droite|"
@@ -115,16 +115,17 @@ constexpr Names kTable[] = {
     {Structure::kVenaCava,
      "inferior vena cava|ivc|postcava|vena cava|vena cava inferior|untere hohlvene|veine cave "
      "inferieure|veine cave|vci|"
-     "vena cava inferiore|veia cava inferior|onderste holle ader|нижняя полая вена|下腔静脉|下大静脈"},
+     "vena cava inferiore|veia cava inferior|onderste holle ader|нижняя полая "
+     "вена|下腔静脉|下腔靜脈|下大静脈|하대정맥"},
     {Structure::kAorta,
      "aorta|arota|abdominal aorta|aorta abdominalis|bauchaorta|aorte|aorte "
-     "abdominale|аорта|主动脉|大动脉|大動脈|腹主动脉"},
+     "abdominale|аорта|主动脉|主動脈|大动脉|大動脈|腹主动脉|대동맥"},
     {Structure::kPortalVein,
      "portal vein|portal vein and splenic vein|portal and splenic veins|portal splenic vein|portal vein "
      "splenic vein|pv|"
      "portal vein and superior mesenteric vein|vena portae|vena portae hepatis|pfortader|veine porte|vena "
      "porta|veia porta|poortader|"
-     "воротная вена|门静脉|門脈"},
+     "воротная вена|门静脉|門靜脈|門脈|문맥"},
     {Structure::kEsophagus,
      "esophagus|oesophagus|speiserohre|osophagus|oesophage|esofago|slokdarm|пищевод|食管|食道|식도"},
     {Structure::kLungRight,

@@ -175,6 +175,19 @@ TEST(FindLabels, KnowsEverySchemeOfNumbers) {
   EXPECT_GE(with_gallbladder, 12);
 }
 
+// the 50 cases of AbdomenCT-1K with twelve organs: both kidneys have one number, and the gallbladder another than in FLARE
+TEST(FindLabels, KnowsTheCasesOfTwelveOrgans) {
+  using enum Structure;
+  const Numbers numbers = {{kLiver, 1},       {kKidneyRight, 2}, {kKidneyLeft, 2},    {kSpleen, 3},
+                           {kPancreas, 4},    {kAorta, 5},       {kVenaCava, 6},      {kStomach, 7},
+                           {kGallbladder, 8}, {kEsophagus, 9},   {kAdrenalRight, 10}, {kAdrenalLeft, 11}};
+  const auto found = FindLabels(Numbered(numbers), {});
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_EQ(found->liver, 1);
+  EXPECT_EQ(found->gallbladder, 8);
+  EXPECT_EQ(found->convention, "the numbers of AbdomenCT-12organ");
+}
+
 /// Eight ways in which labels could have changed their numbers.
 std::vector<std::pair<std::string, std::vector<std::size_t>>> Permutations(const Numbers& numbers,
                                                                            unsigned seed) {
@@ -362,6 +375,78 @@ TEST(FindLabels, NumbersNeverReplaceNames) {
   EXPECT_EQ(ErrorOf(nameless), "liver 5, gallbladder 4");
 }
 
+TEST(FindLabels, CodesDecideOverFreeText) {
+  const auto coded = [](const std::string& liver, const std::string& gallbladder, const std::string& kidney) {
+    // numbered so that some scheme has these numbers for other organs
+    images::LabelVolume volume =
+        Numbered({{Structure::kLiver, 4}, {Structure::kGallbladder, 2}, {Structure::kKidneyRight, 1}});
+    volume.codes = {{liver, 4}, {gallbladder, 2}, {kidney, 1}};
+    return volume;
+  };
+  for (const bool is_srt : {false, true}) {
+    images::LabelVolume volume = is_srt ? coded("T-62000", "T-63000", "T-71000 G-A100")
+                                        : coded("10200004", "28231008", "64033007 24028007");
+    const auto expect = [&](const char* what) {
+      const auto found = FindLabels(volume, {});
+      ASSERT_TRUE(found.ok()) << what << ": " << found.error().message;
+      EXPECT_EQ(found->liver, 4) << what;
+      EXPECT_EQ(found->gallbladder, 2) << what;
+      EXPECT_EQ(found->structures.at(1), Structure::kKidneyRight) << what;
+    };
+    expect("no name at all");
+    volume.names = {{"Segment_1", 4}, {"Segment_2", 2}, {"Segment_3", 1}};
+    expect("names that nobody gave");
+    volume.names = {{"orgán A", 4}, {"the bag", 2}, {"k", 1}};
+    expect("names that nobody understands");
+    volume.names = {{"liver", 4}, {"Gallenblase", 2}, {"kidney", 1}};
+    expect("names that say the same or less");
+  }
+  // what a name says more than its code stays
+  images::LabelVolume parts = coded("10200004", "28231008", "10200004");
+  parts.names = {{"liver", 4}, {"gallbladder", 2}, {"liver tumor", 1}};
+  EXPECT_EQ(FindLabels(parts, {})->joined, (std::map<int, int>{{1, 4}}));
+  parts = coded("10200004", "28231008", "108369006 @10200004");
+  EXPECT_EQ(FindLabels(parts, {})->joined, (std::map<int, int>{{1, 4}})) << "a neoplasm of the liver";
+}
+
+TEST(FindLabels, CodesAndNamesThatMeanDifferentOrgansAreAskedFor) {
+  images::LabelVolume volume = Numbered({{Structure::kLiver, 4}, {Structure::kGallbladder, 2}});
+  volume.names = {{"liver", 4}, {"kidney right", 2}};
+  volume.codes = {{"10200004", 4}, {"28231008", 2}};
+  EXPECT_THAT(ErrorOf(volume),
+              HasSubstr("label 2 is called \"kidney right\", and its code 28231008 means the "
+                        "gallbladder"));
+  // a code that is not known is no name of a liver either, and numbers do not replace it
+  volume = Numbered(NumbersOf(LabelSchemes()[1]));
+  volume.codes = {{"69748006", 5}};
+  EXPECT_THAT(ErrorOf(volume), HasSubstr("none of them is the liver"));
+  // what 3D Slicer writes of a segment that nobody named
+  volume.codes = {{"85756007", 5}, {"T-D0050", 4}};
+  EXPECT_EQ(ErrorOf(volume), "liver 5, gallbladder 4");
+}
+
+TEST(FindLabels, DensitiesThatDisagreeAreAskedFor) {
+  const images::LabelVolume volume = Numbered({{Structure::kLiver, 1}, {Structure::kGallbladder, 2}});
+  const auto found = FindLabels(volume, {}, {{1, 104.0}, {2, 12.0}});
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_THAT(found->taken[1].reason, HasSubstr(" mL, 12 HU, "));
+  EXPECT_EQ(found->taken[1].doubt, "");
+  // as a kidney in the venous phase, fat, or bone
+  for (const double hu : {182.0, -95.0, 700.0}) {
+    const auto refused = FindLabels(volume, {}, {{1, 104.0}, {2, hu}});
+    ASSERT_FALSE(refused.ok()) << hu;
+    EXPECT_THAT(refused.error().message, AllOf(HasSubstr("label 2 would be the gallbladder, and has "),
+                                               HasSubstr(" HU in the images"), HasSubstr("--names")));
+  }
+  EXPECT_FALSE(FindLabels(volume, {}, {{1, -700.0}, {2, 12.0}}).ok()) << "a lung is no liver";
+  // names decide, and the doubt is kept
+  const auto named =
+      FindLabels(Named({{Structure::kLiver, "liver"}, {Structure::kGallbladder, "gallbladder"}}), {},
+                 {{41, 104.0}, {42, 182.0}});
+  ASSERT_TRUE(named.ok());
+  EXPECT_THAT(named->taken[1].doubt, HasSubstr("has 182 HU in the images; -30 to 80 HU are usual"));
+}
+
 TEST(FindLabels, ASegmentsNameThatContradictsTheBodyIsDoubted) {
   const auto found = FindLabels(Named({{Structure::kLiver, "liver"},
                                        {Structure::kKidneyRight, "gallbladder"},
@@ -464,6 +549,10 @@ TEST(Structures, AreFoundByTheirNames) {
                                         {"liver_segment_4", kLiverPart},
                                         {"Magen", kStomach},
                                         {"十二指肠", kDuodenum},
+                                        {"門靜脈", kPortalVein},
+                                        {"主動脈", kAorta},
+                                        {"右腎臟", kKidneyRight},
+                                        {"좌측 신장", kKidneyLeft},
                                         {"hepatic_veins", kLiverVessel},
                                         {"bile_ducts", kBileDuct},
                                         {"liver 2", kUnknown},
@@ -478,6 +567,20 @@ TEST(Structures, AreFoundByTheirNames) {
     const auto role = static_cast<roles::NeighbourRole>(i);
     EXPECT_EQ(RoleOf(FindStructure(roles::NameOf(role))), role) << roles::NameOf(role);
   }
+  for (const auto& [code, structure] :
+       std::map<std::string, Structure>{{"10200004", kLiver},
+                                        {"T-62000", kLiver},
+                                        {"28231008", kGallbladder},
+                                        {"T-63000", kGallbladder},
+                                        {"64033007", kKidneys},
+                                        {"64033007 7771000", kKidneyLeft},
+                                        {"T-71000 G-A100", kKidneyRight},
+                                        {"64033007 7771000 @818981001", kKidneyLeft},
+                                        {"367643001 @64033007", kOther},
+                                        {"M-8FFFF @T-62000", kLiverLesion},
+                                        {"69748006", kUnknown},
+                                        {"", kUnknown}})
+    EXPECT_EQ(NameOf(FindCodedStructure(code)), std::string(NameOf(structure))) << code;
   EXPECT_TRUE(IsPlaceholder("Segment_12") && IsPlaceholder("Label 3") && IsPlaceholder("7") &&
               IsPlaceholder(""));
   EXPECT_FALSE(IsPlaceholder("L3") || IsPlaceholder("liver") || IsPlaceholder("tissue"));

@@ -26,7 +26,8 @@ class LabelNames : public testing::Test {
   void ExpectOrgans(const std::string& content) {
     const auto names = Read(content);
     ASSERT_TRUE(names.ok()) << names.error().Text();
-    EXPECT_THAT(*names, UnorderedElementsAre(testing::Pair("liver", 17), testing::Pair("gall bladder", 300)))
+    EXPECT_THAT(names->names,
+                UnorderedElementsAre(testing::Pair("liver", 17), testing::Pair("gall bladder", 300)))
         << content;
   }
   void ExpectRefused(const std::string& content, ErrorCode code, const char* why) {
@@ -51,7 +52,28 @@ TEST_F(LabelNames, AreReadInEveryForm) {
       "# Color table file\n// two\n0 Background 0 0 0 0\n17 liver 221 130 101 255\n300 gall_bladder 139 150 "
       "98 255");
   ASSERT_TRUE(slicer.ok());
-  EXPECT_THAT(*slicer, UnorderedElementsAre(testing::Pair("liver", 17), testing::Pair("gall_bladder", 300)));
+  EXPECT_THAT(slicer->names,
+              UnorderedElementsAre(testing::Pair("liver", 17), testing::Pair("gall_bladder", 300)));
+}
+
+TEST_F(LabelNames, BringTheCodesOfDcmqi) {
+  const auto table = Read(R"({"segmentAttributes": [[
+    {"labelID": 17, "SegmentLabel": "A", "SegmentedPropertyTypeCodeSequence":
+      {"CodeValue": "10200004", "CodingSchemeDesignator": "SCT", "CodeMeaning": "Liver"}},
+    {"labelID": 18, "SegmentLabel": "B", "SegmentedPropertyTypeCodeSequence":
+      {"CodeValue": "T-71000", "CodingSchemeDesignator": "SRT", "CodeMeaning": "Kidney"},
+      "SegmentedPropertyTypeModifierCodeSequence": {"CodeValue": "G-A100", "CodingSchemeDesignator": "SRT"}},
+    {"labelID": 19, "SegmentLabel": "C", "SegmentedPropertyTypeCodeSequence":
+      {"CodeValue": "108369006", "CodingSchemeDesignator": "SCT"},
+      "AnatomicRegionSequence": {"CodeValue": "10200004", "CodingSchemeDesignator": "SCT"}},
+    {"labelID": 20, "SegmentLabel": "D", "SegmentedPropertyTypeCodeSequence":
+      {"CodeValue": "7197", "CodingSchemeDesignator": "FMA"}},
+    {"labelID": 21, "SegmentLabel": "E", "SegmentedPropertyTypeCodeSequence": "liver"}]]})");
+  ASSERT_TRUE(table.ok()) << table.error().Text();
+  EXPECT_EQ(table->names.size(), 5u);
+  EXPECT_THAT(table->codes,
+              UnorderedElementsAre(testing::Pair("10200004", 17), testing::Pair("T-71000 G-A100", 18),
+                                   testing::Pair("108369006 @10200004", 19)));
 }
 
 TEST_F(LabelNames, AreReadAsTheTradeWritesThem) {
@@ -99,11 +121,12 @@ TEST_F(LabelNames, OfRegionsAreTheSmallestFirst) {
       Read(R"({"channel_names": {"0": "CT"}, "labels": {"background": 0, "liver": [17, 18], "tumor": 18,
                               "gall bladder": 300}, "regions_class_order": [17, 18, 300]})");
   ASSERT_TRUE(names.ok()) << names.error().Text();
-  EXPECT_THAT(*names,
+  EXPECT_THAT(names->names,
               testing::UnorderedElementsAre(testing::Pair("tumor", 18), testing::Pair("liver", 17),
                                             testing::Pair("liver", 18), testing::Pair("gall bladder", 300)));
   const auto at = [&](const char* name) {
-    return std::find(names->begin(), names->end(), std::pair<std::string, int>(name, 18)) - names->begin();
+    return std::find(names->names.begin(), names->names.end(), std::pair<std::string, int>(name, 18)) -
+           names->names.begin();
   };
   EXPECT_LT(at("tumor"), at("liver"));
   ExpectRefused(R"({"labels": {"a": [1, 2], "b": [2, 3]}})", ErrorCode::kLabelsMismatch,

@@ -106,6 +106,15 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
                    "or TSV with a header, a colour "
                    "table of 3D Slicer or a label description of ITK-SNAP")
       ->type_name("FILE");
+  command
+      ->add_option("--images", options->images,
+                   "The CT that the labels were drawn on: their densities are compared with what they are "
+                   "taken for")
+      ->type_name("PATH");
+  command->add_option("--series", options->opening.series, "Which DICOM series, where a folder holds several")
+      ->check(CLI::Range(1, 999999999))
+      ->needs("--images")
+      ->type_name("N");
   command->add_flag(
       "--mirrored", options->is_mirrored,
       "Left and right of the map are swapped, or it is situs inversus: take it the other way round");
@@ -115,8 +124,9 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
       "Labels are found by the names in the file or the table, in many languages; without names by their "
       "numbers, where\n"
       "all of them fit one known scheme (TotalSegmentator, AbdomenAtlas, BTCV, AMOS, ...; docs/patients.md) "
-      "and sizes and\n"
-      "places agree. What is not certain is asked for. Ducts and arteries are placed by landmarks.\n"
+      "and sizes,\n"
+      "places and densities agree. What is not certain is asked for. Ducts and arteries are placed by "
+      "landmarks.\n"
       "Examples: trocar anatomy from-labels total.nii.gz -o out/patient\n"
       "          trocar anatomy from-labels segmentations -o out/patient\n"
       "          trocar anatomy from-labels mine.nrrd --liver 3 --gallbladder 4 -o out/patient");

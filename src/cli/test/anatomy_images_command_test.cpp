@@ -133,7 +133,7 @@ TEST_F(ImagesCommand, ListsThePhasesOfADicomSeriesAndSaysWhatItPassedOver) {
   ASSERT_TRUE(core::WriteFile(folder_.Path() / "ct" / "report", test::MakeDicom(report)).ok());
   const Printed asked = Run({Path("ct")});
   ExpectRefused(asked, "E-IMG-006");
-  EXPECT_THAT(asked.err, HasSubstr("2 (CT, acquisition 2: 4 slices)"));
+  EXPECT_THAT(asked.err, HasSubstr("2 (CT, acquisition 2, slices: 4)"));
   const Printed printed = Run({Path("ct"), "--series", "2"});
   ASSERT_EQ(printed.status, 0) << printed.err;
   EXPECT_THAT(printed.out, HasSubstr("4, number 21 to 24"));

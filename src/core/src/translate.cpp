@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kDomain = "trocar";
-constexpr int kDeepestComposition = 4;  // of texts within places of texts
+constexpr int kDeepestComposition = 12;  // of texts within places of texts: a list's rest is one, too
 
 // what TranslateComposed compares with, of the language that was last asked for
 std::mutex patterns_guard;

@@ -14,6 +14,8 @@
 
 #if TROCAR_HAS_OPENIGTLINK
 #include <igtlPolyDataMessage.h>
+#include <igtlPositionMessage.h>
+#include <igtlQuaternionTrackingDataMessage.h>
 #include <igtlTrackingDataMessage.h>
 #include <igtlTransformMessage.h>
 
@@ -275,6 +277,45 @@ TEST(Igtl, ReadsPlacesWithQuaternions) {
     EXPECT_LT(math::Distance(one * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-6);
 }
 
+// the reference library also packs a POSITION with a quaternion of three numbers, whose fourth is what is left to 1
+TEST(Igtl, ReadsAPositionWithAQuaternionOfThreeNumbers) {
+  const math::Pose pose = MakePose();
+  math::Quaternion q = pose.rotation;
+  if (q.w < 0) q = {-q.w, -q.x, -q.y, -q.z};
+  const auto message = [](const std::vector<double>& rotation) {
+    std::vector<float> numbers = {100, -250, 1500};
+    for (const double number : rotation) numbers.push_back(static_cast<float>(number));
+    return Message("POSITION", Matrix(numbers), 24);
+  };
+  const Got got = Read(message({q.x, q.y, q.z}));
+  ASSERT_EQ(got.poses.size(), 1u);
+  EXPECT_LT(math::Distance(got.poses[0] * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-6);
+  // half a turn leaves nothing, with rounding a little less than nothing
+  for (const double length : {1.0, 1.0000002}) {
+    const Got half = Read(message({0, 0, length}));
+    ASSERT_EQ(half.poses.size(), 1u) << length;
+    EXPECT_LT(math::Distance(math::Rotate(half.poses[0].rotation, {1, 0, 0}), {-1, 0, 0}), 1e-6);
+  }
+  // no rotation at all is zeros here
+  ASSERT_EQ(Read(message({0, 0, 0})).poses.size(), 1u);
+  IgtlReader reader;
+  ASSERT_TRUE(reader.Feed(message({0, 0, 2}), [](const IgtlPose&) { FAIL() << "it is no rotation"; }));
+  ASSERT_EQ(reader.DescribeRefused().size(), 1u);
+  EXPECT_NE(reader.DescribeRefused()[0].find("2, 2 and 2"), std::string::npos) << reader.DescribeRefused()[0];
+  // the lowest byte first, it would be next to nothing everywhere: no rotation at the origin
+  std::string swapped;
+  for (const double number : {100.0, -250.0, 1500.0, q.x, q.y, q.z}) {
+    std::string word = Big(std::bit_cast<std::uint32_t>(static_cast<float>(number)), 4);
+    swapped.append(word.rbegin(), word.rend());
+  }
+  reader = {};
+  ASSERT_TRUE(
+      reader.Feed(Message("POSITION", swapped, 24), [](const IgtlPose&) { FAIL() << "it is no pose"; }));
+  ASSERT_EQ(reader.DescribeRefused().size(), 1u);
+  EXPECT_NE(reader.DescribeRefused()[0].find("wrong byte order"), std::string::npos)
+      << reader.DescribeRefused()[0];
+}
+
 TEST(Igtl, CountsWhatCameByKindAndName) {
   IgtlReader reader;
   const IgtlTool tools[] = {{"left", MakePose()}, {"Reference", MakePose()}};
@@ -391,7 +432,7 @@ TEST(IgtlOracle, UnderstandsTheLibraryBothWays) {
   ASSERT_EQ(got.poses.size(), 1u);
   EXPECT_LT(math::Distance(got.poses[0] * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-5);
 
-  const auto unpack = [](igtl::MessageBase* into, const std::string& bytes) {
+  const auto unpack = [](igtl::MessageBase* into, const std::string& bytes, int is_checked = 1) {
     igtl::MessageHeader::Pointer header = igtl::MessageHeader::New();
     header->InitPack();
     std::copy_n(bytes.data(), 58, static_cast<char*>(header->GetPackPointer()));
@@ -399,7 +440,7 @@ TEST(IgtlOracle, UnderstandsTheLibraryBothWays) {
     into->SetMessageHeader(header);
     into->AllocatePack();
     std::copy(bytes.begin() + 58, bytes.end(), static_cast<char*>(into->GetPackBodyPointer()));
-    return (into->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) != 0;
+    return (into->Unpack(is_checked) & igtl::MessageHeader::UNPACK_BODY) != 0;
   };
   igtl::TransformMessage::Pointer back = igtl::TransformMessage::New();
   ASSERT_TRUE(unpack(back, FormatIgtlTransform("left", pose, 12.5)));
@@ -409,6 +450,47 @@ TEST(IgtlOracle, UnderstandsTheLibraryBothWays) {
     for (int column = 0; column < 4; ++column) EXPECT_NEAR(read[row][column], matrix[row][column], 1e-4);
   }
   EXPECT_STREQ(back->GetDeviceName(), "left");
+
+  // every length of a POSITION that the library packs, and a QTDATA: read as the library itself reads them
+  math::Quaternion q = pose.rotation;
+  if (q.w < 0) q = {-q.w, -q.x, -q.y, -q.z};
+  const auto number = [](double value) { return static_cast<float>(value); };
+  const auto bytes_of = [](igtl::MessageBase* from) {
+    from->Pack();
+    return std::string(static_cast<const char*>(from->GetPackPointer()),
+                       static_cast<std::size_t>(from->GetPackSize()));
+  };
+  for (const int kind : {igtl::PositionMessage::ALL, igtl::PositionMessage::WITH_QUATERNION3,
+                         igtl::PositionMessage::POSITION_ONLY}) {
+    igtl::PositionMessage::Pointer position = igtl::PositionMessage::New();
+    position->SetDeviceName("left");
+    position->SetPackType(kind);
+    position->SetPosition(100, -250, 1500);
+    position->SetQuaternion(number(q.x), number(q.y), number(q.z), number(q.w));
+    const Got read_position = Read(bytes_of(position));
+    ASSERT_EQ(read_position.poses.size(), kind == igtl::PositionMessage::POSITION_ONLY ? 0u : 1u) << kind;
+    for (const math::Pose& one : read_position.poses)
+      EXPECT_LT(math::Distance(one * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-5) << kind;
+  }
+  igtl::QuaternionTrackingDataElement::Pointer element = igtl::QuaternionTrackingDataElement::New();
+  element->SetName("right");
+  element->SetType(igtl::QuaternionTrackingDataElement::TYPE_6D);
+  element->SetPosition(100, -250, 1500);
+  element->SetQuaternion(number(q.x), number(q.y), number(q.z), number(q.w));
+  igtl::QuaternionTrackingDataMessage::Pointer quaternions = igtl::QuaternionTrackingDataMessage::New();
+  quaternions->AddQuaternionTrackingDataElement(element);
+  const Got read_quaternions = Read(bytes_of(quaternions));
+  ASSERT_EQ(read_quaternions.names, std::vector<std::string>{"right"});
+  EXPECT_LT(math::Distance(read_quaternions.poses[0] * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}),
+            1e-5);
+
+  // docs/devices.md: a checksum of 0 is refused by the library where its check is asked for, which is not its default
+  const std::string unsigned_bytes =
+      FormatIgtlTransform("left", pose, 0).replace(50, 8, std::string(8, '\0'));
+  for (const int is_checked : {1, 0}) {
+    igtl::TransformMessage::Pointer into = igtl::TransformMessage::New();
+    EXPECT_EQ(unpack(into, unsigned_bytes, is_checked), is_checked == 0);
+  }
 
   const IgtlTool tools[] = {{"left", pose}, {"right", pose}};
   igtl::TrackingDataMessage::Pointer tracking = igtl::TrackingDataMessage::New();

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -529,6 +530,93 @@ class PixelReader : public gdcm::ImageReader {
   bool has_palette_ = false;
 };
 
+/// Stored values that stand where the scanner has no image, as outside the round field of view.
+struct Padding {
+  int low = 0, high = 0;
+};
+
+/// Source: PS3.3 section C.7.5.1.1.2, Pixel Padding Value and Pixel Padding Range Limit.
+std::optional<Padding> FindPadding(const gdcm::DataSet& data, SampleKind samples) {
+  const auto find = [&](std::uint16_t element) -> std::optional<int> {
+    const auto value = FindShort(data, Tag(0x0028, element));
+    if (!value) return std::nullopt;
+    return samples == SampleKind::kInt16 ? static_cast<std::int16_t>(*value) : static_cast<int>(*value);
+  };
+  const auto value = find(0x0120), limit = find(0x0121);
+  if (!value) return std::nullopt;
+  return Padding{std::min(*value, limit.value_or(*value)), std::max(*value, limit.value_or(*value))};
+}
+
+/// Which samples are in `is_padded` and hang together with the border of the frame through others that are.
+void KeepAtBorder(std::uint32_t width, std::uint32_t height, std::vector<char>& is_padded) {
+  std::vector<std::size_t> front;
+  const auto reach = [&](std::size_t at) {
+    if (is_padded[at] != 1) return;
+    is_padded[at] = 2;
+    front.push_back(at);
+  };
+  for (std::size_t x = 0; x < width; ++x) reach(x), reach((height - 1) * std::size_t{width} + x);
+  for (std::size_t y = 0; y < height; ++y) reach(y * width), reach(y * width + width - 1);
+  while (!front.empty()) {
+    const std::size_t at = front.back(), x = at % width, y = at / width;
+    front.pop_back();
+    if (x > 0) reach(at - 1);
+    if (x + 1 < width) reach(at + 1);
+    if (y > 0) reach(at - width);
+    if (y + 1 < height) reach(at + width);
+  }
+  for (char& state : is_padded) state = state == 2 ? 1 : 0;
+}
+
+/// Makes what is no image dark: in CT air, else the darkest that there is. A padding value that no other sample lies beyond is taken
+/// wherever it stands; one from among them, as 0 in CT, only where it hangs together with the border: by some writers' mistake it is
+/// a value of tissue, too.
+template <typename Sample>
+void DarkenPadding(const Padding& padding, const ImageHeader& header, Sample* samples) {
+  constexpr double kAirHu = -1024;
+  const std::size_t count = std::size_t{header.width} * header.height;
+  std::vector<char> is_padded(count);
+  int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
+  for (std::size_t i = 0; i < count; ++i) {
+    const int value = samples[i];
+    is_padded[i] = value >= padding.low && value <= padding.high ? 1 : 0;
+    if (is_padded[i] != 0) continue;
+    least = std::min(least, value), most = std::max(most, value);
+  }
+  const bool is_all = least > most;
+  if (is_all && header.is_ct == 0) return;
+  if (!is_all && least < padding.low && most > padding.high)
+    KeepAtBorder(header.width, header.height, is_padded);
+  const double dark = header.is_ct != 0 ? (kAirHu - header.intercept) / header.slope
+                      : (header.is_inverted != 0) != (header.slope < 0) ? most
+                                                                        : least;
+  const auto filling = static_cast<Sample>(std::lround(std::clamp(
+      dark, double{std::numeric_limits<Sample>::min()}, double{std::numeric_limits<Sample>::max()})));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_padded[i] != 0) samples[i] = filling;
+  }
+}
+
+void DarkenPadding(const Job& job, const DicomFile& file, const ImageHeader& header) {
+  const auto padding = FindPadding(file.Data(), header.samples);
+  if (!padding || header.channels != 1) return;
+  const std::size_t frame_bytes = std::size_t{header.width} * header.height * SampleBytes(header.samples);
+  for (std::uint32_t frame = 0; frame < header.depth; ++frame) {
+    ImageHeader one = header;
+    if (header.depth > 1) {
+      FrameElements elements(file.Data(), frame);
+      ReadGreyValues(elements, one);
+    }
+    std::byte* const samples = job.samples + frame * frame_bytes;
+    if (header.samples == SampleKind::kUint8)
+      DarkenPadding(*padding, one, reinterpret_cast<std::uint8_t*>(samples));
+    else if (header.samples == SampleKind::kInt16)
+      DarkenPadding(*padding, one, reinterpret_cast<std::int16_t*>(samples));
+    else
+      DarkenPadding(*padding, one, reinterpret_cast<std::uint16_t*>(samples));
+  }
+}
+
 void ReadPixels(const Job& job, const DicomFile& file, const ImageHeader& header) {
   const auto stream = file.Open(job);
   PixelReader reader;
@@ -581,12 +669,13 @@ void ReadPixels(const Job& job, const DicomFile& file, const ImageHeader& header
   }
   if (sample_bytes == SampleBytes(header.samples)) {
     std::memcpy(job.samples, raw.data(), raw.size());
-    return;
+  } else {
+    for (std::size_t i = 0; i < raw.size(); ++i) {  // signed bytes
+      const auto value = static_cast<std::int16_t>(static_cast<signed char>(raw[i]));
+      std::memcpy(job.samples + 2 * i, &value, 2);
+    }
   }
-  for (std::size_t i = 0; i < raw.size(); ++i) {  // signed bytes
-    const auto value = static_cast<std::int16_t>(static_cast<signed char>(raw[i]));
-    std::memcpy(job.samples + 2 * i, &value, 2);
-  }
+  DarkenPadding(job, file, header);
 }
 
 }  // namespace

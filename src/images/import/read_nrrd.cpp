@@ -444,6 +444,38 @@ void ReadFrame(const Fields& fields, const std::vector<const Axis*>& spatial, co
   for (std::size_t k = 0; k < 3; ++k) header.origin[k] = (*signs)[k] * origin[k];
 }
 
+/// What a segment is, from the tag TerminologyEntry of 3D Slicer: "context~category~type~modifier~...", each but the first as
+/// "SCT^10200004^Liver". Of codes of SNOMED the type's, its modifier's and behind "@" the region's: "10200004", "64033007 24028007",
+/// "108369006 @10200004". Empty where there is none of SNOMED.
+/// Source: 3D Slicer, vtkSlicerTerminologiesModuleLogic, SerializeTerminologyEntry.
+std::string FindSegmentCode(std::string_view tags) {
+  constexpr std::string_view kTag = "TerminologyEntry:";
+  const auto begin = tags.find(kTag);
+  if (begin == std::string_view::npos) return {};
+  std::string_view entry = tags.substr(begin + kTag.size());
+  entry = entry.substr(0, entry.find('|'));
+  std::array<std::string_view, 6> parts;  // context, category, type, its modifier, context, region
+  for (std::string_view& part : parts) {
+    part = entry.substr(0, entry.find('~'));
+    entry.remove_prefix(std::min(entry.size(), part.size() + 1));
+  }
+  const auto code = [](std::string_view part) {
+    const std::string_view scheme = part.substr(0, part.find('^'));
+    std::string_view value = part.substr(std::min(part.size(), scheme.size() + 1));
+    value = value.substr(0, value.find('^'));
+    const bool is_snomed = scheme == "SCT" || scheme == "SRT" || scheme == "SNM3" || scheme == "99SDM";
+    const bool is_plain = value.size() <= 18 && std::all_of(value.begin(), value.end(), [](char c) {
+                            return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || c == '-';
+                          });
+    return std::string(is_snomed && is_plain ? value : std::string_view());
+  };
+  std::string text = code(parts[2]);
+  if (text.empty()) return {};
+  if (const std::string modifier = code(parts[3]); !modifier.empty()) text += " " + modifier;
+  if (const std::string region = code(parts[5]); !region.empty()) text += " @" + region;
+  return text;
+}
+
 /// Segments of 3D Slicer, Segment0_Name, Segment0_LabelValue, Segment0_Layer. Before version 4.11 it wrote neither label nor
 /// layer: each segment then is the label 1 of a layer of its own.
 void ReadSegmentNames(const Fields& fields, ImportReply& reply) {
@@ -474,6 +506,8 @@ void ReadSegmentNames(const Fields& fields, ImportReply& reply) {
     SegmentName& entry = reply.names[reply.header.segments++];
     entry.layer = static_cast<std::uint32_t>(in_layer);
     name->copy(entry.name, sizeof(entry.name) - 1);
+    if (const std::string* tags = find(i, "Tags"))
+      FindSegmentCode(*tags).copy(entry.code, sizeof(entry.code) - 1);
     entry.label = static_cast<std::int32_t>(value);
   }
 }

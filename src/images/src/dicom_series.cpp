@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 
 #include "trocar/core/printable.h"
 #include "trocar/core/translate.h"
@@ -257,9 +258,19 @@ std::optional<Error> FindShift(Pictures slices, std::span<const Placed> placed, 
                      "the series"};
   }
   if (sideways <= kShearMm) return std::nullopt;
-  return Error{ErrorCode::kImageSeriesUneven, "the slices are shifted against each other, by " +
-                                                  Millimetres(sideways) +
-                                                  " in all (a tilted gantry?); resample the series"};
+  // what a gantry can be tilted by, to either side
+  constexpr double kMostGantryTiltDeg = 31;
+  const double tilt_deg = std::atan2(sideways, std::fabs(along)) * 180 / std::numbers::pi;
+  if (tilt_deg > kMostGantryTiltDeg) {
+    return Error{ErrorCode::kImageSeriesUneven, "the slices are shifted against each other, by " +
+                                                    Millimetres(sideways) + " in all; resample the series"};
+  }
+  char degrees[16];
+  std::snprintf(degrees, sizeof degrees, "%.3g", tilt_deg);
+  return Error{ErrorCode::kImageSeriesUneven,
+               "the slices are shifted against each other, by " + Millimetres(sideways) +
+                   " in all, as a gantry tilted by " + degrees +
+                   " degrees leaves them; resample the series at right angles, for instance with 3D Slicer"};
 }
 
 /// Instance numbers that run along with the positions.

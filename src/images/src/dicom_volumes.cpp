@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "trocar/core/printable.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::images {
 namespace {
@@ -46,6 +47,39 @@ constexpr KeyName kKeys[] = {{DicomKey::kTemporalPosition, "temporal position", 
                              {DicomKey::kAgent, "contrast agent", 0, "", true}};
 constexpr KeyName kTimes[] = {{DicomKey::kAcquisitionTime, "acquisition time", 0, "", false},
                               {DicomKey::kContentTime, "content time", 0, "", false}};
+
+/// How TranslateComposed finds what the names of parts and lists of volumes are made of.
+[[maybe_unused]] constexpr const char* kShownPatterns[] = {core::Mark("{1}, temporal position {2}"),
+                                                           core::Mark("{1}, acquisition {2}"),
+                                                           core::Mark("{1}, echo {2}"),
+                                                           core::Mark("{1}, echo time {2}"),
+                                                           core::Mark("{1}, echo time {2} ms"),
+                                                           core::Mark("{1}, b-value {2}"),
+                                                           core::Mark("{1}, trigger time {2}"),
+                                                           core::Mark("{1}, trigger time {2} ms"),
+                                                           core::Mark("{1}, tube voltage {2}"),
+                                                           core::Mark("{1}, tube voltage {2} kV"),
+                                                           core::Mark("{1}, stack {2}"),
+                                                           core::Mark("{1}, image type {2}"),
+                                                           core::Mark("{1}, kernel {2}"),
+                                                           core::Mark("{1}, contrast agent {2}"),
+                                                           core::Mark("{1}, acquisition time {2}"),
+                                                           core::Mark("{1}, content time {2}"),
+                                                           core::Mark("{1}, order of instance numbers, {2}"),
+                                                           core::Mark("{1}, localizer"),
+                                                           core::Mark("{1}, of another patient"),
+                                                           core::Mark("{1}, in another frame of reference"),
+                                                           core::Mark("{1}, {2} x {3} pixels"),
+                                                           core::Mark("{1}, of other pixels"),
+                                                           core::Mark("{1}, turned or with pixels of {2} mm"),
+                                                           core::Mark("{1} of {2}"),
+                                                           core::Mark("not said"),
+                                                           core::Mark("and {1} more"),
+                                                           core::Mark("{1}, slices: {2}"),
+                                                           core::Mark("{1} ({2}, slices: {3}); {4}"),
+                                                           core::Mark("{1} ({2}, slices: {3})"),
+                                                           core::Mark("{1} (slices: {2}); {3}"),
+                                                           core::Mark("{1} (slices: {2})")};
 
 std::int64_t KeyOf(const DicomSlice& slice, DicomKey key) {
   return slice.header.keys[static_cast<std::size_t>(key)];
@@ -344,8 +378,8 @@ std::vector<DicomVolume> SplitVolumes(std::span<const DicomSlice> slices,
 std::string DescribeVolume(const DicomVolume& volume) {
   std::string text = core::Printable(volume.slices[0].header.description, 80);
   AddName(text, volume.part);
-  return text + (text.empty() ? "" : ": ") + std::to_string(volume.slices.size()) +
-         (volume.slices.size() == 1 ? " slice" : " slices");
+  AddName(text, "slices: " + std::to_string(volume.slices.size()));
+  return text;
 }
 
 core::Result<std::size_t> ChooseVolume(std::span<const DicomVolume> volumes, int number, std::string& note) {

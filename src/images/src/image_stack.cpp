@@ -59,14 +59,28 @@ std::string JoinLayers(const DecodedFile& file, LabelVolume& volume) {
     if (label == 0 || sizes[segment] < sizes[static_cast<std::size_t>(label - 1)])
       label = static_cast<std::int32_t>(segment + 1);
   });
-  for (std::size_t segment = 0; segment < file.names.size(); ++segment)
+  for (std::size_t segment = 0; segment < file.names.size(); ++segment) {
     volume.names.emplace_back(file.names[segment].name, static_cast<int>(segment + 1));
+    if (file.names[segment].code[0] != '\0')
+      volume.codes.emplace_back(file.names[segment].code, static_cast<int>(segment + 1));
+  }
   return fault;
 }
 
 core::Result<LabelVolume> ReadLabelFile(const fs::path& path, Links links) {
   auto decoded = DecodeAlone(path, kMostVoxels * SampleBytes(SampleKind::kFloat32), links);
-  if (!decoded) return decoded.error();
+  if (!decoded) {
+    const Error& error = decoded.error();
+    const bool is_seg =
+        error.code == ErrorCode::kImageSliceMissing && error.message.find("(SEG)") != std::string::npos;
+    if (!is_seg) return error;
+    return Error{
+        ErrorCode::kImageUnsupported,
+        core::Printable(path.string()) +
+            ": it is a DICOM segmentation (SEG), which is not read as a label map; export it from 3D "
+            "Slicer as .seg.nrrd, or convert it with dcmqi and give its JSON with --names: both keep "
+            "what its segments are called and coded as"};
+  }
   const ImageHeader& header = decoded->header;
   if (header.kind < FileKind::kNifti || (header.channels != 1 && header.is_layered == 0))
     return Undecodable(path, "it is no volume of labels; name a NIfTI, NRRD or MetaImage label map");
@@ -108,7 +122,10 @@ core::Result<LabelVolume> ReadLabelFile(const fs::path& path, Links links) {
                   "resampled by nearest neighbour if at all");
   }
   if (!is_layered) {
-    for (const SegmentName& segment : decoded->names) volume.names.emplace_back(segment.name, segment.label);
+    for (const SegmentName& segment : decoded->names) {
+      volume.names.emplace_back(segment.name, segment.label);
+      if (segment.code[0] != '\0') volume.codes.emplace_back(segment.code, segment.label);
+    }
   }
   return volume;
 }

@@ -62,7 +62,8 @@ bool IsSane(const ImportReply& reply, const ImportLimits& limits) {
   if (reply.version != kImportVersion || !IsTerminated(reply.why, sizeof(reply.why))) return false;
   if (reply.header.content > kLastDicomContent) return false;
   for (const SegmentName& name : reply.names) {
-    if (!IsTerminated(name.name, sizeof(name.name)) || name.label < 0 || name.layer >= kMostLayers)
+    if (!IsTerminated(name.name, sizeof(name.name)) || !IsTerminated(name.code, sizeof(name.code)) ||
+        name.label < 0 || name.layer >= kMostLayers)
       return false;
   }
   if (reply.code == 0) return IsSane(reply.header, limits);

@@ -14,7 +14,7 @@
 
 namespace trocar::images {
 
-inline constexpr std::uint32_t kImportVersion = 5;
+inline constexpr std::uint32_t kImportVersion = 6;
 inline constexpr int kImportSocket = 3;             // descriptor in the reader
 inline constexpr int kExitOutOfMemory = 40;         // exit status of the reader
 inline constexpr std::size_t kMostDescriptors = 3;  // of one request
@@ -135,6 +135,8 @@ struct ImageHeader {
 /// Name of a label, as 3D Slicer's NRRD and TotalSegmentator's NIfTI files have them.
 struct SegmentName {
   char name[56] = {};
+  char code[40] =
+      {};  ///< what it is in SNOMED, as LabelVolume::codes has it; empty where the file does not say
   std::int32_t label = 0;
   std::uint32_t layer = 0;  ///< in which channel, where the file is layered
 };

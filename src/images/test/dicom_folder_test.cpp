@@ -193,7 +193,7 @@ TEST_F(MixedFolder, PhasesOfOneSeriesAreChosenByNumber) {
       "V");
   const std::string asked = OpenText();
   EXPECT_THAT(asked, HasSubstr("E-IMG-006"));
-  EXPECT_THAT(asked, HasSubstr("1 (CT, acquisition 1: 6 slices); 2 (CT, acquisition 2: 6 slices)"));
+  EXPECT_THAT(asked, HasSubstr("1 (CT, acquisition 1, slices: 6); 2 (CT, acquisition 2, slices: 6)"));
   ImageSeriesOptions options;
   options.series = 1;
   ExpectCt(options);
@@ -336,7 +336,7 @@ TEST_F(MixedFolder, ReadsEnhancedCtOfManyFrames) {
   }
   Write("enhanced", MakeDicom(EnhancedFields(frames)));
   EXPECT_THAT(OpenText(), HasSubstr("E-IMG-006"));
-  EXPECT_THAT(OpenText(), HasSubstr("2 (CT, temporal position 2: 6 slices)"));
+  EXPECT_THAT(OpenText(), HasSubstr("2 (CT, temporal position 2, slices: 6)"));
   ImageSeriesOptions options;
   options.series = 1;
   ExpectCt(options);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace trocar::images {
 namespace {
@@ -91,6 +92,23 @@ TEST(OrderDicomSlices, RefusesATiltedGantry) {
   auto slices = MakeSlices(6, 2);
   for (int i = 0; i < 6; ++i) slices[i].header.origin[1] = 0.3 * i;
   EXPECT_EQ(OrderDicomSlices(slices).error().code, ErrorCode::kImageSeriesUneven);
+  // as a scanner writes it: slices tilted about the body's cross axis, one behind the other along the table
+  const double tilt = 15 * std::numbers::pi / 180;
+  slices = MakeSlices(6, 2);
+  for (int i = 0; i < 6; ++i) {
+    ImageHeader& header = slices[static_cast<std::size_t>(i)].header;
+    const double down[3] = {0, std::cos(tilt), std::sin(tilt)},
+                 normal[3] = {0, -std::sin(tilt), std::cos(tilt)};
+    for (int k = 0; k < 3; ++k)
+      header.direction[1][k] = down[k], header.direction[2][k] = normal[k],
+      header.origin[k] = k == 2 ? 2.0 * i : 0;
+  }
+  const auto tilted = OrderDicomSlices(slices);
+  EXPECT_EQ(tilted.error().code, ErrorCode::kImageSeriesUneven);
+  EXPECT_THAT(tilted.error().message, HasSubstr("as a gantry tilted by 15 degrees leaves them"));
+  // further than any gantry goes
+  for (int i = 0; i < 6; ++i) slices[static_cast<std::size_t>(i)].header.origin[1] = -4.0 * i;
+  EXPECT_THAT(OrderDicomSlices(slices).error().message, testing::Not(HasSubstr("gantry")));
 }
 
 TEST(OrderDicomSlices, RefusesMixtures) {

@@ -179,7 +179,7 @@ TEST(SplitVolumes, ALocalizerInTheSeriesIsNoVolume) {
   const auto chosen = ChooseVolume(volumes, 0, note);
   ASSERT_TRUE(chosen.ok()) << chosen.error().Text();
   EXPECT_EQ(*chosen, 1u);
-  EXPECT_THAT(note, HasSubstr("it alone is a volume; beside it: 1 (localizer: 2 slices)"));
+  EXPECT_THAT(note, HasSubstr("it alone is a volume; beside it: 1 (localizer, slices: 2)"));
 }
 
 TEST(SplitVolumes, SizesAndOrientationsAreVolumesOfTheirOwn) {
@@ -234,7 +234,7 @@ TEST(ChooseVolume, AsksWhereSeveralCouldBeMeant) {
   EXPECT_EQ(asked.error().code, ErrorCode::kImageSeriesMixed);
   EXPECT_THAT(
       asked.error().message,
-      HasSubstr("1 (acquisition 1: 24 slices); 2 (acquisition 2: 24 slices); choose one with --series"));
+      HasSubstr("1 (acquisition 1, slices: 24); 2 (acquisition 2, slices: 24); choose one with --series"));
   EXPECT_EQ(*ChooseVolume(volumes, 2, note), 1u);
   EXPECT_EQ(*ChooseVolume(volumes, volumes[1].id, note), 1u);
   EXPECT_EQ(note, "") << "a person chose";

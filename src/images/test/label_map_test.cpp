@@ -16,6 +16,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/images/image_series.h"
 #include "trocar/images/image_stack.h"
+#include "trocar_test/made_images.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::images {
@@ -253,6 +254,52 @@ TEST_F(LabelMap, TakesOneSegmentOfAnOlderWriter) {
   ASSERT_TRUE(read.ok()) << read.error().Text();
   EXPECT_EQ(read->names, (std::vector<std::pair<std::string, int>>{{"li\\ver", 1}}));
   EXPECT_EQ(read->labels[7], 1);
+}
+
+TEST_F(LabelMap, SaysHowADicomSegmentationIsRead) {
+  test::DicomFields fields;
+  fields.sop_class = "1.2.840.10008.5.1.4.1.1.66.4", fields.modality = "SEG";
+  const auto read = Read("seg.dcm", test::MakeDicom(fields));
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.error().code, ErrorCode::kImageUnsupported);
+  EXPECT_THAT(read.error().message, HasSubstr("export it from 3D Slicer as .seg.nrrd"));
+}
+
+// 3D Slicer says of each segment what it is in SNOMED
+TEST_F(LabelMap, KeepsTheCodesOfSegments) {
+  const std::string list = "3D Slicer General Anatomy list", organ = "~SCT^123037004^Anatomical Structure";
+  const std::string tags[] = {
+      "TerminologyEntry:" + list + organ + "~SCT^10200004^Liver~^^~Anatomic codes - DICOM master list~^^~^^|",
+      "Segmentation.Status:inprogress|TerminologyEntry:" + list +
+          "~SRT^T-D000A^Anatomical Structure~SRT^T-71000^Kidney~SRT^G-A100^Right~list~^^~^^|",
+      "TerminologyEntry:" + list +
+          "~SCT^49755003^Morphologically Altered "
+          "Structure~SCT^108369006^Neoplasm~^^~list~SCT^10200004^Liver~^^"};
+  const auto with_tags = [&](const char* layer) {
+    std::string text;
+    for (int i = 0; i < 3; ++i) {
+      const std::string segment = "Segment" + std::to_string(i);
+      text += segment + "_Name:=Segment_" + std::to_string(i + 1) + "\n" + segment +
+              "_LabelValue:=" + std::to_string(i + 1) + "\n" + segment + "_Layer:=" + layer + "\n" + segment +
+              "_Tags:=" + tags[i] + "\n";
+    }
+    return text;
+  };
+  const std::vector<std::pair<std::string, int>> codes = {
+      {"10200004", 1}, {"T-71000 G-A100", 2}, {"108369006 @10200004", 3}};
+  const std::vector<double> layers(2 * kX * kY * kZ, 1.0);
+  const auto layered = Read("layers.nrrd", FormatLayers(2, with_tags("1"), layers));
+  ASSERT_TRUE(layered.ok()) << layered.error().Text();
+  EXPECT_EQ(layered->codes, codes);
+  const auto bad =
+      Read("bad.nrrd", FormatLayers(2,
+                                    "Segment0_Name:=a\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+                                    "Segment0_Tags:=TerminologyEntry:a~SCT^1^b~FMA^7197^Liver~^^\n"
+                                    "Segment1_Name:=b\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n"
+                                    "Segment1_Tags:=TerminologyEntry:a~b~SCT^10200004\\n;x^Liver\n",
+                                    layers));
+  ASSERT_TRUE(bad.ok()) << bad.error().Text();
+  EXPECT_TRUE(bad->codes.empty()) << "another scheme, and what is no code";
 }
 
 TEST_F(LabelMap, RefusesLayersThatSayNothing) {

@@ -36,7 +36,7 @@ std::string Number(const char* format, double value) {
 
 RehearsalSeries Describe(const images::ListedSeries& listed) {
   RehearsalSeries shown;
-  shown.title = listed.description;
+  shown.title = core::TranslateComposed(listed.description);
   shown.about = listed.format + ", " + core::TranslateCount("{1} slice", "{1} slices", listed.slices) + ", " +
                 std::to_string(listed.width) + " \u00d7 " + std::to_string(listed.height);
   if (listed.pixel_mm > 0 && listed.slice_mm > 0) {
@@ -365,9 +365,9 @@ void RehearsalPresenter::CheckLabels() {
   labels_.reset();
   screen_.ShowOverlay(std::nullopt);
   Run(core::Translate("Looking at the label map"),
-      [this, file = state_.labels, liver = state_.liver, gallbladder = state_.gallbladder, series = *series_](
-          const auto&, const auto&) -> Then {
-        auto map = ReadLabelMap(file, liver, gallbladder, series);
+      [this, file = state_.labels, liver = state_.liver, gallbladder = state_.gallbladder, series = *series_,
+       slices = state_.series, opening = state_.options](const auto&, const auto&) -> Then {
+        auto map = ReadLabelMap(file, liver, gallbladder, series, slices, opening);
         return [this, file, map = std::move(map)]() mutable {
           if (file == state_.labels && state_.source == OrganSource::kLabels && series_)
             TakeLabels(std::move(map));

@@ -106,6 +106,7 @@ core::Result<RehearsedPatient> BuildFrom(const RehearsalState& state, const fs::
     anatomy::LabelOptions options;
     options.labels = state.labels;
     options.liver = state.liver, options.gallbladder = state.gallbladder;
+    options.images = state.series, options.opening = state.options;
     options.stop = stop;
     report = anatomy::BuildPatientFromLabels(options, progress);
   } else {
@@ -127,24 +128,34 @@ core::Result<RehearsedPatient> BuildFrom(const RehearsalState& state, const fs::
 }  // namespace
 
 core::Result<LabelMap> ReadLabelMap(const fs::path& file, int liver, int gallbladder,
-                                    const images::ImageSeriesInfo& series) {
+                                    const images::ImageSeriesInfo& series, const fs::path& slices,
+                                    const images::ImageSeriesOptions& opening) {
   auto volume = images::ReadLabelVolume(file);
   if (!volume.ok()) return volume.error();
   LabelMap map;
   map.choices = ListChoices(*volume);
   anatomy::LabelOptions options;
   options.liver = liver, options.gallbladder = gallbladder;
-  const auto found = anatomy::FindLabels(*volume, options);
+  anatomy::LabelDensities densities;
+  if (!slices.empty() && anatomy::HoldsHounsfieldUnits(series)) {
+    // what cannot be measured speaks neither for nor against a label; that the map is of other images is said below
+    if (const auto opened = images::ImageSeries::Open(slices, opening); opened.ok()) {
+      if (auto measured = anatomy::MeasureDensities(*volume, *opened); measured.ok())
+        densities = std::move(*measured);
+    }
+  }
+  const auto found = anatomy::FindLabels(*volume, options, densities);
   if (found.ok()) {
     map.liver = found->liver, map.gallbladder = found->gallbladder;
     anatomy::JoinParts(*found, *volume);
   } else {
     // what FindLabels says names options of the command line
-    map.problem = Error{found.error().code,
-                        "which labels of this map are liver and gallbladder is not certain by their names, "
-                        "their numbers, sizes and "
-                        "places; say which label is which. A map without a gallbladder, as after its removal "
-                        "or of the chest, is of no use here: take another one"};
+    map.problem = Error{
+        found.error().code,
+        "which labels of this map are liver and gallbladder is not certain by their names, "
+        "their numbers, sizes, "
+        "places and densities; say which label is which. A map without a gallbladder, as after its removal "
+        "or of the chest, is of no use here: take another one"};
     map.liver = liver, map.gallbladder = gallbladder;
   }
   auto aligned = images::AlignLabels(std::move(*volume), series);

@@ -213,6 +213,7 @@ struct DicomFields {
   std::string times;          ///< elements of group 8 between the instance and the modality, as bytes
   std::string scanning;       ///< elements of group 18, as bytes
   std::string more;           ///< elements after group 20, as bytes
+  std::string padding;        ///< elements behind Pixel Representation, as bytes
   std::string palette;        ///< elements before the pixels, as bytes
   std::string dimensions;     ///< in place of Rows and Columns
   std::string pixels;         ///< in place of Samples(columns, rows, 1)
@@ -248,7 +249,7 @@ inline std::string MakeDicom(const DicomFields& f) {
                                : f.dimensions;
   if (!f.spacing.empty()) file += Element(0x28, 0x30, "DS", f.spacing);
   file += number(0x28, 0x100, f.allocated) + number(0x28, 0x101, f.stored) + number(0x28, 0x102, f.high) +
-          number(0x28, 0x103, f.is_signed);
+          number(0x28, 0x103, f.is_signed) + f.padding;
   if (!f.window.empty()) {
     const auto comma = f.window.find(',');
     file += Element(0x28, 0x1050, "DS", f.window.substr(0, comma)) +

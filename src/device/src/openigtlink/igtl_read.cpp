@@ -98,6 +98,22 @@ PoseResult MakePose(const std::array<float, 7>& numbers, math::Pose& pose) noexc
   return {true};
 }
 
+/// A place [mm] and a quaternion's x, y and z: w is what makes its length 1, and never negative, as the reference library has it
+/// (igtlPositionMessage.cxx, UnpackContent). Longer than 1, it belongs to no rotation; the library takes none then.
+PoseResult MakePose(const std::array<float, 6>& numbers, math::Pose& pose) noexcept {
+  // numbers of the wrong byte order are often next to nothing, and would pass for no rotation
+  constexpr float kLeast = 1e-30f;
+  const bool is_tiny = std::any_of(numbers.begin(), numbers.end(),
+                                   [](float number) { return number != 0 && std::fabs(number) < kLeast; });
+  if (is_tiny) return {false, IgtlFault::kNumbers, {}};
+  std::array<float, 7> all;
+  std::copy(numbers.begin(), numbers.end(), all.begin());
+  double square = 0;
+  for (std::size_t i = 3; i < numbers.size(); ++i) square += double{numbers[i]} * numbers[i];
+  all[6] = static_cast<float>(std::sqrt(std::max(0.0, 1.0 - square)));
+  return MakePose(all, pose);
+}
+
 template <std::size_t kCount>
 PoseResult ReadPose(std::string_view bytes, math::Pose& pose) noexcept {
   std::array<float, kCount> numbers = ReadFloats<kCount>(bytes);
@@ -120,7 +136,8 @@ constexpr std::array<Layout, 4> kLayouts = {{{"TRANSFORM", 48, 0, false, false},
                                              {"TDATA", kToolSize, kToolPoseAt, true, false},
                                              {"POSITION", 28, 0, false, true},
                                              {"QTDATA", 50, kToolPoseAt, true, true}}};
-constexpr std::size_t kPlaceSize = 12;  // of a POSITION without its quaternion
+constexpr std::size_t kPlaceSize = 12;          // of a POSITION without its quaternion
+constexpr std::size_t kShortPositionSize = 24;  // of one with the quaternion's first three numbers
 
 const Layout* FindLayout(std::string_view type) noexcept {
   const auto found = std::find_if(kLayouts.begin(), kLayouts.end(),
@@ -258,19 +275,22 @@ void IgtlReader::ReadBody(const Sink& sink) {
     ++counts_.messages;
     return;
   }
-  if (layout.has_tools ? body.size() % layout.step != 0 : body.size() != layout.step) {
+  const bool is_short = !layout.has_tools && layout.has_quaternion && body.size() == kShortPositionSize;
+  const std::size_t step = is_short ? kShortPositionSize : layout.step;
+  if (layout.has_tools ? body.size() % step != 0 : body.size() != step) {
     refuse(layout.has_quaternion && body.size() == kPlaceSize ? IgtlFault::kNoRotation : IgtlFault::kSize,
            {body.size()});
     return;
   }
   bool is_good = true;
-  for (; !body.empty(); body.remove_prefix(layout.step)) {
+  for (; !body.empty(); body.remove_prefix(step)) {
     IgtlPose tool;
     tool.name = layout.has_tools ? ReadName(body, 0, kNameSize) : device;
     IgtlSeen* seen = See(type, tool.name);
     const std::string_view bytes = body.substr(layout.pose_at);
-    const PoseResult result =
-        layout.has_quaternion ? ReadPose<7>(bytes, tool.pose) : ReadPose<12>(bytes, tool.pose);
+    const PoseResult result = is_short                ? ReadPose<6>(bytes, tool.pose)
+                              : layout.has_quaternion ? ReadPose<7>(bytes, tool.pose)
+                                                      : ReadPose<12>(bytes, tool.pose);
     if (!result.is_good) {
       is_good = false;
       Refuse(seen, result.fault, {}, result.numbers);

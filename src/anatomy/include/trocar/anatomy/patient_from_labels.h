@@ -11,21 +11,25 @@
 #include "trocar/anatomy/build_patient.h"
 #include "trocar/anatomy/structure.h"
 #include "trocar/core/result.h"
+#include "trocar/images/image_series.h"
 #include "trocar/images/image_stack.h"
 
 namespace trocar::anatomy {
 
 struct LabelOptions {
-  std::filesystem::path labels;     ///< label map or folder of masks, as ReadLabelVolume reads
-  std::filesystem::path output;     ///< patient folder to write; empty: nothing is written
-  std::filesystem::path names;      ///< table of labels, in place of the file's own names; empty: none
-  int liver = 0;                    ///< label, 1 to kLargestLabel; 0: found by FindLabels
-  int gallbladder = 0;              ///< likewise
-  double spacing_mm = 1.0;          ///< of the volume's lattice, 0.4 to 4
-  double gap_mm = 0.7;              ///< left free around the gallbladder
-  bool is_mirrored = false;         ///< left and right of the map are swapped: take it the other way round
-  bool takes_largest_part = false;  ///< also where a large part does not hang together with it
-  std::stop_token stop;             ///< gives up before anything is written: kCancelled
+  std::filesystem::path labels;  ///< label map or folder of masks, as ReadLabelVolume reads
+  std::filesystem::path output;  ///< patient folder to write; empty: nothing is written
+  std::filesystem::path names;   ///< table of labels, in place of the file's own names; empty: none
+  std::filesystem::path
+      images;  ///< the series that the labels were drawn on, for their densities; empty: none
+  images::ImageSeriesOptions opening;  ///< of `images`
+  int liver = 0;                       ///< label, 1 to kLargestLabel; 0: found by FindLabels
+  int gallbladder = 0;                 ///< likewise
+  double spacing_mm = 1.0;             ///< of the volume's lattice, 0.4 to 4
+  double gap_mm = 0.7;                 ///< left free around the gallbladder
+  bool is_mirrored = false;            ///< left and right of the map are swapped: take it the other way round
+  bool takes_largest_part = false;     ///< also where a large part does not hang together with it
+  std::stop_token stop;                ///< gives up before anything is written: kCancelled
 };
 
 /// Which labels of a map are what, and how that was found.
@@ -42,12 +46,25 @@ struct OrganLabels {
       taken;  ///< liver and gallbladder, then the others that are used, each with its reason
 };
 
+/// Median of the grey values in which each label lies [HU], of labels with voxels enough to tell.
+using LabelDensities = std::map<int, double>;
+
+/// Whether a series is a CT in Hounsfield units: grey values that go down to air. Those of magnetic resonance and photographs do not.
+bool HoldsHounsfieldUnits(const images::ImageSeriesInfo& series);
+
+/// Lays the labels over a CT and measures them, 3 mm from slice to slice.
+/// \return empty where the series holds no Hounsfield units; kLabelsMismatch where the labels were drawn on other images; or why slices
+///         cannot be read
+core::Result<LabelDensities> MeasureDensities(const images::LabelVolume& volume,
+                                              const images::ImageSeries& series);
+
 /// Which labels are the organs and their neighbours, the one decision for every reader of a label map:
 /// what `options` names; else the map's names, where it has any (an unknown name is asked for, never replaced by a number); else the
-/// numbers, where all labels fit one scheme of label_schemes.cpp and sizes and places agree (label_evidence.h). Where several schemes
+/// numbers, where all labels fit one scheme of label_schemes.cpp and sizes, places and densities agree (label_evidence.h). Where several schemes
 /// fit so, they must agree on both organs.
 /// \return kLabelsMismatch where that is not certain: it says what is seen, and asks for --names, --liver or --gallbladder
-core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options);
+core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options,
+                                     const LabelDensities& densities = {});
 
 /// Gives the parts of an organ (`joined`) the organ's label.
 void JoinParts(const OrganLabels& organs, images::LabelVolume& volume);

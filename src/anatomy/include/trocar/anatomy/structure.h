@@ -66,6 +66,15 @@ const char* NameOf(Structure structure) noexcept;
 /// \param name  UTF-8, or Latin-1
 Structure FindStructure(std::string_view name);
 
+/// What a code of SNOMED means, of SNOMED CT or of its predecessor SRT that DICOM had before: "10200004" and "T-62000" are the liver. A
+/// side may stand behind it ("64033007 24028007": the right kidney), or the organ that something has changed ("108369006 @10200004": a
+/// neoplasm of the liver).
+/// \return kUnknown for codes that the table has not
+Structure FindCodedStructure(std::string_view code);
+
+/// Whether a code says only that it is some part of a body, as 3D Slicer's "Tissue" does of a segment that nobody named.
+bool IsGenericCode(std::string_view code);
+
 /// Whether a program made that name up for a label that nobody named: "Segment_1", "Label 3", "7".
 bool IsPlaceholder(std::string_view name);
 

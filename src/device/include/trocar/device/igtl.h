@@ -70,7 +70,7 @@ inline constexpr std::size_t kMostIgtlTools = 256;
 inline constexpr std::size_t kMostIgtlSeen = 24;
 
 /// Takes a stream of messages apart; keeps at most one small message and never room for what a header promises.
-/// Reads TRANSFORM and TDATA, POSITION and QTDATA with their quaternions.
+/// Reads TRANSFORM and TDATA, POSITION and QTDATA with their quaternions (a POSITION's of three or four numbers).
 class IgtlReader {
  public:
   using Sink = std::function<void(const IgtlPose&)>;

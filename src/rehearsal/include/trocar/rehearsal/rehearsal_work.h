@@ -35,9 +35,12 @@ struct LabelMap {
 
 /// Reads a map and lays it over the series.
 /// \param liver, gallbladder  labels; 0: found as anatomy::FindLabels does
+/// \param slices, opening     where the series lies, for the labels' densities, and how it is opened; empty: they are not looked at
 /// \return the error of reading, or kLabelsMismatch where it was drawn on other images
 core::Result<LabelMap> ReadLabelMap(const std::filesystem::path& file, int liver, int gallbladder,
-                                    const images::ImageSeriesInfo& series);
+                                    const images::ImageSeriesInfo& series,
+                                    const std::filesystem::path& slices = {},
+                                    const images::ImageSeriesOptions& opening = {});
 
 /// Identifies what a patient is built from: it changes with the files. Empty where one cannot be read.
 std::string Fingerprint(const RehearsalState& state, const std::filesystem::path& contours);
