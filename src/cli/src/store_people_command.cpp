@@ -44,7 +44,7 @@ void AddAdd(CLI::App& trainee, const Options& options, Outcome& outcome) {
         return kept;
     }
     options->is_json ? PrintStoreJson({{"pseudonym", JsonText(person->pseudonym)}, {"role", arguments->role}})
-                     : Print(Shown(person->pseudonym) + "\n");
+                     : PrintLine(Shown(person->pseudonym));
     return {};
   });
 }

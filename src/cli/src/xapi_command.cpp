@@ -50,9 +50,9 @@ core::Status Queue(const XapiArguments& arguments) {
 
 core::Status List(const XapiArguments& arguments) {
   const report::XapiQueue queue = OpenQueue(arguments);
-  for (const report::XapiStatement& statement : queue.List()) std::printf("%s\n", statement.json.c_str());
+  for (const report::XapiStatement& statement : queue.List()) PrintLine(statement.json);
   for (const auto& path : queue.ListRefused())
-    std::fprintf(stderr, "%s\n", TranslateWith("refused: {1}", {path.string()}).c_str());
+    PrintErrorLine(TranslateWith("refused: {1}", {path.string()}));
   return {};
 }
 
@@ -66,9 +66,7 @@ core::Status Deliver(const XapiArguments& arguments) {
     settings.credentials = std::move(*credentials);
   }
   settings.give_up_seconds = arguments.give_up_seconds;
-  settings.on_trouble = [](const std::string& text) {
-    std::fprintf(stderr, "%s\n", TranslateComposed(text).c_str());
-  };
+  settings.on_trouble = [](const std::string& text) { PrintErrorLine(TranslateComposed(text)); };
   report::XapiQueue queue = OpenQueue(arguments);
   const auto delivered = report::DeliverQueue(queue, *endpoint, settings);
   if (!delivered.ok()) return delivered.error();

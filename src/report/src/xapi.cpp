@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/user_folder.h"
 
@@ -249,7 +250,7 @@ core::Result<std::vector<XapiStatement>> MakeStatements(const AttemptReport& rep
                        {"platform", "Trocar" + (facts.program.empty() ? "" : " " + facts.program)},
                        {"language", "en"}};
     if (const std::string time = AddSeconds(facts.started, after); !time.empty()) json["timestamp"] = time;
-    statements.push_back({id, json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)});
+    statements.push_back({id, core::FormatJson(json)});
   };
   add("attempted", 0, {});
   ordered_json result = {{"completion", report.is_completed}, {"duration", FormatPeriod(report.seconds)}};
