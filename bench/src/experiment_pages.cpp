@@ -4,6 +4,7 @@
 
 #include "page_style.h"
 #include "trocar/bench/experiment.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/markup.h"
 #include "trocar/core/text_table.h"
 #include "trocar/core/version.h"
@@ -101,7 +102,7 @@ std::string FormatExperimentsJson(std::span<const Experiment> experiments, const
   }
   const nlohmann::ordered_json json = {
       {"version", core::VersionText()}, {"machine", machine}, {"experiments", std::move(list)}};
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return core::FormatJson(json, 2) + "\n";
 }
 
 std::string FormatExperimentPage(const Experiment& experiment, const std::string& machine) {

@@ -8,6 +8,7 @@
 #include "page_style.h"
 #include "trocar/bench/svg_plot.h"
 #include "trocar/bench/validity_study.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/markup.h"
 #include "trocar/core/version.h"
 #include "trocar/training/metric_definition.h"
@@ -248,7 +249,7 @@ std::string FormatStudyJson(const StudyOptions& options, const std::vector<TaskF
                             {"seed", options.seed},
                             {"disclaimer", std::string(training::MetricsDisclaimer())},
                             {"tasks", std::move(tasks)}};
-  return all.dump(2) + "\n";
+  return core::FormatJson(all, 2) + "\n";
 }
 
 std::string FormatStudyCsv(const std::vector<TaskFindings>& findings) {
@@ -311,7 +312,7 @@ std::string FormatValidityJson(const StudyOptions& options, const std::vector<Ta
         {"spread", options.spread},
         {"seed", options.seed}}},
       {"tasks", std::move(tasks)}};
-  return all.dump(1) + "\n";
+  return core::FormatJson(all, 1) + "\n";
 }
 
 }  // namespace trocar::bench

@@ -20,6 +20,7 @@
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
 #include "trocar/record/trace.h"
@@ -208,9 +209,9 @@ core::Result<std::vector<StudyAttempt>> ReadBefore(const StudyOptions& options) 
   std::error_code failure;
   fs::create_directories(options.folder, failure);
   const fs::path head = options.folder / "study.json", file = options.folder / "attempts.jsonl";
-  const std::string mine = DescribeStudy(options).dump(2) + "\n";
+  const std::string mine = core::FormatJson(DescribeStudy(options), 2) + "\n";
   std::vector<StudyAttempt> before;
-  if (fs::exists(head)) {
+  if (fs::exists(head, failure)) {
     const auto theirs = core::ReadFile(head);
     if (!theirs.ok()) return theirs.error();
     if (*theirs != mine) {
@@ -313,7 +314,7 @@ core::Result<std::vector<StudyAttempt>> RunStudy(
         stops.store(true);
         return;
       }
-      out << ToJson(*attempt).dump() << '\n' << std::flush;
+      out << core::FormatJson(ToJson(*attempt)) << '\n' << std::flush;
       if (!out) {
         error = core::Error{core::ErrorCode::kFileUnwritable,
                             (options.folder / "attempts.jsonl").string() +

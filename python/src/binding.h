@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "guard.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/core/result.h"
 #include "trocar/math/pose.h"
 
@@ -22,7 +23,9 @@ namespace py = pybind11;
 /// Leaves a function of the module as trocar.Error.
 class Failure : public std::exception {
  public:
-  explicit Failure(core::Error error) : error_(std::move(error)), text_(error_.Text()) {}
+  /// Names of files and fields in its message are printable within their line: a traceback goes to a terminal.
+  explicit Failure(core::Error error)
+      : error_{error.code, core::PrintableLine(error.message)}, text_(error_.Text()) {}
   const char* what() const noexcept override { return text_.c_str(); }
   const core::Error& Get() const { return error_; }
 

@@ -83,6 +83,16 @@ class State(unittest.TestCase):
         self.assertEqual(simulation.hash(), before)
 
 
+class Texts(unittest.TestCase):
+    def test_names_in_errors_stay_within_their_line(self):
+        for name in ("x\nFORGED: all is well", "x\x1b[2J", "x\u202e", "x\x9b"):
+            for make in (trocar.Simulation, trocar.Environment, lambda scene: trocar.Simulation("cholecystectomy", patient=scene)):
+                with self.assertRaises(trocar.Error) as caught:
+                    make(name)
+                self.assertTrue(str(caught.exception).isprintable(), repr(str(caught.exception)))
+                self.assertTrue(caught.exception.message.isprintable())
+
+
 class ReadOuts(unittest.TestCase):
     def test_forces_and_contacts_say_which_organ(self):
         simulation = trocar.Simulation(RETRACTION, seed=0)

@@ -211,7 +211,7 @@ class Environment(Taken, _Env):
         return False
 
     def __str__(self) -> str:
-        return f"<trocar.Environment {self.task}>"
+        return f"<trocar.Environment {_printable(self.task)}>"
 
 
 @one_at_a_time
@@ -374,7 +374,12 @@ class VectorEnvironment(Taken, _VectorEnv):
         return False
 
     def __str__(self) -> str:
-        return f"<trocar.VectorEnvironment {self.task} x {self.num_envs}>"
+        return f"<trocar.VectorEnvironment {_printable(self.task)} x {self.num_envs}>"
+
+
+def _printable(text: str) -> str:
+    """A name of a file within a line: what steers a terminal becomes visible, as in repr()."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def _masked(values: dict[str, Any], has: np.ndarray) -> dict[str, Any]:

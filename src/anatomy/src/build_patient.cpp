@@ -11,6 +11,7 @@
 #include "trocar/contours/control_points.h"
 #include "trocar/contours/overlay.h"
 #include "trocar/core/console.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/core/translate.h"
 #include "trocar/images/png_file.h"
 
@@ -144,7 +145,8 @@ std::string FormatSurroundings(const BuildReport& report) {
     }
     text += core::FormatShownTable(std::move(rows));
   }
-  for (const std::string& sentence : report.sinking) text += core::TranslateComposed(sentence) + "\n";
+  for (const std::string& sentence : report.sinking)
+    text += core::PrintableLine(core::TranslateComposed(sentence)) + "\n";
   for (const Port& port : report.patient.ports) {
     const auto mm = [](double metres) {
       return std::to_string(std::lround(1000 * metres));
@@ -152,7 +154,7 @@ std::string FormatSurroundings(const BuildReport& report) {
     text += core::TranslateWith("Port for {1} at {2}, {3}, {4} mm (left, cranial, anterior).",
                                 {core::Translate(roles::SpokenName(NameOf(port.use))), mm(port.position.x),
                                  mm(port.position.y), mm(port.position.z)}) +
-            " " + core::TranslatePieces(port.reason) + "\n";
+            " " + core::PrintableLine(core::TranslatePieces(port.reason)) + "\n";
   }
   if (const auto& table = report.patient.table) {
     text += core::TranslateWith("Table {1} degrees head up, {2} degrees right side up.",

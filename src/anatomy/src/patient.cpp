@@ -13,6 +13,7 @@
 #include "patient_frame.h"
 #include "patient_surroundings.h"
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_file.h"
@@ -78,13 +79,15 @@ void StateRole(const Thing& thing, nlohmann::ordered_json& json) {
 /// One top-level field a line, long lists of numbers on one line.
 std::string FormatPatient(const Patient& patient) {
   using Json = nlohmann::ordered_json;
-  std::string text =
-      "{\n\"format\": \"" + std::string(kFormat) + "\",\n\"version\": " + std::to_string(kVersion) +
-      ",\n\"name\": " + Json(patient.name).dump() + ",\n\"provenance\": " + Json(patient.provenance).dump() +
-      ",\n\"frame\": \"LPS\",\n\"unit\": \"mm\",\n";
+  std::string text = "{\n\"format\": \"" + std::string(kFormat) +
+                     "\",\n\"version\": " + std::to_string(kVersion) +
+                     ",\n\"name\": " + core::FormatJson(Json(patient.name)) +
+                     ",\n\"provenance\": " + core::FormatJson(Json(patient.provenance)) +
+                     ",\n\"frame\": \"LPS\",\n\"unit\": \"mm\",\n";
   const auto append_list = [&text](const char* key, const std::vector<Json>& items, bool is_last) {
     text += "\"" + std::string(key) + "\": [";
-    for (std::size_t i = 0; i < items.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + items[i].dump();
+    for (std::size_t i = 0; i < items.size(); ++i)
+      text += (i == 0 ? "\n  " : ",\n  ") + core::FormatJson(items[i]);
     text += is_last ? "]\n" : "],\n";
   };
   std::vector<Json> organs, attachments, tubes, landmarks;
@@ -153,7 +156,7 @@ std::string FormatPatient(const Patient& patient) {
     if (value.is_array()) {
       append_list(key.c_str(), {value.begin(), value.end()}, is_last);
     } else {
-      text += "\"" + key + "\": " + value.dump() + (is_last ? "\n" : ",\n");
+      text += "\"" + key + "\": " + core::FormatJson(value) + (is_last ? "\n" : ",\n");
     }
   }
   return text + "}\n";

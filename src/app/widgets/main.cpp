@@ -18,8 +18,10 @@
 #include "replay_window.h"
 #include "simulator_window.h"
 #include "trocar/centre/centre_window.h"
+#include "trocar/core/console.h"
 #include "trocar/core/log.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/core/simd_choice.h"
 #include "trocar/core/translate.h"
 #include "trocar/editor/contour_window.h"
@@ -280,10 +282,11 @@ class Program {
 
 int main(int argc, char** argv) {
   using namespace trocar;
+  const core::PrintableOutput fence;
   core::UseLanguage(core::FindLocaleFolder());
   const core::Result<presenter::CommandLine> command = presenter::ParseCommandLine(argc, argv);
   if (!command) {
-    std::fprintf(stderr, "%s\n", core::ShownText(command.error()).c_str());
+    core::PrintErrorLine(core::ShownText(command.error()));
     return 2;
   }
   if (command->is_text_only) {
@@ -291,7 +294,7 @@ int main(int argc, char** argv) {
     return EXIT_SUCCESS;
   }
   if (const core::Status level = core::CheckSimdLevel(); !level) {
-    std::fprintf(stderr, "%s\n", core::ShownText(level.error()).c_str());
+    core::PrintErrorLine(core::ShownText(level.error()));
     return 2;
   }
   app::Program program(*command);
@@ -301,11 +304,11 @@ int main(int argc, char** argv) {
                             "no display can be opened: start from a desktop session or set DISPLAY "
                             "or WAYLAND_DISPLAY; without one, "
                             "`trocar simulate` runs the same scene headless"};
-    std::fprintf(stderr, "%s\n", core::ShownText(error).c_str());
+    core::PrintErrorLine(core::ShownText(error));
     return EXIT_FAILURE;
   }
   if (const core::Status found = program.FindStore(); !found.ok()) {
-    std::fprintf(stderr, "%s\n", core::ShownText(found.error()).c_str());
+    core::PrintErrorLine(core::ShownText(found.error()));
     return EXIT_FAILURE;
   }
   core::RemovePartialPathsOnSignals();

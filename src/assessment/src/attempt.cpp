@@ -6,6 +6,7 @@
 
 #include "trocar/core/file_lock.h"
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::assessment {
@@ -113,7 +114,7 @@ core::Result<std::vector<Attempt>> ReadAttempts(const fs::path& path) {
 std::string FormatAttempts(const std::vector<Attempt>& attempts) {
   ordered_json json = {{"format", "trocar-attempts"}, {"version", 1}, {"attempts", ordered_json::array()}};
   for (const Attempt& attempt : attempts) json["attempts"].push_back(AttemptJson(attempt));
-  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return core::FormatJson(json, 1) + "\n";
 }
 
 core::Status AppendAttempt(const fs::path& path, const Attempt& attempt) {

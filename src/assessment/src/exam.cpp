@@ -18,6 +18,7 @@
 #include "signing.h"
 #include "trocar/assessment/preparation.h"
 #include "trocar/core/json_choice.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::assessment {
@@ -118,7 +119,7 @@ std::string NowText() {
 }
 
 std::string DumpCanonical(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+  return core::FormatJson(value) + "\n";
 }
 
 json ExamJson(const ExamSettings& settings, ExamPart part) {
@@ -189,11 +190,11 @@ core::Result<ExamSettings> SealExam(ExamSettings settings) {
 }
 
 std::string FormatExam(const ExamSettings& settings) {
-  return ExamJson(settings, ExamPart::kAll).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return core::FormatJson(ExamJson(settings, ExamPart::kAll), 2) + "\n";
 }
 
 std::string FormatPublishedExam(const ExamSettings& settings) {
-  return ExamJson(settings, ExamPart::kPublished).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  return core::FormatJson(ExamJson(settings, ExamPart::kPublished), 2) + "\n";
 }
 
 core::Result<fs::path> WriteExam(const fs::path& path, const ExamSettings& settings) {

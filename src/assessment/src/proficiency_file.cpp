@@ -6,6 +6,7 @@
 #include "trocar/assessment/proficiency.h"
 #include "trocar/core/json.h"
 #include "trocar/core/json_choice.h"
+#include "trocar/core/json_text.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::assessment {
@@ -158,7 +159,7 @@ std::string FormatProficiency(const Proficiency& proficiency) {
     for (const Grade& grade : proficiency.grades)
       json["grades"].push_back({{"name", grade.name}, {"at_least", grade.at_least}});
   }
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return core::FormatJson(json, 2) + "\n";
 }
 
 core::Result<std::vector<Proficiency>> ListProficiencies() {

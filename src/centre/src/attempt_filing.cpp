@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "trocar/core/file_lock.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/store/keep_attempt.h"
@@ -94,7 +95,7 @@ struct AttemptFiling::Content {
     note.attempt.recording = one.recording.string();
     nlohmann::json outcome = nlohmann::json::object();
     if (one.step.IsSet()) outcome["course"] = {{"course", one.step.course}, {"step", one.step.step}};
-    note.attempt.outcome = outcome.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    note.attempt.outcome = core::FormatJson(outcome);
     std::error_code ignored;
     fs::create_directories(NoteFolder(access.place), ignored);  // what cannot be made cannot be locked
     fs::permissions(NoteFolder(access.place), fs::perms::owner_all, ignored);

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,7 +15,7 @@
 namespace trocar::cli {
 namespace {
 
-void PrintJson(const anatomy::LintReport& report) {
+void PrintForProgram(const anatomy::LintReport& report) {
   nlohmann::ordered_json json;
   json["meshes"] = nlohmann::ordered_json::array();
   for (const anatomy::MeshSummary& mesh : report.meshes) {
@@ -37,7 +36,7 @@ void PrintJson(const anatomy::LintReport& report) {
     json["findings"].push_back({{"code", finding.code}, {"where", finding.where}, {"text", finding.text}});
   }
   // names come from a file and may hold any bytes
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  PrintJson(json);
 }
 
 void PrintForPerson(const anatomy::LintReport& report) {
@@ -49,16 +48,17 @@ void PrintForPerson(const anatomy::LintReport& report) {
                     std::to_string(mesh.self_intersections), ShownNumber(mesh.volume_ml)});
   }
   PrintTable(rows);
-  std::printf("\n");
+  PrintLine();
   PrintLabels(report.labels);
   for (const anatomy::LintFinding& finding : report.findings) {
-    Print(finding.code + "  " + core::PrintableLine(finding.where) + "\n    " +
-          core::PrintableLine(TranslateComposed(finding.text)) + "\n");
+    PrintLine(finding.code + "  " + finding.where);
+    PrintLine("    " + TranslateComposed(finding.text));
   }
   if (report.findings.empty()) {
     Say("No findings.\n");
   } else {
-    Print("\n" + TranslateCount("{1} finding", "{1} findings", report.findings.size()));
+    PrintLine();
+    Print(TranslateCount("{1} finding", "{1} findings", report.findings.size()));
     Say("; docs/patient-check.md explains each code.\n");
   }
 }
@@ -86,7 +86,7 @@ void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome) {
       outcome.status = report.error();
       return;
     }
-    arguments->is_json ? PrintJson(*report) : PrintForPerson(*report);
+    arguments->is_json ? PrintForProgram(*report) : PrintForPerson(*report);
     outcome.has_finding = !report->findings.empty();
   });
 }

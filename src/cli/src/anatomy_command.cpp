@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,7 +44,7 @@ core::Status Build(const BuildArguments& arguments) {
   const core::Result<anatomy::BuildReport> report = anatomy::BuildPatient(options, bar.Follow());
   bar.Finish();
   if (!report) return report.error();
-  Print(anatomy::FormatReport(*report) + "\n" + anatomy::FormatSurroundings(*report));
+  PrintLines(anatomy::FormatReport(*report) + "\n" + anatomy::FormatSurroundings(*report));
   Say("\nWrote {1}\n", arguments.output);
   if (report->overlays > 0) {
     Say("Wrote {1} pictures to check by eye into {2}\n", report->overlays, options.overlays->c_str());
@@ -71,11 +70,12 @@ core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   }
   PrintTable(rows);
   Say("Distance: of mesh and label surface from each other, the largest both ways, and the mesh's mean.\n");
-  Print("\n" + anatomy::FormatSurroundings(*report));
-  std::printf("\n");
+  PrintLines("\n" + anatomy::FormatSurroundings(*report));
+  PrintLine();
   PrintLabels(report->patient.labels);
-  for (const std::string& note : report->notes) Print(TranslateComposed(note) + "\n");
-  Print("\n" + TranslateComposed(report->patient.provenance) + ".\n");
+  for (const std::string& note : report->notes) PrintLine(TranslateComposed(note));
+  PrintLine();
+  PrintLine(TranslateComposed(report->patient.provenance) + ".");
   Say("Wrote {1}\n", options.output);
   return {};
 }

@@ -125,13 +125,13 @@ void PrintForPerson(const std::vector<Completion>& all, bool keeps_tubes) {
     }
   }
   PrintTable(rows);
-  std::printf("\n");
+  PrintLine();
   double sum = 0;
   for (const Completion& one : all) {
     sum += one.variant.probability;
     for (const anatomy::LintFinding& finding : one.findings) {
-      Print(one.folder.string() + ": " + finding.code + "  " + finding.where + "\n    " +
-            TranslateComposed(finding.text) + "\n");
+      PrintLine(one.folder.string() + ": " + finding.code + "  " + finding.where);
+      PrintLine("    " + TranslateComposed(finding.text));
     }
   }
   if (keeps_tubes) {
@@ -174,9 +174,7 @@ core::Status Complete(const CompleteArguments& arguments, Outcome& outcome) {
   }
   const bool keeps_tubes = anatomy::HasSeenTubes(*patient);
   if (arguments.is_json) {
-    std::printf(
-        "%s\n",
-        MakeJson(*planned, keeps_tubes).dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+    PrintJson(MakeJson(*planned, keeps_tubes));
   } else {
     PrintForPerson(*planned, keeps_tubes);
   }

@@ -3,7 +3,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -129,13 +128,13 @@ void PrintPopulation(const anatomy::PopulationReport& report, double seconds) {
   if (!report.seeds_with_findings.empty()) {
     Say("seeds with findings:");
     for (std::size_t i = 0; i < report.seeds_with_findings.size() && i < kNamed; ++i)
-      std::printf(" %llu", static_cast<unsigned long long>(report.seeds_with_findings[i]));
-    std::printf("%s\n", report.seeds_with_findings.size() > kNamed ? " ..." : "");
+      Print(" " + std::to_string(report.seeds_with_findings[i]));
+    PrintLine(report.seeds_with_findings.size() > kNamed ? " ..." : "");
   }
   for (std::size_t i = 0; i < report.failures.size() && i < kNamed; ++i) {
     Say("seed {1}: {2}\n", report.failures[i].first, core::ShownText(report.failures[i].second));
   }
-  std::printf("\n");
+  PrintLine();
   if (!report.variations.empty()) PrintVariations(report.variations);
 }
 

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -74,7 +73,7 @@ void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWi
   PrintTable(rows);
 }
 
-void PrintJson(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
+void PrintForProgram(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
   nlohmann::ordered_json json;
   json["format"] = info.format;
   json["pattern"] = info.pattern;
@@ -99,7 +98,7 @@ void PrintJson(const images::ImageSeriesInfo& info, const images::DisplayWindow&
   }
   json["notes"] = info.notes;
   // names come from a folder and may hold any bytes
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  PrintJson(json);
 }
 
 core::Status Show(ImagesArguments arguments) {
@@ -131,7 +130,7 @@ core::Status Show(ImagesArguments arguments) {
     if (auto status = images::WritePng(arguments.preview, *sheet); !status) return status;
   }
   bar.Finish();
-  arguments.is_json ? PrintJson(info, shown) : PrintForPerson(info, shown);
+  arguments.is_json ? PrintForProgram(info, shown) : PrintForPerson(info, shown);
   if (!arguments.preview.empty() && !arguments.is_json) Say("\nWrote {1}\n", arguments.preview);
   return {};
 }

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -29,7 +28,7 @@ core::Status Measure(const Arguments& arguments) {
   bar.Finish();
   if (!edges) return edges.error();
   if (arguments.is_json) {
-    std::fputs(contours::FormatJson(*edges).c_str(), stdout);
+    PrintLines(contours::FormatJson(*edges));
     return {};
   }
   PrintTable(contours::Tabulate(*edges));

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -87,7 +86,7 @@ core::Status Measure(const std::vector<std::string>& folders, bool is_json) {
     all.push_back({folder, std::move(*measures)});
   }
   if (is_json) {
-    std::printf("%s\n", MakeJson(all).dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+    PrintJson(MakeJson(all));
   } else {
     PrintForPerson(all);
   }

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,7 +32,7 @@ core::Status Rehearse(const Arguments& arguments) {
   bar.Finish();
   if (!organs) return organs.error();
   if (arguments.is_json) {
-    std::fputs(contours::FormatJson(*organs).c_str(), stdout);
+    PrintLines(contours::FormatJson(*organs));
   } else {
     PrintTable(contours::Tabulate(*organs));
   }

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -29,7 +28,7 @@ std::string ListSuites() {
   return core::FormatTable(rows);
 }
 
-void PrintJson(const std::string& suite, const bench::BenchmarkResult& result) {
+void PrintForProgram(const std::string& suite, const bench::BenchmarkResult& result) {
   nlohmann::ordered_json json = {
       {"suite", suite}, {"machine", result.machine.empty() ? bench::DescribeMachine() : result.machine}};
   if (!result.notes.empty()) json["notes"] = result.notes;
@@ -41,12 +40,12 @@ void PrintJson(const std::string& suite, const bench::BenchmarkResult& result) {
   for (const bench::BenchmarkRatio& ratio : result.ratios) {
     json["ratios"].push_back({{"name", ratio.name}, {"value", ratio.value}});
   }
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  PrintJson(json);
 }
 
 void PrintForPerson(const std::string& suite, const bench::BenchmarkResult& result) {
   Say("{1} on {2}\n\n", suite, result.machine.empty() ? bench::DescribeMachine() : result.machine);
-  for (const std::string& note : result.notes) Print(note + "\n");
+  for (const std::string& note : result.notes) PrintLine(note);
   std::vector<std::vector<std::string>> rows = {{"case", "value", "unit"}};
   for (const bench::BenchmarkCase& entry : result.cases) {
     rows.push_back({entry.name, ShownNumber(entry.value), entry.unit == "1" ? "" : entry.unit});
@@ -58,14 +57,14 @@ void PrintForPerson(const std::string& suite, const bench::BenchmarkResult& resu
 
 core::Status Run(const BenchArguments& arguments) {
   if (arguments.is_list) {
-    std::fputs(ListSuites().c_str(), stdout);
+    PrintLines(ListSuites());
     return {};
   }
   for (const bench::BenchmarkSuite& suite : bench::BenchmarkSuites()) {
     if (suite.name != arguments.suite) continue;
     const core::Result<bench::BenchmarkResult> result = suite.run(arguments.options);
     if (!result) return result.error();
-    arguments.is_json ? PrintJson(arguments.suite, *result) : PrintForPerson(arguments.suite, *result);
+    arguments.is_json ? PrintForProgram(arguments.suite, *result) : PrintForPerson(arguments.suite, *result);
     return {};
   }
   return core::Error{core::ErrorCode::kUsage,

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -42,7 +41,7 @@ core::Status MakeKeys(const std::string& name) {
         "warning: {1}.key is not encrypted; whoever reads it can sign in your name. For an encrypted "
         "one delete both files, set TROCAR_KEY_PASSPHRASE or begin at a terminal, and make them again",
         {name});
-    std::fprintf(stderr, "%s\n", warning.c_str());
+    PrintErrorLine(warning);
   }
   return {};
 }
@@ -79,7 +78,7 @@ core::Status Verify(const CertificateArguments& arguments) {
   const auto& exam = verified->exam;
   Say("VERIFIED: signature, recording and outcome are as they were issued\n");
   const auto yes = [](bool is_so) { return Translate(is_so ? "yes" : "no"); };
-  Print(FormatFields(
+  PrintLines(FormatFields(
       {{"exam",
         exam.name + ": " +
             (exam.IsOperation() ? exam.operation : TranslateWith("{1}, level {2}", {exam.task, exam.level}))},
@@ -94,7 +93,7 @@ core::Status Verify(const CertificateArguments& arguments) {
   if (signer.empty())
     Say("Whose key that is, only its owner can tell: compare it with the one that the centre publishes "
         "(--key).\n");
-  Print(WrapText(Translate(assessment::CertificateStatement()), 100, ""));
+  PrintLines(WrapText(Translate(assessment::CertificateStatement()), 100, ""));
   return {};
 }
 

@@ -3,7 +3,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -80,14 +79,14 @@ core::Status Coach(const CoachArguments& arguments) {
                                {"expert_set", reference != nullptr},
                                {"advice", std::move(list)},
                                {"disclaimer", std::string(training::MetricsDisclaimer())}};
-    std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+    PrintJson(json);
     return {};
   }
   if (advice.empty()) Say("Nothing stands out against what the coach knows of this task.\n");
   for (std::size_t i = 0; i < advice.size(); ++i) {
     const training::Advice& one = advice[i];
-    Print(std::to_string(i + 1) + ". " + TranslateComposed(one.sentence) +
-          (one.look.empty() ? "" : " " + TranslateComposed(one.look)) + "\n");
+    PrintLine(std::to_string(i + 1) + ". " + TranslateComposed(one.sentence) +
+              (one.look.empty() ? "" : " " + TranslateComposed(one.look)));
     Say("   Why: {1}\n   Practise: {2} (trocar play expert --task {3} shows it)\n",
         TranslateComposed(one.why), TranslateComposed(one.practise), one.exercise);
     Say("   Rule {1}: {2} {3}, threshold {4}.\n", one.rule, ShownNumber(one.numbers.deviation, 3),

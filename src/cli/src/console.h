@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "trocar/core/console.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/printable_output.h"
 #include "trocar/core/progress_bar.h"
 #include "trocar/core/text_table.h"
@@ -21,10 +22,19 @@ inline std::string ShownName(std::string_view key) {
   return core::Translate(name);
 }
 
+/// For programs. What is printed so is JSON, whatever bytes its texts hold.
+template <class Json>
+void PrintJson(const Json& json) {
+  core::PrintJsonText(core::FormatJson(json, 2));
+}
+
 using core::FormatFields;
 using core::FormatShownTable;
 using core::Mark;
 using core::Print;
+using core::PrintErrorLine;
+using core::PrintLine;
+using core::PrintLines;
 using core::PrintTable;
 using core::ProgressBar;
 using core::Say;

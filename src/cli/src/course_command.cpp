@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -30,7 +29,7 @@ using nlohmann::ordered_json;
 constexpr std::size_t kWidth = 100;  // of printed words [columns]
 
 void PrintParagraph(const std::string& text, const std::string& indent) {
-  Print(WrapText(Translate(text), kWidth, indent));
+  PrintLines(WrapText(Translate(text), kWidth, indent));
 }
 
 std::string WhatOf(const Step& step) {
@@ -61,15 +60,15 @@ core::Status List() {
 }
 
 void PrintStep(const Step& step) {
-  Print(step.key + ": " + Translate(step.name) + "\n");
+  PrintLine(step.key + ": " + Translate(step.name));
   PrintParagraph(step.goal, "  ");
-  Print("  " + WhatOf(step) + "; " + PassesOf(step) + "\n");
+  PrintLine("  " + WhatOf(step) + "; " + PassesOf(step));
   if (!step.prerequisites.empty()) {
     std::string text;
     for (const std::string& key : step.prerequisites) text += (text.empty() ? "" : ", ") + key;
     Say("  after {1}\n", text);
   }
-  for (const auto& threshold : step.proficiency.thresholds) Print("  " + DescribeThreshold(threshold) + "\n");
+  for (const auto& threshold : step.proficiency.thresholds) PrintLine("  " + DescribeThreshold(threshold));
 }
 
 core::Status Show(const std::string& name, const std::string& step_key) {
@@ -82,15 +81,16 @@ core::Status Show(const std::string& name, const std::string& step_key) {
     for (const auto& [heading, text] :
          {std::pair{Translate("Before"), &step->briefing}, std::pair{Translate("Passed"), &step->after_pass},
           std::pair{Translate("Not passed"), &step->after_fail}}) {
-      Print("\n" + heading + "\n");
+      PrintLine();
+      PrintLine(heading);
       PrintParagraph(*text, "  ");
     }
     return {};
   }
-  Print(Translate(course->name) + "\n");
+  PrintLine(Translate(course->name));
   PrintParagraph(course->about, "");
   for (const Step& step : course->steps) {
-    std::printf("\n");
+    PrintLine();
     PrintStep(step);
   }
   return {};
@@ -114,7 +114,7 @@ core::Status Start(const std::string& name, const std::string& step_key, const s
   const auto prepared = assessment::PrepareStep(*step, settings);
   bar.Finish();
   if (!prepared.ok()) return prepared.error();
-  Print(Translate(step->name) + "\n");
+  PrintLine(Translate(step->name));
   PrintParagraph(step->briefing, "");
   std::string command =
       " --task " + (step->IsOperation() ? step->operation : step->task + " --level " + step->level);
@@ -174,13 +174,13 @@ core::Status Judge(const JudgeArguments& arguments, Outcome& outcome) {
   }
   outcome.has_finding = !verdict.is_passed;
   if (arguments.is_json) {
-    std::printf("%s\n", VerdictJson(verdict).dump(2).c_str());
+    PrintJson(VerdictJson(verdict));
     return {};
   }
-  Print(Translate(step->name) + ": " + Translate(verdict.is_passed ? Mark("PASSED") : Mark("not passed")) +
-        "\n");
+  PrintLine(Translate(step->name) + ": " +
+            Translate(verdict.is_passed ? Mark("PASSED") : Mark("not passed")));
   PrintVerdict(verdict);
-  std::printf("\n");
+  PrintLine();
   PrintParagraph(verdict.is_passed ? step->after_pass : step->after_fail, "");
   Say("Training feedback, not certified assessment.\n");
   return {};
@@ -288,7 +288,7 @@ core::Status Progress(const ProgressArguments& arguments) {
            {"due", now.due ? ordered_json(assessment::FormatDay(*now.due)) : ordered_json()},
            {"overdue", now.is_overdue}});
     }
-    std::printf("%s\n", json.dump(2).c_str());
+    PrintJson(json);
     return {};
   }
   std::vector<std::vector<std::string>> rows = {{"step", "state", "attempts", "passed", "in a row", "due"}};
@@ -306,8 +306,10 @@ core::Status Progress(const ProgressArguments& arguments) {
   PrintTable(rows);
   for (const Step& step : course->steps) {
     const auto lines = DescribeLearning(*course, step, *attempts);
-    if (!lines.empty()) Print("\n" + Translate(step.name) + "\n");
-    for (const std::string& line : lines) Print("  " + line + "\n");
+    if (lines.empty()) continue;
+    PrintLine();
+    PrintLine(Translate(step.name));
+    for (const std::string& line : lines) PrintLine("  " + line);
   }
   if (progress.next) {
     Say("\nNext: {1}\n", Translate(course->steps[*progress.next].name));

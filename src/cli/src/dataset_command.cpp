@@ -7,7 +7,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <charconv>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>

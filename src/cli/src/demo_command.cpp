@@ -6,7 +6,6 @@
 #include <CLI/Formatter.hpp>
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -25,6 +24,7 @@
 #include "own_json.h"
 #include "part_folder.h"
 #include "picture_size.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/version.h"
@@ -79,7 +79,7 @@ std::string FormatDemoMetrics(const training::AttemptMetrics& metrics, const sce
     const std::string summary = session::FormatSummaryJson(haptics->Record().CalcSummary());
     json["haptics"] = ParseOwnJson(summary);
   }
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return core::FormatJson(json, 2) + "\n";
 }
 
 core::Result<std::string> MakePage(const scene::Scene& scene, const view::DemoReport& played,

@@ -140,7 +140,7 @@ void HandPlot::Show(const HandSamples& samples, double time) {
   if (!is_terminal_) {
     if (time < next_) return;
     next_ = time + kPrintPeriod;
-    Print(ShownFixed(time, 1) + " s\n" + FormatHands(samples));
+    PrintLines(ShownFixed(time, 1) + " s\n" + FormatHands(samples));
     std::fflush(stdout);
     return;
   }
@@ -151,7 +151,7 @@ void HandPlot::Show(const HandSamples& samples, double time) {
   for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
     Print(text.substr(at, end - at));
     core::WriteControl(stdout, "\033[K");
-    Print("\n");
+    PrintLine();
   }
   std::fflush(stdout);
 }

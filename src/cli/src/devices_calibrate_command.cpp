@@ -30,7 +30,7 @@ int FindHand(const std::string& name) {
 }
 
 void Announce(const std::string& text, double wait) {
-  Print(text + "\n");
+  PrintLine(text);
   for (int left = static_cast<int>(wait); left > 0; --left) {
     Say("  starting in {1} s\n", left);
     std::fflush(stdout);
@@ -63,7 +63,7 @@ core::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int han
 }
 
 void PrintQuality(const char* what, const device::FitQuality& quality, std::size_t poses) {
-  Print("  " + Translate(what) + " " + device::FormatQuality(quality, poses) + "\n");
+  PrintLine("  " + Translate(what) + " " + device::FormatQuality(quality, poses));
 }
 
 core::Status Keep(const device::DeviceStore& store) {

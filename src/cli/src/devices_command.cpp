@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -61,7 +60,7 @@ void PrintButtons(const device::DeviceStore& store) {
   for (const auto& [key, act] : store.keys)
     rows.push_back({"  " + TranslateWith("keyboard key {1}", {key}), Translate("chosen"),
                     std::string(device::ActName(act))});
-  Print(core::FormatTable(rows));
+  PrintLines(core::FormatTable(rows));
 }
 
 void List(bool is_json) {
@@ -76,18 +75,18 @@ void List(bool is_json) {
       json["kinds"].push_back({{"name", kind.name}, {"address", kind.address}, {"description", kind.text}});
     json["buttons"] = ButtonsJson(store);
     json["settings"] = device::FindDeviceStore().string();
-    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    PrintJson(json);
     return;
   }
   Say("Found:\n");
   for (const device::FoundDevice& one : found)
-    Print(core::PrintableLine("  " + one.spec + "   " + TranslateComposed(one.description)) + "\n");
+    PrintLine("  " + one.spec + "   " + TranslateComposed(one.description));
   if (found.empty()) Say("  nothing but mouse and keyboard\n");
   Say("\nKinds of device (write KIND:ADDRESS):\n");
   std::vector<std::vector<std::string>> rows;
   for (const device::DeviceKind& kind : device::DeviceKinds())
     rows.push_back({"  " + std::string(kind.name), Translate(kind.address), Translate(kind.text)});
-  Print(core::FormatTable(rows));
+  PrintLines(core::FormatTable(rows));
   PrintButtons(store);
   Say("\nHaptic devices (--haptics): {1}\n", device::ListForceDrivers());
   Say("Settings and calibrations: {1}\n", device::FindDeviceStore());
@@ -104,7 +103,7 @@ void PrintReport(const WatchReport& report) {
                     ShownNumber(report.seconds > 0 ? report.fresh[i] / report.seconds : 0, 3),
                     std::to_string(report.unseen[i])});
   }
-  Print("\n" + FormatShownTable(rows));
+  PrintLines("\n" + FormatShownTable(rows));
   if (!report.received.empty()) Say("Received: {1}\n", report.received);
   PrintHeldBack(report);
 }
@@ -116,7 +115,7 @@ void PrintReportJson(const std::string& spec, const WatchReport& report) {
     json["hands"][kChannels[i]] = {{"samples", report.fresh[i]}, {"times_out_of_sight", report.unseen[i]}};
   json["received"] = report.received;
   json["not_used"] = report.held_back;
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  PrintJson(json);
 }
 
 core::Status LostError(const device::Driver& driver) {

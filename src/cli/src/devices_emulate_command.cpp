@@ -13,6 +13,7 @@
 
 #include "command.h"
 #include "device_console.h"
+#include "trocar/core/console.h"
 #include "trocar/core/translate.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/emulator.h"
@@ -98,11 +99,10 @@ core::Status Emulate(const EmulateOptions& options) {
   const auto host = Serve(options, std::move(*emulator), faults);
   if (!host) return host.error();
   const std::string name = FormatName(options.kind, (*host)->Address());
-  std::printf("%s\n", name.c_str());
+  core::PrintLine(name);
   std::fflush(stdout);
-  std::fprintf(
-      stderr, "%s\n",
-      core::TranslateWith("Emulating; try: trocar devices test {1}   (Ctrl+C ends)", {name}).c_str());
+  core::PrintErrorLine(
+      core::TranslateWith("Emulating; try: trocar devices test {1}   (Ctrl+C ends)", {name}));
   const InterruptWatch interrupt;
   device::Clock& clock = device::SystemClock();
   const double start = clock.Now();

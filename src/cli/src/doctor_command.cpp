@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/App.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,7 +17,7 @@ namespace {
 using doctor::Finding;
 using doctor::Health;
 
-void PrintJson(const std::vector<Finding>& findings) {
+void PrintForProgram(const std::vector<Finding>& findings) {
   nlohmann::ordered_json json;
   json["checks"] = nlohmann::ordered_json::array();
   for (const Finding& finding : findings) {
@@ -29,7 +28,7 @@ void PrintJson(const std::vector<Finding>& findings) {
                               {"remedy", finding.remedy}});
   }
   // a driver's text may hold any bytes
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  PrintJson(json);
 }
 
 /// What was found may be an error: its code, then the message.
@@ -48,7 +47,7 @@ void PrintForPerson(const std::vector<Finding>& findings) {
     if (!finding.remedy.empty())
       rows.push_back({"", "", TranslateWith("to mend: {1}", {TranslateComposed(finding.remedy)})});
   }
-  Print(core::FormatTable(rows));
+  PrintLines(core::FormatTable(rows));
   const auto missing = std::count_if(findings.begin(), findings.end(), [](const Finding& finding) {
     return finding.health == Health::kMissing;
   });
@@ -70,7 +69,7 @@ void AddDoctorCommand(CLI::App& app, Outcome& outcome) {
       "not work). Exit status 1 if anything is missing.");
   command->callback([is_json, &outcome] {
     const std::vector<Finding> findings = doctor::CheckAll();
-    *is_json ? PrintJson(findings) : PrintForPerson(findings);
+    *is_json ? PrintForProgram(findings) : PrintForPerson(findings);
     outcome.has_finding = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
       return finding.health == Health::kMissing;
     });

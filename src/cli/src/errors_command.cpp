@@ -37,7 +37,7 @@ void PrintMarkdown() {
       stdout);
   for (const core::ErrorEntry& entry : core::ErrorTable()) {
     if (entry.code == core::ErrorCode::kNone) continue;
-    std::printf("| `%s` | %s |\n", std::string(entry.text).c_str(), std::string(entry.meaning).c_str());
+    PrintLine("| `" + std::string(entry.text) + "` | " + std::string(entry.meaning) + " |");
   }
 }
 

@@ -2,7 +2,6 @@
 #include "judgement_text.h"
 
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -56,7 +55,7 @@ void PrintVerdict(const assessment::Verdict& verdict) {
   }
   if (rows.size() > 1) PrintTable(rows);
   if (verdict.composite) {
-    Print(verdict.grade.empty() ? "" : verdict.grade + ": ");
+    if (!verdict.grade.empty()) Print(verdict.grade + ": ");
     Say(*verdict.composite < 0 ? "{1} deviations below the mean of the expert set\n"
                                : "{1} deviations above the mean of the expert set\n",
         ShownNumber(std::abs(*verdict.composite), 3));

@@ -29,7 +29,7 @@ void PrintLabels(const std::vector<anatomy::SourceLabel>& labels) {
   }
   for (const auto& [reason, names] : others)
     Say("Neighbours: {1}. Why: {2}.\n", names, TranslateComposed(reason));
-  if (!labels.empty()) Print("\n");
+  if (!labels.empty()) PrintLine();
 }
 
 }  // namespace trocar::cli

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -136,7 +135,7 @@ core::Status Make(const LevelsArguments& arguments) {
   if (!made.ok()) return made.error();
   if (const auto written = core::WriteFile(arguments.output, FormatProficiency(*made)); !written.ok())
     return written;
-  for (const Threshold& threshold : made->thresholds) Print(DescribeThreshold(threshold) + "\n");
+  for (const Threshold& threshold : made->thresholds) PrintLine(DescribeThreshold(threshold));
   Say("{1} holds them; edit it, and name it in a course\n", arguments.output);
   return {};
 }
@@ -156,12 +155,13 @@ core::Status List() {
 core::Status Show(const std::string& name) {
   const auto one = assessment::FindProficiency(name);
   if (!one.ok()) return one.error();
-  Print((one->level.empty() ? one->task : TranslateWith("{1}, level {2}", {one->task, one->level})) + "\n");
-  if (!one->about.empty()) Print(WrapText(one->about, 100, ""));
-  Print(WrapText(TranslateWith("Source: {1}", {one->source}), 100, ""));
+  PrintLine((one->level.empty() ? one->task : TranslateWith("{1}, level {2}", {one->task, one->level})));
+  if (!one->about.empty()) PrintLines(WrapText(one->about, 100, ""));
+  PrintLines(WrapText(TranslateWith("Source: {1}", {one->source}), 100, ""));
   for (const Threshold& threshold : one->thresholds) {
-    Print("\n" + DescribeThreshold(threshold) + "\n");
-    Print(WrapText(threshold.source, 100, "  "));
+    PrintLine();
+    PrintLine(DescribeThreshold(threshold));
+    PrintLines(WrapText(threshold.source, 100, "  "));
   }
   for (const auto& grade : one->grades)
     Say(&grade == one->grades.data() ? "\n{1} from {2} deviations on\n" : "{1} from {2} deviations on\n",

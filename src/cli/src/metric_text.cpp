@@ -73,8 +73,8 @@ std::string FormatMetricsText(const AttemptMetrics& metrics, bool has_parts) {
   }
   for (const auto& [phase, tool] : parts) {
     text += "\n" +
-            (tool.empty() ? TranslateWith("Phase: {1}", {ShownName(phase)})
-                          : TranslateWith("While using: {1}", {ShownName(tool)})) +
+            core::PrintableLine(tool.empty() ? TranslateWith("Phase: {1}", {ShownName(phase)})
+                                             : TranslateWith("While using: {1}", {ShownName(tool)})) +
             "\n\n" + FormatTables(MakeMetricRows(metrics, phase, tool));
   }
   return text;

@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "console.h"
 #include "metric_text.h"
 #include "own_json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
 #include "trocar/record/trace.h"
@@ -82,18 +82,18 @@ std::string FormatMetricsFile(const TracedFile& traced, const AttemptMetrics& me
                        {"disclaimer", training::MetricsDisclaimer()},
                        {"attempt", traced.of}};
   json["metrics"] = ParseOwnJson(training::FormatMetricsJson(metrics));
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return core::FormatJson(json, 2) + "\n";
 }
 
 std::string FormatWords(const TracedFile& traced, const AttemptMetrics& metrics, bool has_parts,
                         const training::Validity& validity) {
   std::string text, note;
   if (traced.of.contains("of")) {
-    text +=
-        TranslateWith("{1}, played by {2}, {3} s", {traced.of["of"].get<std::string>(),
-                                                    TranslateComposed(traced.of["player"].get<std::string>()),
-                                                    ShownNumber(traced.trace.Seconds())}) +
-        (traced.of["finished"] == true ? "" : Translate(" (the recording was not finished)")) + "\n\n";
+    text += core::PrintableLine(TranslateWith("{1}, played by {2}, {3} s",
+                                              {traced.of["of"].get<std::string>(),
+                                               TranslateComposed(traced.of["player"].get<std::string>()),
+                                               ShownNumber(traced.trace.Seconds())})) +
+            (traced.of["finished"] == true ? "" : Translate(" (the recording was not finished)")) + "\n\n";
     const std::string task = TaskKey(traced.of["of"].get<std::string>());
     note = FormatValidityNote(metrics, task, validity.FindTask(task)) + "\n";
   }
@@ -104,7 +104,7 @@ std::string FormatWords(const TracedFile& traced, const AttemptMetrics& metrics,
 
 core::Status PutOut(const std::string& text, const std::string& output) {
   if (!output.empty()) return core::WriteFile(output, text);
-  Print(text);
+  PrintLines(text);
   return {};
 }
 

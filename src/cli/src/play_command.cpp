@@ -4,7 +4,6 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -117,7 +116,7 @@ nlohmann::ordered_json ErrorJson(const scene::Scene& scene, const scene::TaskErr
   return json;
 }
 
-void PrintJson(const scene::Scene& scene, const PlayReport& report) {
+void PrintForProgram(const scene::Scene& scene, const PlayReport& report) {
   nlohmann::ordered_json json = {{"completed", simulation::HasCompleted(report.task.phase, false)},
                                  {"critical_view", nullptr},
                                  {"critical_errors", nlohmann::ordered_json::array()},
@@ -144,7 +143,7 @@ void PrintJson(const scene::Scene& scene, const PlayReport& report) {
                      {"steps", scene.task->goals[g].steps.size()}});
   }
   json["goals"] = std::move(goals);
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  PrintJson(json);
 }
 
 std::string FormatShownScore(const scene::Task& task, const scene::TaskSnapshot& now) {
@@ -175,18 +174,18 @@ constexpr std::size_t kListWidth = 100;  // columns
 
 /// A task in one line, and below it who can do it, in lines that a terminal holds.
 void PrintTask(const std::string& key, const std::string& levels, const scene::Scene& scene) {
-  Print(key + (levels.empty() ? "" : " (" + levels + ")") + ": " + TranslateComposed(scene.name) + "\n");
+  PrintLine(key + (levels.empty() ? "" : " (" + levels + ")") + ": " + TranslateComposed(scene.name));
   std::string line = "   ";
   for (const agent::SurgeonEntry& entry : agent::ListSurgeons()) {
     if (!entry.suits(scene)) continue;
     const std::string name = entry.name;
     if (line.size() + 1 + name.size() > kListWidth) {
-      Print(line + "\n");
+      PrintLine(line);
       line = "   ";
     }
     line += " " + name;
   }
-  Print(line + "\n");
+  PrintLine(line);
 }
 
 core::Status PrintList() {
@@ -207,7 +206,7 @@ core::Status PrintList() {
   for (const scene::OperationLevel& level : *operation_levels)
     levels += (levels.empty() ? "" : ", ") + level.key;
   if (*operation) PrintTask("cholecystectomy", levels, **operation);
-  std::printf("\n");
+  PrintLine();
   std::vector<std::vector<std::string>> rows = {{"surgeon", "error", "about"}};
   for (const agent::SurgeonEntry& entry : agent::ListSurgeons())
     rows.push_back({entry.name, *entry.error == 0 ? "-" : entry.error, Translate(entry.about)});
@@ -356,7 +355,7 @@ core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
   const auto report = arguments.output.empty() ? PlayBlind(scene, **surgeon, arguments)
                                                : PlayForTheEye(scene, **surgeon, arguments);
   if (!report) return report.error();
-  arguments.is_json ? PrintJson(*scene, *report) : PrintForPerson(*scene, *report);
+  arguments.is_json ? PrintForProgram(*scene, *report) : PrintForPerson(*scene, *report);
   outcome.has_finding = false;
   return {};
 }

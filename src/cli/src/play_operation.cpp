@@ -2,7 +2,6 @@
 #include "play_operation.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -111,15 +110,15 @@ void PrintForPerson(const scene::Scene& scene, const OperationResult& result, co
                                         : "Critical view of safety: not achieved\n");
   if (!result.was_critical_view_achieved) {
     for (const std::string& reason : training::ExplainCriticalView(result.facts, result.critical_view))
-      Print("  " + TranslateComposed(reason) + "\n");
+      PrintLine("  " + TranslateComposed(reason));
   }
   for (std::size_t i = 0; i < training::kOperationErrorCount; ++i) {
     const auto error = static_cast<training::OperationError>(i);
     const std::size_t count = result.errors.Count(error);
     if (count == 0) continue;
-    Print("  " + std::to_string(count) + " x " + ShownName(training::NameOf(error)) + " (" +
-          Translate(training::NameOf(training::SeverityOf(error))) +
-          "): " + Translate(training::ExplanationOf(error)) + "\n");
+    PrintLine("  " + std::to_string(count) + " x " + ShownName(training::NameOf(error)) + " (" +
+              Translate(training::NameOf(training::SeverityOf(error))) +
+              "): " + Translate(training::ExplanationOf(error)));
   }
   Say("Blood {1} mL, bile {2} mL; injury by Strasberg: {3}\n",
       ShownNumber(Left(result, surgery::Fluid::kBlood), 3),
@@ -218,7 +217,7 @@ core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
   progress.Finish();
   const std::string bail_out(surgeon.BailOutReason());
   if (play.is_json) {
-    std::printf("%s\n", MakeJson(result, run, bail_out).dump(2).c_str());
+    PrintJson(MakeJson(result, run, bail_out));
   } else {
     PrintForPerson(*scene, result, run, bail_out);
   }

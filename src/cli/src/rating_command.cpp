@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -30,10 +29,15 @@ core::Status WriteForm(const FormArguments& arguments) {
   const auto form = report::FindRatingForm(arguments.form);
   if (!form.ok()) return form.error();
   if (arguments.output.empty()) {
-    Print(Translate(form->name) + "\n" + Translate(form->about) + "\n");
-    for (const report::RatingItem& item : form->items)
-      Print("\n  " + item.key + "=1..5   " + Translate(item.name) + "\n    1 " + Translate(item.lowest) +
-            "\n    3 " + Translate(item.middle) + "\n    5 " + Translate(item.highest) + "\n");
+    PrintLine(Translate(form->name));
+    PrintLine(Translate(form->about));
+    for (const report::RatingItem& item : form->items) {
+      PrintLine();
+      PrintLine("  " + item.key + "=1..5   " + Translate(item.name));
+      PrintLine("    1 " + Translate(item.lowest));
+      PrintLine("    3 " + Translate(item.middle));
+      PrintLine("    5 " + Translate(item.highest));
+    }
     Say("\nSource: {1}\n", form->source);
     return {};
   }
@@ -63,7 +67,7 @@ core::Status Enter(EnterArguments arguments) {
   arguments.rating.attempt = std::filesystem::path(arguments.rating.attempt).filename().string();
   const std::string text = report::FormatRating(arguments.rating);
   if (arguments.output.empty()) {
-    std::fputs(text.c_str(), stdout);
+    PrintLines(text);
     return {};
   }
   if (const auto written = core::WriteFile(arguments.output, text); !written.ok()) return written;
@@ -130,7 +134,7 @@ core::Status Compare(const AgreementArguments& arguments) {
                       {"icc_3_1", IccJson(icc.three_fixed)},     {"icc_1_k", IccJson(icc.one_random_mean)},
                       {"icc_2_k", IccJson(icc.two_random_mean)}, {"icc_3_k", IccJson(icc.three_fixed_mean)}};
   }
-  std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+  PrintJson(json);
   return {};
 }
 

@@ -3,7 +3,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -97,7 +96,7 @@ void PrintInfo(const Recording& recording) {
   const std::string what = (d.level.empty() ? d.name : TranslateWith("{1}, level {2}", {d.name, d.level})) +
                            (d.patient.empty() ? "" : TranslateWith(", patient {1}", {d.patient})) +
                            TranslateWith(", seed {1}", {std::to_string(d.seed)});
-  Print(FormatFields(
+  PrintLines(FormatFields(
       {{"recording of", what},
        {"played by", TranslateComposed(d.player)},
        {"started", d.started},
@@ -121,14 +120,11 @@ void PrintInfo(const Recording& recording) {
   std::size_t shown = 0;
   for (const record::EventMark& event : recording.events) {
     if (!event.is_error || ++shown > kShownErrors) continue;
-    Print(At(event.tick, d) +
-          core::PrintableLine(Translate(event.kind) +
-                              (event.about.empty() ? "" : ": " + TranslateComposed(event.about))) +
-          "\n");
+    PrintLine(At(event.tick, d) + Translate(event.kind) +
+              (event.about.empty() ? "" : ": " + TranslateComposed(event.about)));
   }
   if (shown > kShownErrors) Say("  and {1} more (--json)\n", shown - kShownErrors);
-  for (const record::TextMark& mark : recording.marks)
-    Print(At(mark.tick, d) + "\"" + core::PrintableLine(mark.text) + "\"\n");
+  for (const record::TextMark& mark : recording.marks) PrintLine(At(mark.tick, d) + "\"" + mark.text + "\"");
 }
 
 void AddInfo(CLI::App& record, Outcome& outcome) {
@@ -142,8 +138,7 @@ void AddInfo(CLI::App& record, Outcome& outcome) {
     if (!recording.ok()) {
       outcome.status = recording.error();
     } else if (*is_json) {
-      std::printf("%s\n",
-                  InfoJson(*recording).dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+      PrintJson(InfoJson(*recording));
     } else {
       PrintInfo(*recording);
     }
@@ -167,7 +162,7 @@ void AddVerify(CLI::App& record, Outcome& outcome) {
         return;
       }
     }
-    Print(core::PrintableLine(*path + ": " + HowItEnded(*recording)) + "\n");
+    PrintLine(*path + ": " + HowItEnded(*recording));
     outcome.has_finding = !recording->damage.empty();
   });
 }

@@ -3,7 +3,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -77,7 +76,7 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
         {"replay_seconds", watch.Seconds()},
         {"outcome", ParseOwnJson(verified->outcome)}};
     if (verified->divergence) json["diverged_at_s"] = static_cast<double>(verified->divergence->tick) * tick;
-    std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+    PrintJson(json);
     return {};
   }
   if (verified->divergence) {
@@ -168,7 +167,7 @@ core::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) 
                                {"two_structures", score.criteria[2]},
                                {"front", picture("front.png", front_seconds, doublet->front)},
                                {"back", picture("back.png", back_seconds, doublet->back)}};
-    std::printf("%s\n", json.dump(2).c_str());
+    PrintJson(json);
     return {};
   }
   Say("{1} holds front.png of {2} s and back.png of {3} s: the critical view is {4}\n",
@@ -177,7 +176,7 @@ core::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) 
   Say("Triangle cleared {1} of 2, lower third off the plate {2} of 2, two structures {3} of 2\n",
       score.criteria[0], score.criteria[1], score.criteria[2]);
   for (const std::string& reason : training::ExplainCriticalView(result.facts, score))
-    Print("  " + TranslateComposed(reason) + "\n");
+    PrintLine("  " + TranslateComposed(reason));
   return {};
 }
 
@@ -211,7 +210,7 @@ core::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
                        {"surgeon", arguments.surgeon},
                        {"hash", core::HashText(simulation.Hash())},
                        {"outcome", ParseOwnJson(record::CalcOutcome(simulation))}};
-  std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+  PrintJson(json);
   return {};
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file report_card_command.cpp  `trocar reproduce report-card`.
 #include <CLI/App.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <memory>

@@ -3,7 +3,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -34,7 +33,7 @@ struct ReportArguments {
 core::Status WriteDictionary(const ReportArguments& arguments) {
   const std::string text = report::FormatDictionaryCsv();
   if (!arguments.output.empty()) return core::WriteFile(arguments.output, text);
-  Print(text);
+  PrintLines(text);
   return {};
 }
 
@@ -95,7 +94,7 @@ core::Status Report(ReportArguments arguments) {
     written = WriteReport(trainee, arguments.output);
   }
   if (!written.ok()) return written;
-  if (reports.size() == 1) Print(core::PrintableLine(TranslateComposed(reports[0].outcome)) + "\n");
+  if (reports.size() == 1) PrintLine(TranslateComposed(reports[0].outcome));
   Say("Wrote {1}\n", arguments.output);
   return {};
 }

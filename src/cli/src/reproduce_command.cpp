@@ -41,7 +41,7 @@ core::Result<std::vector<bench::Experiment>> Run(std::span<const bench::Experime
           "A quick run: smaller meshes, fewer repeats; its times are no figures to quote.");
     // a person reads on while the next one runs
     if (!arguments.is_json) {
-      std::printf("%s\n", bench::FormatExperimentText(*result).c_str());
+      PrintLines(bench::FormatExperimentText(*result) + "\n");
       std::fflush(stdout);
     }
     done.push_back(std::move(result).value());
@@ -86,7 +86,7 @@ core::Status Reproduce(std::span<const bench::ExperimentEntry> entries, const Ar
                               (arguments.options.threads == 1 ? " thread" : " threads");
   const auto experiments = Run(entries, arguments);
   if (!experiments) return experiments.error();
-  if (arguments.is_json) std::fputs(bench::FormatExperimentsJson(*experiments, machine).c_str(), stdout);
+  if (arguments.is_json) PrintLines(bench::FormatExperimentsJson(*experiments, machine));
   if (!arguments.folder.empty()) {
     if (core::Status status = WritePages(*experiments, arguments, is_all, machine); !status) return status;
     const std::string page = is_all ? "index.html" : experiments->front().name + ".html";

@@ -16,6 +16,7 @@
 
 #include "command.h"
 #include "help_language.h"
+#include "trocar/core/console.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/printable_output.h"
 #include "trocar/core/simd_choice.h"
@@ -53,12 +54,10 @@ constexpr const char* kExamples =
 int Fail(const core::Error& error, int exit_status) {
   std::fflush(stdout);
   // one error is one line, whatever the names in it
-  const std::string text = core::PrintableLine(core::ShownText(error)),
-                    meaning = core::TranslatedMeaning(error.code);
+  const std::string text = core::ShownText(error), meaning = core::TranslatedMeaning(error.code);
   // the catalogue has the messages that a window can show; of others it says at least what the code means
-  if (!meaning.empty() && core::ShownText(error) == error.Text())
-    std::fprintf(stderr, "trocar: %s\n", meaning.c_str());
-  std::fprintf(stderr, "trocar: %s\n", text.c_str());
+  if (!meaning.empty() && text == error.Text()) core::PrintErrorLine("trocar: " + meaning);
+  core::PrintErrorLine("trocar: " + text);
   return exit_status;
 }
 
@@ -194,6 +193,23 @@ std::vector<std::vector<std::string>> ListCommands() {
   return all;
 }
 
+std::vector<CommandOption> ListOptions(const std::vector<std::string>& words) {
+  CLI::App app(kDescription, "trocar");
+  Outcome outcome;
+  AddCommands(app, outcome);
+  const CLI::App* command = &app;
+  for (const std::string& word : words) command = command->get_subcommand(word);
+  std::vector<CommandOption> options;
+  for (const CLI::Option* option : command->get_options()) {
+    const bool is_positional = option->get_positional();
+    const bool takes_value = option->get_items_expected_max() > 0;
+    std::string type = takes_value ? option->get_type_name() : "";
+    if (takes_value && type.empty()) type = "TEXT";
+    options.push_back({option->get_name(is_positional), type, is_positional, option->get_required()});
+  }
+  return options;
+}
+
 void ListHelpTexts(const TextVisitor& visit) {
   CLI::App app(kDescription, "trocar");
   Outcome outcome;
@@ -214,8 +230,8 @@ int RunCommand(int argc, char** argv) {
     std::fputs(kNoMemory, stderr);
     return kExitError;
   } catch (const std::exception& failure) {
-    std::fprintf(stderr, "trocar: stopped by an unexpected exception: %s; please report this\n",
-                 failure.what());
+    core::PrintErrorLine("trocar: stopped by an unexpected exception: " + std::string(failure.what()) +
+                         "; please report this");
     return kExitError;
   }
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -169,7 +168,7 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   return report;
 }
 
-void PrintJson(const SimulateReport& report) {
+void PrintForProgram(const SimulateReport& report) {
   nlohmann::ordered_json json = {
       {"hash", report.hash}, {"ticks", report.ticks}, {"residual", report.residual}};
   json["stages"] = nlohmann::ordered_json::array();
@@ -184,7 +183,7 @@ void PrintJson(const SimulateReport& report) {
     const std::string summary = session::FormatSummaryJson(*report.haptics);
     json["haptics"] = ParseOwnJson(summary);
   }
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  PrintJson(json);
 }
 
 void PrintForPerson(const SimulateReport& report) {
@@ -198,7 +197,7 @@ void PrintForPerson(const SimulateReport& report) {
   Say("\n{1} ticks, state hash {2}\n", report.ticks, report.hash);
   if (report.haptics) {
     for (const auto& [what, how] : session::DescribeSummary(*report.haptics))
-      Print(Translate(what) + ": " + TranslateComposed(how) + "\n");
+      PrintLine(Translate(what) + ": " + TranslateComposed(how));
   }
   Say("residual after the last tick {1}, largest force on an instrument {2} N\n",
       ShownNumber(report.residual), ShownNumber(report.max_force_n));
@@ -250,7 +249,7 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       outcome.status = report.error();
       return;
     }
-    options->is_json ? PrintJson(*report) : PrintForPerson(*report);
+    options->is_json ? PrintForProgram(*report) : PrintForPerson(*report);
   });
 }
 

@@ -58,7 +58,7 @@ void AddInfo(CLI::App& parent, const Options& options, Outcome& outcome) {
                       {"retention_days", *days}});
       return {};
     }
-    Print(FormatFields(
+    PrintLines(FormatFields(
         {{"store", place.Text()},
          {"database",
           TranslateWith("{1}, tables of version {2}",
@@ -280,7 +280,7 @@ void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
       if (!options->is_json && !attempt->mark.IsVerified())
         Say("{1}\n", Translate(store::DescribeMark(attempt->mark)));
       // a store that is away is no failure: the attempt is safe; one that is refused wants a person
-      if (kept->failure) std::fprintf(stderr, "trocar: %s\n", core::ShownText(*kept->failure).c_str());
+      if (kept->failure) PrintErrorLine("trocar: " + core::ShownText(*kept->failure));
       outcome.has_finding = !kept->is_in_store || attempt->mark.state == store::Verification::kRefused;
       return {};
     }();
@@ -500,7 +500,7 @@ void OnStore(CLI::App& command, const std::shared_ptr<StoreOptions>& options, Ou
 }
 
 void PrintStoreJson(const ordered_json& json) {
-  std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+  PrintJson(json);
 }
 
 void AddStoreCommand(CLI::App& app, Outcome& outcome) {

@@ -44,7 +44,7 @@ void AddAdd(CLI::App& trainee, const Options& options, Outcome& outcome) {
         return kept;
     }
     options->is_json ? PrintStoreJson({{"pseudonym", JsonText(person->pseudonym)}, {"role", arguments->role}})
-                     : Print(Shown(person->pseudonym) + "\n");
+                     : PrintLine(Shown(person->pseudonym));
     return {};
   });
 }
@@ -168,22 +168,22 @@ void AddErase(CLI::App& trainee, const Options& options, Outcome& outcome) {
   OnStore(*erase, options, outcome, [arguments, options](StoreSession& session) -> core::Status {
     if (!arguments->is_sure)
       return core::Error{core::ErrorCode::kUsage, "this removes a person for ever; add --yes to do it"};
-    const auto report = ErasePerson(session.store, session.viewer, arguments->pseudonym);
+    auto report = ErasePerson(session.store, session.viewer, arguments->pseudonym);
     if (!report.ok()) return report.error();
     // statements for a learning record store that have not been delivered
-    const auto statements = report::XapiQueue(report::XapiQueue::FindFolder()).Erase(arguments->pseudonym);
-    if (!statements.ok()) return statements.error();
+    const auto queue = report::XapiQueue(report::XapiQueue::FindFolder()).Erase(arguments->pseudonym);
+    report->left.insert(report->left.end(), queue.left.begin(), queue.left.end());
     if (options->is_json) {
       PrintStoreJson({{"attempts", report->attempts},
                       {"recordings", report->recordings},
                       {"waiting", report->spooled},
-                      {"statements", *statements},
+                      {"statements", queue.statements},
                       {"left", report->left},
                       {"backups", report->backups}});
       return {};
     }
     Say("erased: {1} attempts, {2} recordings, {3} waiting attempts, {4} waiting statements\n",
-        report->attempts, report->recordings, report->spooled, *statements);
+        report->attempts, report->recordings, report->spooled, queue.statements);
     for (const std::string& left : report->left) Say("not erased here: {1}\n", left);
     for (const std::string& backup : report->backups)
       Say("this backup still holds them; delete it and make a new one: {1}\n", backup);

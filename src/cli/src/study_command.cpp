@@ -5,7 +5,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -106,7 +105,7 @@ core::Status RunPlan(const StudyArguments& arguments, Outcome& outcome) {
   progress.Finish();
   if (!summary) return summary.error();
   Say("{1} of {2} runs are done; {3} failed\n", summary->done, summary->runs, summary->failed);
-  for (const std::string& line : summary->failures) Print("  " + TranslateComposed(line) + "\n");
+  for (const std::string& line : summary->failures) PrintLine("  " + TranslateComposed(line));
   if (summary->done < summary->runs) {
     Say("The same command goes on.\n");
     outcome.has_finding = true;

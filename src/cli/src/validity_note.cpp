@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "trocar/core/printable_output.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/translate.h"
 #include "trocar/scene/scene.h"
@@ -48,7 +49,7 @@ std::string FormatValidityNote(const training::AttemptMetrics& metrics, const st
     return core::TranslateWith(
                "Which of these numbers tell novices from experts in \"{1}\" has not been studied (trocar "
                "study).",
-               {task}) +
+               {core::PrintableLine(task)}) +
            "\n";
   std::vector<std::string> weak, unknown;
   for (const training::MetricValue& value : metrics.values) {

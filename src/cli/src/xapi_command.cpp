@@ -2,7 +2,6 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -50,9 +49,8 @@ core::Status Queue(const XapiArguments& arguments) {
 
 core::Status List(const XapiArguments& arguments) {
   const report::XapiQueue queue = OpenQueue(arguments);
-  for (const report::XapiStatement& statement : queue.List()) std::printf("%s\n", statement.json.c_str());
-  for (const auto& path : queue.ListRefused())
-    std::fprintf(stderr, "%s\n", TranslateWith("refused: {1}", {path.string()}).c_str());
+  for (const report::XapiStatement& statement : queue.List()) PrintLine(statement.json);
+  for (const auto& path : queue.ListRefused()) PrintErrorLine(TranslateWith("refused: {1}", {path.string()}));
   return {};
 }
 
@@ -66,9 +64,7 @@ core::Status Deliver(const XapiArguments& arguments) {
     settings.credentials = std::move(*credentials);
   }
   settings.give_up_seconds = arguments.give_up_seconds;
-  settings.on_trouble = [](const std::string& text) {
-    std::fprintf(stderr, "%s\n", TranslateComposed(text).c_str());
-  };
+  settings.on_trouble = [](const std::string& text) { PrintErrorLine(TranslateComposed(text)); };
   report::XapiQueue queue = OpenQueue(arguments);
   const auto delivered = report::DeliverQueue(queue, *endpoint, settings);
   if (!delivered.ok()) return delivered.error();
@@ -79,12 +75,11 @@ core::Status Deliver(const XapiArguments& arguments) {
   return delivered->failure ? core::Status(*delivered->failure) : core::Status();
 }
 
-core::Status Erase(const XapiArguments& arguments) {
-  report::XapiQueue queue = OpenQueue(arguments);
-  const auto erased = queue.Erase(arguments.person);
-  if (!erased.ok()) return erased.error();
-  Say("{1} statements of this person were taken out of the queue\n", *erased);
-  return {};
+void Erase(const XapiArguments& arguments, Outcome& outcome) {
+  const auto erased = OpenQueue(arguments).Erase(arguments.person);
+  Say("{1} statements of this person were taken out of the queue\n", erased.statements);
+  for (const std::string& left : erased.left) Say("not erased here: {1}\n", left);
+  outcome.has_finding = !erased.left.empty();
 }
 
 void AddQueueOption(CLI::App& command, XapiArguments& arguments) {
@@ -141,10 +136,12 @@ void AddXapiCommand(CLI::App& app, Outcome& outcome) {
       ->capture_default_str();
   AddQueueOption(*deliver, *arguments);
   deliver->callback([arguments, &outcome] { outcome.status = Deliver(*arguments); });
-  CLI::App* erase = xapi->add_subcommand("erase", "Take everything of one person out of the queue");
+  CLI::App* erase = xapi->add_subcommand(
+      "erase",
+      "Take everything of one person out of the queue; exit status 1 if something could not be read");
   erase->add_option("person", arguments->person, "Pseudonym")->required()->type_name("PSEUDONYM");
   AddQueueOption(*erase, *arguments);
-  erase->callback([arguments, &outcome] { outcome.status = Erase(*arguments); });
+  erase->callback([arguments, &outcome] { Erase(*arguments, outcome); });
   xapi->footer(
       "Examples:\n"
       "  trocar xapi queue attempt.trocar --person T-7F3K2Q --home-page https://training.hospital.example\n"

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/roles/roles.h"
 
@@ -41,7 +42,7 @@ const Direction* FindDirection(std::string_view name) {
 }
 
 std::string NumberText(double value) {
-  std::string text = nlohmann::json(std::round(value * 100.0) / 100.0).dump();
+  std::string text = core::FormatJson(nlohmann::json(std::round(value * 100.0) / 100.0));
   if (text.size() > 2 && text.ends_with(".0")) text.resize(text.size() - 2);
   return text;
 }
@@ -191,7 +192,7 @@ std::string FormatPolygons(const std::vector<std::vector<Vec2>>& polygons) {
 }
 
 std::string Quoted(const std::string& text) {
-  return nlohmann::json(text).dump();
+  return core::FormatJson(nlohmann::json(text));
 }
 
 }  // namespace
@@ -296,7 +297,7 @@ core::Result<ControlPoints> ReadControlPoints(const std::filesystem::path& path,
 }
 
 std::string FormatControlPoints(const ControlPoints& points) {
-  const auto exact = [](double value) { return nlohmann::json(value).dump(); };
+  const auto exact = [](double value) { return core::FormatJson(nlohmann::json(value)); };
   std::string text = "{\n";
   text += "\"format\": \"" + std::string(kFormat) + "\",\n\"version\": " + std::to_string(kVersion) + ",\n";
   text += "\"name\": " + Quoted(points.name) + ",\n\"provenance\": " + Quoted(points.provenance) + ",\n";

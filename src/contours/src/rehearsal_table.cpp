@@ -6,6 +6,7 @@
 #include "trocar/contours/contour_rehearsal.h"
 #include "trocar/contours/label_edges.h"
 #include "trocar/core/console.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/translate.h"
 
 namespace trocar::contours {
@@ -85,7 +86,7 @@ std::string FormatJson(const std::vector<OrganRehearsal>& organs) {
     }
     list.push_back(entry);
   }
-  return nlohmann::json{{"organs", list}}.dump(2) + "\n";
+  return core::FormatJson(nlohmann::json{{"organs", list}}, 2) + "\n";
 }
 
 std::vector<std::vector<std::string>> Tabulate(const LabelEdges& edges) {
@@ -122,7 +123,7 @@ std::string FormatJson(const LabelEdges& edges) {
   };
   const nlohmann::json all = {
       {"as_given", list(edges.as_given)}, {"shifted", list(edges.shifted)}, {"shift_mm", edges.shift_mm}};
-  return all.dump(2) + "\n";
+  return core::FormatJson(all, 2) + "\n";
 }
 
 }  // namespace trocar::contours

@@ -21,8 +21,25 @@ std::string ShownFixed(double value, int decimals, bool has_sign) {
   return LocalNumber(text);
 }
 
-void Print(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
+void Print(std::string_view text) {
+  PrintLines(PrintableLine(text));
+}
+
+void PrintLine(std::string_view text) {
+  PrintLines(PrintableLine(text) + "\n");
+}
+
+void PrintErrorLine(std::string_view text) {
+  std::fprintf(stderr, "%s\n", PrintableLine(text).c_str());
+}
+
+void PrintLines(std::string_view lines) {
+  std::fwrite(lines.data(), 1, lines.size(), stdout);
+}
+
+void PrintJsonText(std::string_view json) {
+  PrintLines(json);
+  PrintLines("\n");
 }
 
 std::string FormatShownTable(std::vector<std::vector<std::string>> rows) {
@@ -38,7 +55,7 @@ std::string FormatShownTable(std::vector<std::vector<std::string>> rows) {
 }
 
 void PrintTable(std::vector<std::vector<std::string>> rows) {
-  Print(FormatShownTable(std::move(rows)));
+  PrintLines(FormatShownTable(std::move(rows)));
 }
 
 std::string FormatFields(std::vector<std::vector<std::string>> rows) {

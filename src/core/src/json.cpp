@@ -13,6 +13,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "trocar/core/json_text.h"
 #include "trocar/core/printable.h"
 #include "trocar/core/safe_file.h"
 
@@ -297,10 +298,14 @@ class StreamIterator {
 };
 
 std::string NumberText(double value) {
-  return nlohmann::json(value).dump();
+  return core::FormatJson(nlohmann::json(value));
 }
 
 }  // namespace
+
+std::string QuoteJson(std::string_view text) {
+  return FormatJson(nlohmann::json(std::string(text)));
+}
 
 // --- views
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/core/markup.h"
 
+#include "trocar/core/printable_output.h"
+
 namespace trocar::core {
 
 std::string EscapeMarkup(std::string_view text) {
   std::string escaped;
-  for (const char c : text) {
+  for (const char c : PrintableText(text)) {
     switch (c) {
       case '&':
         escaped += "&amp;";

@@ -7,6 +7,8 @@
 
 #include <cstdio>
 
+#include "trocar/core/printable_output.h"
+
 namespace trocar::core {
 namespace {
 
@@ -44,7 +46,7 @@ std::optional<std::string> AskInSecret(const std::string& question) {
   if (::isatty(STDIN_FILENO) != 1) return std::nullopt;
   const SilentTerminal silent(STDIN_FILENO);
   if (!silent.IsSilent()) return std::nullopt;
-  std::fprintf(stderr, "%s: ", question.c_str());
+  std::fprintf(stderr, "%s: ", PrintableLine(question).c_str());
   std::string answer;
   for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) answer += static_cast<char>(c);
   std::fputc('\n', stderr);

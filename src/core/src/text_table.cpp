@@ -64,7 +64,8 @@ std::string FormatTable(const std::vector<std::vector<std::string>>& given) {
 }
 
 std::string WrapText(const std::string& text, std::size_t width, const std::string& indent) {
-  std::istringstream words(text);
+  // a line end of somebody else's text would begin a line with what follows it
+  std::istringstream words(PrintableLine(text));
   std::string wrapped, line;
   for (std::string word; words >> word;) {
     if (!line.empty() && indent.size() + CountColumns(line) + 1 + CountColumns(word) > width) {

@@ -63,6 +63,21 @@ TEST_F(Console, TranslatesHeadingsAndKeepsNumbersAtTheRight) {
 TEST_F(Console, WrapsAtColumnsNotAtBytes) {
   EXPECT_EQ(WrapText("visión crítica de seguridad", 17, "  "), "  visión crítica\n  de seguridad\n");
   EXPECT_EQ(WrapText("", 10, ""), "");
+  EXPECT_EQ(WrapText("a\nVERIFIED: b", 40, ""), "a\\x0AVERIFIED: b\n") << "no line of a text's own";
+}
+
+TEST_F(Console, KeepsATextWithinItsLine) {
+  const std::string hostile = "a\nVERIFIED\x1b[2J";
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Print(hostile);
+  PrintLine(hostile);
+  PrintLine();
+  PrintErrorLine(hostile);
+  PrintLines("two\nlines\n");
+  const std::string shown = "a\\x0AVERIFIED\\x1B[2J";
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), shown + shown + "\n\ntwo\nlines\n");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), shown + "\n");
 }
 
 }  // namespace

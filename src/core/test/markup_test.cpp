@@ -21,5 +21,11 @@ TEST(EscapeMarkup, LeavesEverythingElse) {
   EXPECT_EQ(EscapeMarkup("&amp;"), "&amp;amp;") << "what is escaped already is text like any other";
 }
 
+TEST(EscapeMarkup, ShowsWhatXmlDoesNotAllowAndWhatTurnsTheText) {
+  EXPECT_EQ(EscapeMarkup(std::string("\0\x1b", 2)), "\\x00\\x1B");
+  EXPECT_EQ(EscapeMarkup("a\xff"), "a\\xFF");
+  EXPECT_EQ(EscapeMarkup("\u202egnp"), "\\u202egnp");
+}
+
 }  // namespace
 }  // namespace trocar::core

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "trocar/core/console.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/log.h"
 #include "trocar/core/text_table.h"
 
@@ -42,6 +43,13 @@ TEST(PrintableText, LeavesJsonTheSameText) {
   const std::string shown = PrintableText(json.dump());
   EXPECT_TRUE(IsPlain(shown));
   EXPECT_EQ(nlohmann::json::parse(shown), json);
+}
+
+TEST(FormatJson, WritesBytesThatAreNoUtf8) {
+  const nlohmann::json json = {{"name", "a\xff\xc0\"\n"}};
+  EXPECT_THROW((void)json.dump(), nlohmann::json::exception) << "the control";
+  EXPECT_EQ(nlohmann::json::parse(FormatJson(json, 2))["name"], "a\ufffd\ufffd\"\n");
+  EXPECT_EQ(QuoteJson("a\"\\\xff\x1b"), "\"a\\\"\\\\\ufffd\\u001b\"");
 }
 
 /// What `print` brings to descriptors 1 and 2 through the fence.

@@ -4,6 +4,7 @@
 #include "class_tables.h"
 #include "files.h"
 #include "layout_set.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::dataset {
@@ -108,7 +109,7 @@ class CholecT50Writer : public VideoWriter {
   }
 
   core::Status Finish() override {
-    return core::WriteFile(folder_ / "labels" / (name_ + ".json"), label_.dump() + "\n");
+    return core::WriteFile(folder_ / "labels" / (name_ + ".json"), core::FormatJson(label_) + "\n");
   }
 
  private:

@@ -5,6 +5,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "trocar/core/json_text.h"
+#include "trocar/core/printable_output.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/sha256.h"
 #include "trocar/core/state_hash.h"
@@ -81,8 +83,9 @@ std::string FormatReadme(const Plan& plan, const ordered_json& card) {
       "\n\nCheck it: trocar dataset verify DIR, or sha256sum -c SHA256SUMS.\n\n"
       "| seed | patient | frames | seconds | came to | state |\n|---|---|---|---|---|---|\n";
   for (const auto& video : card["videos"]) {
-    text += "| " + video["seed"].dump() + " | " + video["patient"].get<std::string>() + " | " +
-            video["frames"].dump() + " | " + video["seconds"].dump() + " | " +
+    text += "| " + core::FormatJson(video["seed"]) + " | " +
+            core::PrintableLine(video["patient"].get<std::string>()) + " | " +
+            core::FormatJson(video["frames"]) + " | " + core::FormatJson(video["seconds"]) + " | " +
             video["outcome"].get<std::string>() + " | `" + video["state_hash"].get<std::string>() + "` |\n";
   }
   text += "\n## Known gaps\n\n";
@@ -95,9 +98,9 @@ std::string FormatCommand(const Plan& plan) {
   ordered_json number = plan.every;
   std::string text = "trocar dataset --layout " + std::string(NameOf(plan.layout)) + FormatSource(plan) +
                      " --size " + std::to_string(plan.width) + "x" + std::to_string(plan.height) +
-                     " --every " + number.dump() + " --most-seconds ";
+                     " --every " + core::FormatJson(number) + " --most-seconds ";
   number = plan.most_seconds;
-  text += number.dump();
+  text += core::FormatJson(number);
   if (!plan.has_variation) text += " --no-variation";
   if (!plan.has_pictures) text += " --no-pictures";
   return text + " -o DIR";
@@ -147,7 +150,7 @@ core::Result<CardSummary> WriteCard(const std::filesystem::path& folder, const P
   for (const char* gap : kCommonGaps) card["known_gaps"].push_back(gap);
   if (plan.recordings.empty()) card["known_gaps"].push_back(kScriptedGap);
   if (auto s = core::WriteFile(folder / "README.md", FormatReadme(plan, card)); !s) return s.error();
-  if (auto s = core::WriteFile(folder / "card.json", card.dump(2) + "\n"); !s) return s.error();
+  if (auto s = core::WriteFile(folder / "card.json", core::FormatJson(card, 2) + "\n"); !s) return s.error();
   return CardSummary{*hash, names.size()};
 }
 

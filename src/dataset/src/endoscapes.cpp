@@ -7,6 +7,7 @@
 #include "class_tables.h"
 #include "files.h"
 #include "layout_set.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::dataset {
@@ -136,7 +137,7 @@ class EndoscapesSet : public LayoutSet {
       }
       if (videos.empty()) continue;
       const auto write = [&](const char* name, const ordered_json& content) {
-        return core::WriteFile(folder / split / name, content.dump() + "\n");
+        return core::WriteFile(folder / split / name, core::FormatJson(content) + "\n");
       };
       if (auto s = write("annotation_coco.json", coco); !s) return s;
       if (auto s = write("annotation_ds_coco.json", judged); !s) return s;

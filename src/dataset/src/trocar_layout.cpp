@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "layout_set.h"
+#include "trocar/core/json_text.h"
 #include "trocar/dataset/hdf5_file.h"
 #include "trocar/environment/demonstration.h"
 #include "trocar/roles/roles.h"
@@ -73,9 +74,9 @@ class TrocarWriter : public VideoWriter {
   TrocarWriter(const VideoTask& task, const simulation::Simulation& simulation)
       : path_(task.folder / (NameVideo("video_", task.plan->first_seed + task.index, 5) + ".h5")),
         has_pictures_(task.plan->has_pictures),
-        anatomy_(DescribeAnatomy(simulation).dump()),
+        anatomy_(core::FormatJson(DescribeAnatomy(simulation))),
         demonstration_(simulation),
-        fields_(DescribeFields(demonstration_).dump()) {}
+        fields_(core::FormatJson(DescribeFields(demonstration_))) {}
 
   void Look(const simulation::Simulation& simulation, const scene::Input& input) override {
     now_ = {input, simulation.GetSnapshot().time};

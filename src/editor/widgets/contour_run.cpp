@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/gui/window_screenshot.h"
 
@@ -240,7 +241,7 @@ void ContourRun::PrintReport() const {
       {"is_saved", !document.IsDirty()},
       {"has_autosave", at_.presenter.SideFile().IsKeeping()},
       {"messages", at_.bars.Texts()}};
-  std::printf("%s\n", report.dump().c_str());
+  std::printf("%s\n", core::FormatJson(report).c_str());
 }
 
 }  // namespace trocar::editor

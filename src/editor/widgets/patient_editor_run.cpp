@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "trocar/core/json_text.h"
 #include "trocar/gui/window_screenshot.h"
 
 namespace trocar::editor {
@@ -45,9 +46,9 @@ void PatientEditorRun::SaveScreenshot() {
   const auto& file = at_.presenter.GetOptions().run.screenshot;
   if (const auto status = gui::SaveScreenshot(at_.window, file); !status)
     return at_.presenter.Fail(status.error());
-  std::printf("{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"tubes\": %zu}\n",
-              file.filename().c_str(), at_.window.get_width(), at_.window.get_height(),
-              at_.presenter.Editor()->GetPatient().tubes.size());
+  std::printf("{\"screenshot\": %s, \"width\": %d, \"height\": %d, \"tubes\": %zu}\n",
+              core::QuoteJson(file.filename().string()).c_str(), at_.window.get_width(),
+              at_.window.get_height(), at_.presenter.Editor()->GetPatient().tubes.size());
   at_.window.close();
 }
 

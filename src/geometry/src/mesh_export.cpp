@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "trocar/core/assert.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/version.h"
 #include "trocar/geometry/mesh_measures.h"
 
@@ -192,7 +193,7 @@ std::string FormatGlb(std::span<const NamedMesh> meshes, std::string_view copyri
   json["buffers"] = Json::array({Json{{"byteLength", buffer.Bytes().size()}}});
 
   std::string chunks;
-  AppendChunk(chunks, kJsonChunk, json.dump(-1, ' ', false, Json::error_handler_t::replace), ' ');
+  AppendChunk(chunks, kJsonChunk, core::FormatJson(json), ' ');
   AppendChunk(chunks, kBinChunk, buffer.Bytes(), '\0');
   std::string file;
   AppendBytes(file, kGlbMagic);

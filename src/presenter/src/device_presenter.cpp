@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/log.h"
 #include "trocar/core/translate.h"
 #include "trocar/device/device_spec.h"
@@ -149,12 +150,12 @@ DevicePageRun::Step DevicePresenter::Advance(double now) {
 
 std::string DevicePresenter::MakeReport() const {
   char text[400];
-  std::snprintf(
-      text, sizeof(text),
-      "{\"device\": \"%.200s\", \"reads\": %llu, \"shown\": %zu, \"calibrated\": %s, \"residual_mm\": %.3f}",
-      bench_.Spec().c_str(), static_cast<unsigned long long>(bench_.Report().reads), bench_.History().size(),
-      bench_.LastResult().is_kept ? "true" : "false", 1e3 * bench_.LastResult().residual);
-  return text;
+  std::snprintf(text, sizeof(text),
+                ", \"reads\": %llu, \"shown\": %zu, \"calibrated\": %s, \"residual_mm\": %.3f}",
+                static_cast<unsigned long long>(bench_.Report().reads), bench_.History().size(),
+                bench_.LastResult().is_kept ? "true" : "false", 1e3 * bench_.LastResult().residual);
+  // its name is of a file or a command line
+  return "{\"device\": " + core::QuoteJson(bench_.Spec()) + text;
 }
 
 void DevicePresenter::Say(const std::string& text, bool is_warning) {

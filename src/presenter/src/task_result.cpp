@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "trocar/core/assert.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/markup.h"
 #include "trocar/core/translate.h"
 #include "trocar/core/version.h"
@@ -141,7 +142,7 @@ std::string FormatTaskResultJson(const TaskResult& result) {
          {"penalty", error.penalty},
          {"at_mm", {1e3 * error.position.x, 1e3 * error.position.y, 1e3 * error.position.z}}});
   }
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return core::FormatJson(json, 2) + "\n";
 }
 
 std::string FormatTaskResultHtml(const TaskResult& result) {

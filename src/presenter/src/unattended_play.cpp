@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "trocar/core/json_text.h"
+
 namespace trocar::presenter {
 
 UnattendedPlay::Step UnattendedPlay::Advance(double simulated, double elapsed) {
@@ -19,18 +21,20 @@ core::Error UnattendedPlay::Complaint() const {
 
 std::string FormatPlayReport(const PlayReport& report) {
   char text[640];
-  std::snprintf(
-      text, sizeof text,
-      "{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"first_picture_s\": %.3f, \"ticks\": %llu, "
-      "\"late_ticks\": %llu, \"tick_median_ms\": %.3f, \"tick_p99_ms\": %.3f, \"real_time\": %s, "
-      "\"pictures\": %llu, \"pictures_per_second\": %.1f, \"has_task_list\": %s, \"result\": \"%s\"",
-      report.screenshot.c_str(), report.width, report.height, report.first_picture,
-      static_cast<unsigned long long>(report.statistics.ticks),
-      static_cast<unsigned long long>(report.statistics.late_ticks), 1e3 * report.statistics.tick_median,
-      1e3 * report.statistics.tick_p99, report.statistics.is_real_time ? "true" : "false",
-      static_cast<unsigned long long>(report.pictures), report.pictures_per_second,
-      report.has_task_list ? "true" : "false", report.result.c_str());
-  return text + (report.haptics.empty() ? std::string() : ", \"haptics\": " + report.haptics) + "}";
+  std::snprintf(text, sizeof text,
+                ", \"width\": %d, \"height\": %d, \"first_picture_s\": %.3f, \"ticks\": %llu, "
+                "\"late_ticks\": %llu, \"tick_median_ms\": %.3f, \"tick_p99_ms\": %.3f, \"real_time\": %s, "
+                "\"pictures\": %llu, \"pictures_per_second\": %.1f, \"has_task_list\": %s",
+                report.width, report.height, report.first_picture,
+                static_cast<unsigned long long>(report.statistics.ticks),
+                static_cast<unsigned long long>(report.statistics.late_ticks),
+                1e3 * report.statistics.tick_median, 1e3 * report.statistics.tick_p99,
+                report.statistics.is_real_time ? "true" : "false",
+                static_cast<unsigned long long>(report.pictures), report.pictures_per_second,
+                report.has_task_list ? "true" : "false");
+  return "{\"screenshot\": " + core::QuoteJson(report.screenshot) + text +
+         ", \"result\": " + core::QuoteJson(report.result) +
+         (report.haptics.empty() ? std::string() : ", \"haptics\": " + report.haptics) + "}";
 }
 
 }  // namespace trocar::presenter

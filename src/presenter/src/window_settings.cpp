@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/user_folder.h"
 #include "trocar/presenter/tutorial.h"
@@ -89,8 +90,7 @@ core::Status SaveWindowSettings(const std::filesystem::path& path, const WindowS
   }
   std::error_code ignored;
   ignored = core::MakeFolders(path.parent_path());
-  return core::WriteFile(path,
-                         json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  return core::WriteFile(path, core::FormatJson(json, 2) + "\n");
 }
 
 }  // namespace trocar::presenter

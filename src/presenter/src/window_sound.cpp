@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/translate.h"
@@ -53,7 +54,7 @@ core::Status SaveSoundSettings(const std::filesystem::path& file, const sound::S
                                        {"speech", settings.has_speech}};
   std::error_code ignored;
   ignored = core::MakeFolders(file.parent_path());
-  return core::WriteFile(file, json.dump(2) + "\n");
+  return core::WriteFile(file, core::FormatJson(json, 2) + "\n");
 }
 
 WindowSound::WindowSound(std::filesystem::path file, const std::string& output)

@@ -125,6 +125,16 @@ TEST_F(DevicePresenterTest, CalibratesByItselfAndReports) {
   EXPECT_EQ(report["device"], options.device);
 }
 
+TEST_F(DevicePresenterTest, ReportsADeviceOfAnyNameAsJson) {
+  Options options;
+  options.is_device_page = true;
+  options.device = "liberty:/dev/\"}\n\x1b[2J\xff";
+  Begin(options);
+  const std::string report = presenter_->MakeReport();
+  EXPECT_TRUE(nlohmann::json::accept(report)) << report;
+  EXPECT_EQ(report.find('\x1b'), std::string::npos);
+}
+
 TEST_F(DevicePresenterTest, AHapticDeviceGivesForceOnlyWhenAsked) {
   Options options;
   options.task = "peg_transfer";

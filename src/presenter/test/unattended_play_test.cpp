@@ -44,6 +44,9 @@ TEST(FormatPlayReport, IsJson) {
   EXPECT_EQ(json["pictures"], 12);
   EXPECT_EQ(json["result"], "Completed");
   EXPECT_FALSE(json.contains("haptics"));
+  report.screenshot = report.result = "a\"}\n\xff";
+  json = nlohmann::json::parse(FormatPlayReport(report));
+  EXPECT_EQ(json["screenshot"], "a\"}\n\ufffd");
   report.haptics = "{\"rate\": 1000}";
   json = nlohmann::json::parse(FormatPlayReport(report));
   EXPECT_EQ(json["haptics"]["rate"], 1000);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/simulation/attempt_end.h"
 #include "trocar/training/critical_view.h"
 #include "trocar/training/injury.h"
@@ -68,7 +69,7 @@ std::optional<ordered_json> ReadObject(std::string_view outcome) {
 }
 
 std::string Written(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return core::FormatJson(json);
 }
 
 }  // namespace

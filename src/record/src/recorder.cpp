@@ -21,6 +21,7 @@
 #include "recording_json.h"
 #include "state_coder.h"
 #include "state_index.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/log.h"
 #include "trocar/core/real_time.h"
 #include "trocar/core/version.h"
@@ -267,7 +268,7 @@ void Recorder::Content::WriteEvents(const Entry& entry) {
   for (std::uint8_t i = 0; i < entry.error_count; ++i)
     list.push_back(TaskErrorJson(*scene.task, entry.tick, entry.errors[i]));
   if (entry.phase) list.push_back(PhaseJson(entry.tick, *entry.phase));
-  const std::string text = list.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const std::string text = core::FormatJson(list);
   writer.Put(ChunkKind::kEvents, entry.tick, BytesOf(text));
 }
 

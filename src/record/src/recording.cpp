@@ -122,8 +122,10 @@ class RecordingReader {
         return {};
       case ChunkKind::kEnding: {
         Ending ending;
+        recording_.is_ending_refused = true;
         if (!ReadEnding(TextOf(content), ending)) return "its ending is not understood";
         if (ending.ticks != recording_.LastTick()) return "its ending is of another tick";
+        recording_.is_ending_refused = false;
         recording_.ending = std::move(ending);
         return {};
       }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/training/operation_error.h"
 
@@ -50,7 +51,7 @@ bool ReadCount(const ordered_json& json, const char* key, std::uint64_t& value) 
 }
 
 std::string Dump(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return core::FormatJson(json);
 }
 
 }  // namespace

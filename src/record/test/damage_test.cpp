@@ -10,6 +10,7 @@
 
 #include "chunk.h"
 #include "recorded_scene.h"
+#include "recording_json.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::record {
@@ -38,6 +39,35 @@ class Damage : public RecordedScene {
   }
   std::vector<std::byte> bytes_;
 };
+
+// A cut leaves no ending; one that contradicts the rest was written by somebody.
+TEST_F(Damage, TellsAnEndingThatContradictsFromOneThatIsMissing) {
+  const auto whole = ReadRecording(bytes_, "whole");
+  ASSERT_TRUE(whole.ok() && whole->ending);
+  EXPECT_FALSE(whole->is_ending_refused);
+  // the last chunk is the ending
+  std::size_t at = sizeof(FileHeader), last = 0;
+  std::uint64_t number = 0;
+  for (ChunkHeader chunk; at < bytes_.size(); at += sizeof chunk + chunk.size) {
+    std::memcpy(&chunk, bytes_.data() + at, sizeof chunk);
+    last = at, number = chunk.number;
+  }
+  std::vector<std::byte> cut(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(last));
+  const auto missing = ReadRecording(cut, "cut");
+  ASSERT_TRUE(missing.ok());
+  EXPECT_FALSE(missing->ending || missing->is_ending_refused);
+  Ending other = *whole->ending;
+  ++other.ticks;
+  for (const std::string& text : {WriteEnding(other), std::string("{}"), std::string("its ending")}) {
+    std::vector<std::byte> forged = cut;
+    PutChunk(whole->file_id, number, ChunkKind::kEnding, other.ticks, BytesOf(text), forged);
+    const auto recording = ReadRecording(forged, "forged");
+    ASSERT_TRUE(recording.ok());
+    EXPECT_FALSE(recording->ending.has_value()) << text;
+    EXPECT_TRUE(recording->is_ending_refused) << text;
+    EXPECT_FALSE(recording->damage.empty()) << text;
+  }
+}
 
 TEST_F(Damage, EveryTruncationIsNoticedAndWhatIsBeforeIsRead) {
   const std::size_t most = std::min(bytes_.size() - 1, kCutSize);

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::rehearsal {
@@ -154,8 +155,7 @@ core::Status SaveRehearsal(const std::filesystem::path& file, const RehearsalSta
         core::ErrorCode::kFileUnwritable,
         file.parent_path().string() + ": " + failure.message() + "; check the folder and its rights"};
   }
-  auto written = core::WriteFile(
-      file, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  auto written = core::WriteFile(file, core::FormatJson(json, 2) + "\n");
   if (written) fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write, failure);
   return written;
 }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/translate.h"
 #include "trocar/scene/scene.h"
 
@@ -155,7 +156,7 @@ std::string FormatRating(const Rating& rating) {
   json["points"] = nlohmann::ordered_json::object();
   for (const auto& [key, points] : rating.points) json["points"][key] = points;
   json["sum"] = rating.Sum();
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return core::FormatJson(json, 2) + "\n";
 }
 
 Document MakeRatingSheet(const RatingForm& form) {

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "trocar/core/csv_field.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/text_table.h"
 #include "trocar/training/metric_definition.h"
 
 namespace trocar::report {
 namespace {
 
+using core::FormatCsvField;
 using nlohmann::ordered_json;
 
 constexpr int kAllDigits = 17;
@@ -22,19 +25,6 @@ std::string SiUnit(const MetricRow& row) {
 /// In SI again.
 double SiValue(const MetricRow& row, double shown) {
   return row.scale != 0 ? shown / row.scale : shown;
-}
-
-/// RFC 4180. A spreadsheet must not take a stranger's text for a formula.
-std::string QuoteCsv(std::string text, bool is_number = false) {
-  if (!is_number && !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)
-    text.insert(0, 1, '\'');
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
 }
 
 std::string AllDigits(double value) {
@@ -131,8 +121,8 @@ std::vector<FieldMeaning> MakeDataDictionary() {
 std::string FormatDictionaryCsv() {
   std::string csv = "field,meaning,unit,source\r\n";
   for (const FieldMeaning& one : MakeDataDictionary())
-    csv += QuoteCsv(one.field) + "," + QuoteCsv(one.meaning) + "," + QuoteCsv(one.unit) + "," +
-           QuoteCsv(one.source) + "\r\n";
+    csv += FormatCsvField(one.field) + "," + FormatCsvField(one.meaning) + "," + FormatCsvField(one.unit) +
+           "," + FormatCsvField(one.source) + "\r\n";
   return csv;
 }
 
@@ -142,14 +132,15 @@ std::string FormatCsv(const AttemptReport& report) {
       "person,task,level,patient,seed,started,program,metric,name,hand,phase,tool,value,unit,as_recorded\r\n";
   std::string of;
   for (const std::string& text : {facts.person, facts.task_key, facts.level, facts.patient})
-    of += QuoteCsv(text) + ",";
-  of += std::to_string(facts.seed) + "," + QuoteCsv(facts.started) + "," + QuoteCsv(facts.program) + ",";
+    of += FormatCsvField(text) + ",";
+  of += std::to_string(facts.seed) + "," + FormatCsvField(facts.started) + "," +
+        FormatCsvField(facts.program) + ",";
   const std::string as_recorded = !facts.is_as_recorded ? "" : *facts.is_as_recorded ? "true" : "false";
   const auto add = [&](const std::string& metric, const std::string& name, const MetricRow& row, double value,
                        const std::string& unit) {
-    csv += of + QuoteCsv(metric) + "," + QuoteCsv(name) + "," + QuoteCsv(row.hand) + "," +
-           QuoteCsv(row.phase) + "," + QuoteCsv(row.tool) + "," + AllDigits(value) + "," + QuoteCsv(unit) +
-           "," + as_recorded + "\r\n";
+    csv += of + FormatCsvField(metric) + "," + FormatCsvField(name) + "," + FormatCsvField(row.hand) + "," +
+           FormatCsvField(row.phase) + "," + FormatCsvField(row.tool) + "," + AllDigits(value) + "," +
+           FormatCsvField(unit) + "," + as_recorded + "\r\n";
   };
   for (const MetricRow& row : report.metrics)
     add(row.id, row.name, row, SiValue(row, row.value), SiUnit(row));
@@ -205,7 +196,7 @@ std::string FormatJson(const AttemptReport& report) {
   for (const FieldMeaning& one : MakeDataDictionary())
     json["dictionary"].push_back(
         {{"field", one.field}, {"meaning", one.meaning}, {"unit", one.unit}, {"source", one.source}});
-  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return core::FormatJson(json, 1) + "\n";
 }
 
 }  // namespace trocar::report

@@ -15,7 +15,9 @@
 #include <nlohmann/json.hpp>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/translate.h"
 #include "trocar/core/user_folder.h"
 
 namespace trocar::report {
@@ -216,6 +218,35 @@ std::string FindAccountName(std::string_view statement) {
   return at->is_string() ? at->get<std::string>() : std::string();
 }
 
+void EraseFile(const fs::path& path, const std::string& pseudonym, XapiErasure& erasure) {
+  std::error_code failure;
+  const std::string ending = path.extension().string();
+  const bool is_statement = ending == ".json",
+             is_half = ending == ".part";  // of a program that was killed
+  const bool is_reason = ending == ".txt";
+  if ((!is_statement && !is_half && !is_reason) || !fs::is_regular_file(path, failure)) return;
+  const auto text = core::ReadFile(path, kMostBytes);
+  if (!text.ok() && !is_half) {
+    if (fs::exists(path, failure)) erasure.left.push_back(core::ShownText(text.error()));
+    return;
+  }
+  const std::string name = text.ok() ? FindAccountName(*text) : std::string();
+  const bool is_named = !text.ok() || text->find(pseudonym) != std::string::npos;
+  if (name != pseudonym && !(is_named && !is_statement)) {
+    if (name.empty() && is_named)
+      erasure.left.push_back(core::TranslateWith(
+          "{1}: it is no whole statement, and names this person; look at it, and delete it",
+          {path.string()}));
+    return;
+  }
+  if (!fs::remove(path, failure) && failure) {
+    erasure.left.push_back(path.string() + ": " + failure.message());
+    return;
+  }
+  if (is_statement) fs::remove(fs::path(path).replace_extension(".txt"), failure);
+  if (!is_reason) ++erasure.statements;
+}
+
 }  // namespace
 
 core::Result<std::vector<XapiStatement>> MakeStatements(const AttemptReport& report,
@@ -249,7 +280,7 @@ core::Result<std::vector<XapiStatement>> MakeStatements(const AttemptReport& rep
                        {"platform", "Trocar" + (facts.program.empty() ? "" : " " + facts.program)},
                        {"language", "en"}};
     if (const std::string time = AddSeconds(facts.started, after); !time.empty()) json["timestamp"] = time;
-    statements.push_back({id, json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)});
+    statements.push_back({id, core::FormatJson(json)});
   };
   add("attempted", 0, {});
   ordered_json result = {{"completion", report.is_completed}, {"duration", FormatPeriod(report.seconds)}};
@@ -302,30 +333,19 @@ core::Status XapiQueue::Refuse(const XapiStatement& statement, const std::string
   return Remove(statement.id);
 }
 
-core::Result<std::size_t> XapiQueue::Erase(const std::string& pseudonym) {
-  std::size_t count = 0;
-  std::error_code failure;
+XapiErasure XapiQueue::Erase(const std::string& pseudonym) {
+  XapiErasure erasure;
   for (const fs::path& folder : {folder_, folder_ / "refused"}) {
-    // what a program that was killed left half written
-    for (const auto& entry : fs::directory_iterator(folder, failure)) {
-      if (entry.path().extension() != ".part") continue;
-      const auto text = core::ReadFile(entry.path(), kMostBytes);
-      if (text.ok() && text->find(pseudonym) == std::string::npos) continue;
-      fs::remove(entry.path(), failure);
-      if (failure) return Unwritable(entry.path());
-      ++count;
-    }
-    for (const fs::path& path : ListFiles(folder)) {
-      const auto text = core::ReadFile(path, kMostBytes);
-      if (!text.ok()) return text.error();
-      if (FindAccountName(*text) != pseudonym) continue;
-      fs::remove(path, failure);
-      if (failure) return Unwritable(path);
-      fs::remove(fs::path(path).replace_extension(".txt"), failure);
-      ++count;
-    }
+    std::error_code failure;
+    std::vector<fs::path> files;
+    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+         entry.increment(failure))
+      files.push_back(entry->path());
+    if (failure && failure != std::errc::no_such_file_or_directory)
+      erasure.left.push_back(folder.string() + ": " + failure.message());
+    for (const fs::path& path : files) EraseFile(path, pseudonym, erasure);
   }
-  return count;
+  return erasure;
 }
 
 }  // namespace trocar::report

@@ -193,12 +193,12 @@ TEST(XapiQueue, ForgetsAPerson) {
   // files of others are no statements, and no reason to stop
   for (const char* strange : {"[]", "7", R"({"id": 7})", "{"})
     ASSERT_TRUE(core::WriteFile(folder.Path() / "strange.json", strange).ok() &&
-                queue.Erase("T-NOBODY").ok() && queue.List().size() == 7u)
+                queue.Erase("T-NOBODY").left.empty() && queue.List().size() == 7u)
         << strange;
   std::filesystem::remove(folder.Path() / "strange.json");
   const auto erased = queue.Erase("T-ERASE");
-  ASSERT_TRUE(erased.ok());
-  EXPECT_EQ(*erased, 4u);
+  EXPECT_THAT(erased.left, testing::IsEmpty());
+  EXPECT_EQ(erased.statements, 4u);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.Path())) {
     if (!entry.is_regular_file()) continue;
     const auto text = core::ReadFile(entry.path());
@@ -206,6 +206,40 @@ TEST(XapiQueue, ForgetsAPerson) {
     EXPECT_EQ(text->find("T-ERASE"), std::string::npos) << entry.path();
   }
   EXPECT_EQ(queue.List().size(), 4u);
+}
+
+// What stands in the way of one file stops nothing, and is named.
+TEST(XapiQueue, ForgetsAPersonBeyondWhatItCannotRead) {
+  trocar::test::TemporaryFolder folder;
+  XapiQueue queue(folder.Path());
+  AttemptReport report = test::MakeTaskReport();
+  report.facts.person = "T-ERASE";
+  const auto statements = Make(report, kSettings);
+  for (const XapiStatement& statement : statements) ASSERT_TRUE(queue.Add(statement).ok());
+  ASSERT_TRUE(queue.Refuse(statements[0], "answer 400").ok());
+  const auto write = [&](const char* name, const std::string& text) {
+    ASSERT_TRUE(core::WriteFile(folder.Path() / name, text).ok());
+  };
+  const std::string large(std::size_t{2} << 20, ' ');
+  write("0-large.json", large + "T-ERASE");
+  write("refused/0-large.json", large);
+  write("0-damaged.json", R"({"actor": {"account": {"name": "T-ERASE")");
+  write("0-strange.json", R"({"actor": {"account": {"name": "T-OTHER"}}, "about": "T-ERASE"})");
+  write("0-other.json", R"({"id": 7})");
+  // of a program that was killed between the reason and the statement
+  write("refused/lonely.txt", "answer 400 for T-ERASE");
+  write("0.json.part", R"({"actor": {"account": {"name": "T-ERASE")");
+  const auto erased = queue.Erase("T-ERASE");
+  EXPECT_EQ(erased.statements, statements.size() + 1);
+  using testing::HasSubstr;
+  EXPECT_THAT(erased.left,
+              testing::UnorderedElementsAre(HasSubstr((folder.Path() / "0-large.json").string()),
+                                            HasSubstr((folder.Path() / "refused/0-large.json").string()),
+                                            HasSubstr((folder.Path() / "0-damaged.json").string())));
+  EXPECT_TRUE(queue.List().empty());
+  EXPECT_FALSE(std::filesystem::exists(folder.Path() / "refused/lonely.txt"));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path() / "0.json.part"));
+  EXPECT_TRUE(std::filesystem::exists(folder.Path() / "0-strange.json"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "patched_json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/scene/scene.h"
 
@@ -66,8 +67,9 @@ core::Result<std::vector<OperationLevel>> ReadOperationLevels(const std::filesys
       if (other.key == level.key) view.Complain("there are two levels \"" + level.key + "\"");
     }
     const nlohmann::json& node = (*json)["levels"][levels.size()];
-    if (node.is_object() && node.contains("scene")) level.scene_patch = node["scene"].dump();
-    if (node.is_object() && node.contains("parameters")) level.parameters_patch = node["parameters"].dump();
+    if (node.is_object() && node.contains("scene")) level.scene_patch = core::FormatJson(node["scene"]);
+    if (node.is_object() && node.contains("parameters"))
+      level.parameters_patch = core::FormatJson(node["parameters"]);
     if (level.key == kNormalLevel) {
       has_normal = true;
       if (!level.scene_patch.empty() || !level.parameters_patch.empty())

@@ -59,8 +59,7 @@ core::Result<Attempt> ReplayAttempt(record::Recording recording, const std::file
   VerificationMark& mark = attempt.mark;
   const bool is_of_this_version = recording.description.program == core::VersionText();
   const bool is_from_state = recording.FirstTick() > 0;
-  // an ending that was left out since it contradicts what stands before it: no cut makes one
-  const bool has_other_ending = !recording.ending && recording.damage.find("its ending") != std::string::npos;
+  const bool has_other_ending = recording.is_ending_refused;
   mark.program = core::VersionText();
   mark.time_ms = NowMilliseconds();
   auto replay = record::Replay::Open(std::move(recording), choice.threads);

@@ -11,6 +11,7 @@
 #include "private_file.h"
 #include "trocar/core/file_lock.h"
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/store/people.h"
 
@@ -32,7 +33,7 @@ core::Status Change(const fs::path& path, const std::function<void(Names&)>& cha
   std::error_code failure;
   if (names->empty() && !fs::exists(path, failure)) return {};
   // the new file takes another place on the disk: what stood in the old one is overwritten first
-  const std::string text = json.dump(1) + "\n";
+  const std::string text = core::FormatJson(json, 1) + "\n";
   if (fs::exists(path, failure)) {
     const fs::path old = path.string() + ".old";
     fs::remove(old, failure);

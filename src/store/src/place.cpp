@@ -46,7 +46,8 @@ bool IsKeywordString(std::string_view text) {
   const std::string lower = Lower(text);
   for (const std::string_view keyword : kKeywords) {
     for (std::size_t at = 0; (at = lower.find(keyword, at)) != std::string::npos; ++at) {
-      const bool begins = at == 0 || std::isspace(static_cast<unsigned char>(lower[at - 1])) != 0;
+      const bool begins = at == 0 || std::isspace(static_cast<unsigned char>(lower[at - 1])) != 0 ||
+                          lower[at - 1] == '?' || lower[at - 1] == '&';
       const std::size_t end = lower.find_first_not_of(" \t", at + keyword.size());
       if (begins && end != std::string::npos && lower[end] == '=') return true;
     }
@@ -54,9 +55,23 @@ bool IsKeywordString(std::string_view text) {
   return false;
 }
 
-/// Whether it is an address and no path: "scheme://...", "postgresql:...", "user:password@server/database".
+/// Whether a part of it between slashes is "user:password@server".
+bool HasCredentials(std::string_view text) {
+  for (std::size_t at = text.find('@'); at != std::string_view::npos; at = text.find('@', at + 1)) {
+    const std::size_t colon = text.rfind(':', at), slash = text.rfind('/', at);
+    if (colon != std::string_view::npos && (slash == std::string_view::npos || slash < colon)) return true;
+  }
+  return false;
+}
+
+/// Whether it is an address and no path: "scheme://...", "postgresql:...", "user:password@server/database", "postgres//...@...".
 bool IsAddress(std::string_view text) {
   const std::string lower = Lower(text);
+  const bool is_path = lower.starts_with("./") || lower.starts_with("../") ||
+                       (lower.starts_with("/") && !lower.starts_with("//"));
+  if ((!is_path && HasCredentials(lower)) ||
+      (lower.starts_with("postg") && lower.find('@') != std::string::npos))
+    return true;
   if (lower.find("://") != std::string::npos || lower.find(":\\\\") != std::string::npos) return true;
   const std::size_t colon = lower.find(':'), slash = lower.find('/');
   if (colon == std::string::npos || slash < colon) return false;

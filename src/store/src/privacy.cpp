@@ -16,6 +16,7 @@
 #include "private_file.h"
 #include "sql.h"
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/store/courses.h"
 #include "trocar/store/maintenance.h"
@@ -277,7 +278,8 @@ core::Result<int> ExportPerson(Store& store, const Viewer& viewer, std::string_v
     }
     page = attempts->next;
   } while (!page.empty());
-  if (auto written = WritePrivateFile(folder / "person.json", json.dump(2) + "\n"); !written.ok())
+  if (auto written = WritePrivateFile(folder / "person.json", core::FormatJson(json, 2) + "\n");
+      !written.ok())
     return written.error();
   return copied;
 }

@@ -16,6 +16,7 @@
 #include "private_file.h"
 #include "sql.h"
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
 
@@ -145,7 +146,7 @@ std::string WriteAttemptJson(const Attempt& attempt, std::string_view seal) {
   for (const training::MetricValue& m : attempt.metrics)
     json["metrics"].push_back(
         {EncodeText(m.metric), EncodeText(m.hand), EncodeText(m.phase), EncodeText(m.tool), m.value});
-  const std::string text = json.dump();
+  const std::string text = core::FormatJson(json);
   return "{\"format\": \"trocar-attempt\", \"version\": 1, \"crc32\": " + std::to_string(CalcChecksum(text)) +
          (seal.empty() ? "" : ", \"seal\": \"" + CalcSeal(text, seal) + "\"") + ",\n\"attempt\": " + text +
          "}\n";
@@ -168,9 +169,9 @@ core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& 
   if (json["version"] != 1)
     return core::Error{ErrorCode::kStoreSchema,
                        source + ": this attempt is of a later program; use that one"};
-  if (json["crc32"].get<std::uint32_t>() != CalcChecksum(json["attempt"].dump())) return damaged;
+  if (json["crc32"].get<std::uint32_t>() != CalcChecksum(core::FormatJson(json["attempt"]))) return damaged;
   // what carries its checksum is as it was written; the fields are still checked, since anybody can write such a file
-  const auto document = core::JsonDocument::Parse(json["attempt"].dump(), source, kLimits);
+  const auto document = core::JsonDocument::Parse(core::FormatJson(json["attempt"]), source, kLimits);
   if (!document.ok()) return document.error();
   const core::JsonView view = document->Root();
   const auto text_of = [&](const char* key) { return DecodeText(view.Text(key)); };
@@ -191,7 +192,7 @@ core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& 
   attempt.recording = text_of("recording");
   attempt.program = text_of("program");
   attempt.mark.why = view.Has("verification") ? WhyUnverified::kImported : WhyUnverified::kEarlier;
-  if (HasSeal(json, json["attempt"].dump(), seal)) {
+  if (HasSeal(json, core::FormatJson(json["attempt"]), seal)) {
     const auto state = ParseVerification(view.Text("verification"));
     const auto why = ParseWhy(view.Text("verification_why"));
     if (!state || !why) view.Complain("verification or verification_why is not a word that is known");
@@ -352,7 +353,8 @@ void Spool::ForgetJournal(std::int64_t before_ms) const {
 
 core::Result<int> Spool::Erase(std::string_view trainee) const {
   int erased = 0;
-  std::string letters = ordered_json(EncodeText(trainee)).dump();  // as it stands in a file, in quotes
+  std::string letters =
+      core::FormatJson(ordered_json(EncodeText(trainee)));  // as it stands in a file, in quotes
   letters = letters.substr(1, letters.size() - 2);
   for (const fs::path& folder :
        {folder_, folder_ / "held", folder_ / "damaged", folder_ / "unmeasured", journal_}) {

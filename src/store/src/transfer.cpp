@@ -16,7 +16,9 @@
 #include "schema.h"
 #include "sql.h"
 #include "tables.h"
+#include "trocar/core/csv_field.h"
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/store/attempts.h"
 #include "trocar/store/maintenance.h"
 #include "trocar/store/people.h"
@@ -333,20 +335,10 @@ core::Status ImportSqlite(const fs::path& file, RowImporter& importer) {
   });
 }
 
-/// RFC 4180. A spreadsheet must not take a stranger's text for a formula.
-std::string CsvField(std::string text) {
-  if (!text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)
-    text.insert(0, 1, '\'');
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string CsvField(const Value& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return CsvField(EncodeText(*text));
+  if (const auto* text = std::get_if<std::string>(&value)) return core::FormatCsvField(EncodeText(*text));
   const ordered_json json = JsonOf(value);
-  return json.is_null() ? "" : json.dump();
+  return json.is_null() ? "" : core::FormatJson(json);
 }
 
 }  // namespace
@@ -368,7 +360,7 @@ core::Status ExportJson(Store& store, const Viewer& viewer, const fs::path& file
         ordered_json json;
         for (std::size_t c = 0; c < table.columns.size(); ++c)
           json[std::string(table.columns[c].name)] = JsonOf(row.values[c]);
-        return writer->Append(std::exchange(separator, ",\n") + json.dump());
+        return writer->Append(std::exchange(separator, ",\n") + core::FormatJson(json));
       });
       if (!taken.ok()) return taken;
       if (separator != ",\n") {
@@ -426,6 +418,9 @@ core::Result<ImportReport> Import(Store& store, const Viewer& viewer, const fs::
     return core::Error{ErrorCode::kFileMissing, file.string() + " cannot be opened; check the path"};
   std::string head(15, '\0');
   stream.read(head.data(), 15);
+  // a folder opens, and cannot be read
+  if (stream.bad())
+    return core::Error{ErrorCode::kFileMissing, file.string() + " cannot be opened; check the path"};
   stream.clear();
   stream.seekg(0);
   Database& database = store.GetDatabase();

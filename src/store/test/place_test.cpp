@@ -38,14 +38,28 @@ TEST(FindPlace, TakesPathsAndServers) {
 }
 
 TEST(FindPlace, RefusesWhatIsNeitherAndSaysNoSecret) {
-  for (const char* text :
-       {"postgressql://trocar:SECRET@server/trocar", "postgresql:/trocar:SECRET@server/trocar",
-        "postgresql:trocar:SECRET@server/trocar", "Postgresql://trocar:SECRET@server/trocar",
-        "postgre://trocar:SECRET@server/trocar", " postgresql://trocar:SECRET@server/trocar",
-        "http://trocar:SECRET@server/trocar", "mysql://trocar:SECRET@server/trocar",
-        "sqlite:///SECRET.sqlite", "trocar:SECRET@server/trocar", "host=server user=trocar password=SECRET",
-        "password = SECRET host=server", "HOST=server password='SECRET'", "dbname=trocar passfile=SECRET",
-        "service=SECRET", "a\nSECRET", "\x1BSECRET"}) {
+  for (const char* text : {"postgressql://trocar:SECRET@server/trocar",
+                           "postgresql:/trocar:SECRET@server/trocar",
+                           "postgresql:trocar:SECRET@server/trocar",
+                           "Postgresql://trocar:SECRET@server/trocar",
+                           "postgre://trocar:SECRET@server/trocar",
+                           " postgresql://trocar:SECRET@server/trocar",
+                           "http://trocar:SECRET@server/trocar",
+                           "mysql://trocar:SECRET@server/trocar",
+                           "sqlite:///SECRET.sqlite",
+                           "trocar:SECRET@server/trocar",
+                           "host=server user=trocar password=SECRET",
+                           "password = SECRET host=server",
+                           "HOST=server password='SECRET'",
+                           "dbname=trocar passfile=SECRET",
+                           "service=SECRET",
+                           "a\nSECRET",
+                           "\x1BSECRET",
+                           "postgres//trocar:SECRET@server/trocar",
+                           "postgresql/trocar:SEC/SECRET@server/trocar",
+                           "//trocar:SECRET@server/trocar",
+                           "postgresql//server/trocar?user=trocar&password=SECRET",
+                           "server/trocar?password=SECRET"}) {
     for (const bool is_variable : {false, true}) {
       if (is_variable) ::setenv("TROCAR_STORE", text, 1);
       const auto place = FindPlace(is_variable ? "" : text);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/sha256.h"
 
@@ -201,7 +202,8 @@ std::vector<Run> ListRuns(const StudyPlan& plan) {
             if (plan.until == moment) inputs["until"] = name;
           for (std::size_t i = 0; i < values.size(); ++i)
             inputs["parameters"][plan.parameters[i].name] = values[i];
-          runs.push_back({runs.size(), Fingerprint(inputs.dump()), surgeon, plan.patients[p], seed, values});
+          runs.push_back(
+              {runs.size(), Fingerprint(core::FormatJson(inputs)), surgeon, plan.patients[p], seed, values});
         }
       }
     }

@@ -15,6 +15,7 @@
 
 #include "study_folder.h"
 #include "table.h"
+#include "trocar/core/console.h"
 #include "trocar/core/file_lock.h"
 #include "trocar/core/safe_file.h"
 
@@ -138,7 +139,8 @@ core::Status RunLocally(const StudyOptions& options, const StudyPlan& plan,
                                                             "; ask for fewer workers (--jobs)"};
     if (child == 0) {
       const core::Status worked = Work(options, plan, {i, options.workers});
-      if (!worked.ok()) std::fprintf(stderr, "trocar: worker %d: %s\n", i, worked.error().Text().c_str());
+      if (!worked.ok())
+        core::PrintErrorLine("trocar: worker " + std::to_string(i) + ": " + worked.error().Text());
       std::fflush(nullptr);
       _exit(worked.ok() ? 0 : 1);
     }

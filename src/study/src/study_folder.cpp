@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
 
@@ -47,7 +48,7 @@ core::Status StudyFolder::Begin(const std::filesystem::path& plan_file) const {
   const auto plan = FingerprintFile(plan_file);
   if (!plan) return plan.error();
   const ordered_json mine = DescribeStudy(*plan, *program);
-  if (!theirs) return core::WriteFile(head, mine.dump(2) + "\n");
+  if (!theirs) return core::WriteFile(head, core::FormatJson(mine, 2) + "\n");
   if (*theirs == mine) return {};
   const bool is_program = TextOf(*theirs, "plan_sha256") == *plan;
   return core::Error{
@@ -87,13 +88,12 @@ core::Status StudyFolder::Keep(const StudyPlan& plan, const Run& run, const RunR
                        {"state_hash", result.state_hash},
                        {"numbers", ordered_json::object()}};
   for (const auto& [name, value] : result.numbers) json["numbers"][name] = value;
-  return core::WriteFile(ResultPath(run), json.dump(2) + "\n");
+  return core::WriteFile(ResultPath(run), core::FormatJson(json, 2) + "\n");
 }
 
 core::Status StudyFolder::NoteFailure(const StudyPlan& plan, const Run& run, const std::string& why) const {
   const ordered_json json = {{"key", run.key}, {"run", Describe(plan, run)}, {"why", why}};
-  return core::WriteFile(FailurePath(run),
-                         json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  return core::WriteFile(FailurePath(run), core::FormatJson(json, 2) + "\n");
 }
 
 void StudyFolder::ForgetFailure(const Run& run) const {
@@ -112,7 +112,7 @@ std::string Describe(const StudyPlan& plan, const Run& run) {
   std::string text = "surgeon=" + run.surgeon + " patient=" + run.patient.filename().string() +
                      " seed=" + std::to_string(run.seed);
   for (std::size_t i = 0; i < run.values.size(); ++i)
-    text += " " + plan.parameters[i].name + "=" + ordered_json(run.values[i]).dump();
+    text += " " + plan.parameters[i].name + "=" + core::FormatJson(ordered_json(run.values[i]));
   return text;
 }
 

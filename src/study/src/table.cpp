@@ -6,6 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "trocar/core/csv_field.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/dataset/hdf5_file.h"
@@ -16,7 +18,7 @@ namespace {
 constexpr std::size_t kInputColumns = 5;  // before the parameters
 
 std::string FormatExactly(double value) {
-  return nlohmann::json(value).dump();  // the shortest text that is read back as the same number
+  return core::FormatJson(nlohmann::json(value));  // the shortest text that is read back as the same number
 }
 
 std::vector<std::string> ListColumns(const StudyPlan& plan, std::span<const Row> rows) {
@@ -26,13 +28,6 @@ std::vector<std::string> ListColumns(const StudyPlan& plan, std::span<const Row>
   if (!rows.empty())
     for (const auto& [name, value] : rows.front().result.numbers) columns.push_back(name);
   return columns;
-}
-
-std::string Quote(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::vector<std::string> ListValues(const Row& row) {
@@ -70,12 +65,16 @@ struct CloseStatement {
 
 core::Status WriteCsv(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows) {
   std::string text;
-  const auto add = [&](const std::vector<std::string>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? "," : "") + Quote(values[i]);
+  const std::vector<std::string> columns = ListColumns(plan, rows);
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    text += (i > 0 ? "," : "") + core::FormatCsvField(columns[i]);
+  text += "\n";
+  for (const Row& row : rows) {
+    const std::vector<std::string> values = ListValues(row);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      text += (i > 0 ? "," : "") + (IsText(plan, i) ? core::FormatCsvField(values[i]) : values[i]);
     text += "\n";
-  };
-  add(ListColumns(plan, rows));
-  for (const Row& row : rows) add(ListValues(row));
+  }
   return core::WriteFile(path, text);
 }
 

@@ -71,6 +71,8 @@ class Process {
   void Wait() {
     if (is_running_) Collect(0);
   }
+  /// While it has not ended.
+  pid_t Id() const { return process_; }
   void Signal(int signal) {
     if (is_running_) ::kill(process_, signal);
   }

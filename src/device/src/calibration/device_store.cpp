@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/user_folder.h"
 
@@ -195,7 +196,7 @@ std::string FormatStore(const DeviceStore& store) {
     json["jaw"][kHandNames[i]] = {
         {"closed", jaw.closed}, {"open", jaw.open}, {"max_jaw_deg", jaw.max_jaw / kDegree}};
   }
-  return json.dump(2) + "\n";
+  return core::FormatJson(json, 2) + "\n";
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/core/json.h"
+#include "trocar/core/json_text.h"
 
 namespace trocar::device::haply {
 namespace {
@@ -109,7 +110,7 @@ std::string FormatState(const State& state) {
           {{"a", (state.buttons & 1u) != 0},
            {"b", (state.buttons & 2u) != 0},
            {"c", (state.buttons & 4u) != 0}}}}}});
-  return root.dump();
+  return core::FormatJson(root);
 }
 
 std::string FormatForces(const std::vector<std::string>& ids, const std::array<Vec3, kMaxDevices>& forces) {
@@ -120,7 +121,7 @@ std::string FormatForces(const std::vector<std::string>& ids, const std::array<V
          {"commands", {{"set_cursor_force", {{"values", WriteVector(ToService(forces[i]))}}}}}});
   }
   // ids come from outside and may hold any bytes
-  return root.dump(-1, ' ', false, json::error_handler_t::replace);
+  return core::FormatJson(root);
 }
 
 bool ParseForces(std::string_view text, std::vector<std::string>& ids,

@@ -17,8 +17,17 @@ std::string ShownNumber(double value, int digits = 4);
 /// \param has_sign  "+1.20"
 std::string ShownFixed(double value, int decimals, bool has_sign = false);
 
-/// To standard output, as it is.
-void Print(const std::string& text);
+/// Part of a line to standard output. What stands in it may be of a file or a network: a line end in it becomes visible, and ends
+/// no line.
+void Print(std::string_view text);
+/// The same as a line.
+void PrintLine(std::string_view text = {});
+/// The same to standard error.
+void PrintErrorLine(std::string_view text);
+/// Several lines, of which each value was made printable where it was put in: FormatTable, FormatFields, WrapText and SaidText do that.
+void PrintLines(std::string_view lines);
+/// JSON that a program reads, with a line end.
+void PrintJsonText(std::string_view json);
 
 /// FormatTable with its heading translated, and with the language's decimal mark in cells that are numbers.
 /// \param rows  the first is the heading, in English; tests/texts/list_console.py finds what a table's declaration has in it
@@ -46,7 +55,7 @@ std::string SaidValue(const Value& value) {
 /// \param pattern  English; tests/texts/list_console.py finds it
 template <typename... Values>
 void Say(std::string_view pattern, const Values&... values) {
-  Print(SaidText(pattern, {SaidValue(values)...}));
+  PrintLines(SaidText(pattern, {SaidValue(values)...}));
 }
 
 }  // namespace trocar::core

@@ -7,7 +7,8 @@
 
 namespace trocar::core {
 
-/// Text that stands for itself between tags and in quoted attributes: & < > " ' replaced.
+/// Text that stands for itself between tags and in quoted attributes: & < > " ' replaced, and what PrintableText makes visible, which
+/// XML does not allow and which could turn the text around it.
 std::string EscapeMarkup(std::string_view text);
 
 }  // namespace trocar::core

@@ -20,7 +20,7 @@ bool IsNumberText(std::string text);
 /// \return every line ends with a newline
 std::string FormatTable(const std::vector<std::vector<std::string>>& rows);
 
-/// Lines of at most `width` columns, each with the indent and ending with a newline.
+/// Lines of at most `width` columns, each with the indent and ending with a newline. A line end in the text becomes visible.
 std::string WrapText(const std::string& text, std::size_t width, const std::string& indent);
 
 }  // namespace trocar::core

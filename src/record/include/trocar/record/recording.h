@@ -94,7 +94,10 @@ class Recording {
   std::vector<HashMark> hashes;
   std::vector<EventMark> events;
   std::vector<TextMark> marks;
-  std::optional<Ending> ending;   ///< nothing where the program was killed, or the file is cut
+  std::optional<Ending> ending;  ///< nothing where the program was killed, or the file is cut
+  /// Its file has an ending, whole by its checksum, that contradicts what stands before it or is not understood: it counts as none,
+  /// and no cut makes one.
+  bool is_ending_refused = false;
   std::string damage;             ///< why reading stopped before the end of the file; empty where it did not
   std::uint64_t whole_bytes = 0;  ///< of the file, up to the end or the damage
   std::uint64_t file_bytes = 0;

@@ -30,6 +30,13 @@ struct XapiStatement {
 core::Result<std::vector<XapiStatement>> MakeStatements(const AttemptReport& report,
                                                         const XapiSettings& settings);
 
+/// What became of one person's statements.
+struct XapiErasure {
+  std::size_t statements = 0;  ///< that were taken away
+  /// What could not be read or removed, and may be of that person; for a person.
+  std::vector<std::string> left;
+};
+
 /// Statements that wait, one file each: ID.json. What Add returned for survives a power cut.
 class XapiQueue {
  public:
@@ -47,9 +54,9 @@ class XapiQueue {
   std::vector<std::filesystem::path> ListRefused() const;
   core::Status Remove(const std::string& id);
   core::Status Refuse(const XapiStatement& statement, const std::string& reason);
-  /// Takes away everything of one person, waiting or refused.
-  /// \return how many statements
-  core::Result<std::size_t> Erase(const std::string& pseudonym);
+  /// Takes away everything of one person, waiting, refused or half written. What it cannot read or remove stops it nowhere, and is
+  /// named.
+  XapiErasure Erase(const std::string& pseudonym);
 
  private:
   std::filesystem::path folder_;
