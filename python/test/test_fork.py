@@ -6,12 +6,14 @@ import inspect
 import multiprocessing
 import os
 import select
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -212,9 +214,11 @@ class Work(unittest.TestCase):
 
 class Patients(unittest.TestCase):
     def test_a_child_leaves_its_parents_patient(self):
-        before = set(Path(tempfile.gettempdir()).glob("trocar-patient-*"))
+        folder = Path(tempfile.mkdtemp())  # the test's own: others make patients at the same time
+        self.addCleanup(shutil.rmtree, folder)
+        self.enterContext(unittest.mock.patch.dict(os.environ, TMPDIR=str(folder)))
         parent = argparse.Namespace(ill=trocar.Simulation("cholecystectomy", patient={"seed": 2}))
-        made = set(Path(tempfile.gettempdir()).glob("trocar-patient-*")) - before
+        made = list(folder.glob("trocar-patient-*"))
         self.assertEqual(len(made), 1)
         self.assertEqual(run_forked(lambda p: vars(p).clear(), parent, False), ("done", 0))
         self.assertTrue(made.pop().is_dir())

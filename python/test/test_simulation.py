@@ -5,10 +5,12 @@ import gc
 import json
 import os
 import pickle
+import shutil
 import subprocess
 import tempfile
 import threading
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -179,15 +181,18 @@ class Dictionaries(unittest.TestCase):
             trocar.Simulation(scene, folder=str(ROOT))
 
     def test_a_patient_is_generated(self):
-        before = set(Path(tempfile.gettempdir()).glob("trocar-patient-*"))
+        folder = Path(tempfile.mkdtemp())  # the test's own: others make patients at the same time
+        self.addCleanup(shutil.rmtree, folder)
+        self.enterContext(unittest.mock.patch.dict(os.environ, TMPDIR=str(folder)))
         usual, ill = (trocar.Simulation("cholecystectomy", patient={"seed": 5, "set": {"acute_cholecystitis": level}})
                       for level in (0, 0.5))
         self.assertNotEqual(usual.hash(), trocar.Simulation("cholecystectomy").hash())
         usual.step(usual.home(), 2), ill.step(ill.home(), 2)
         self.assertNotEqual(usual.hash(), ill.hash())
+        self.assertEqual(len(list(folder.glob("trocar-patient-*"))), 2)
         del usual, ill
         gc.collect()
-        self.assertEqual(set(Path(tempfile.gettempdir()).glob("trocar-patient-*")), before)
+        self.assertEqual(list(folder.glob("trocar-patient-*")), [])
 
     def test_environments_take_them(self):
         file = trocar.find("peg_transfer")

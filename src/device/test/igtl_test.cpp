@@ -451,7 +451,7 @@ TEST(IgtlOracle, UnderstandsTheLibraryBothWays) {
   }
   EXPECT_STREQ(back->GetDeviceName(), "left");
 
-  // every length of a POSITION that the library packs, and a QTDATA: read as the library itself reads them
+  // a POSITION and a QTDATA, read as the library itself reads them. It packs shorter POSITIONs, too, but writes past their end
   math::Quaternion q = pose.rotation;
   if (q.w < 0) q = {-q.w, -q.x, -q.y, -q.z};
   const auto number = [](double value) { return static_cast<float>(value); };
@@ -460,18 +460,13 @@ TEST(IgtlOracle, UnderstandsTheLibraryBothWays) {
     return std::string(static_cast<const char*>(from->GetPackPointer()),
                        static_cast<std::size_t>(from->GetPackSize()));
   };
-  for (const int kind : {igtl::PositionMessage::ALL, igtl::PositionMessage::WITH_QUATERNION3,
-                         igtl::PositionMessage::POSITION_ONLY}) {
-    igtl::PositionMessage::Pointer position = igtl::PositionMessage::New();
-    position->SetDeviceName("left");
-    position->SetPackType(kind);
-    position->SetPosition(100, -250, 1500);
-    position->SetQuaternion(number(q.x), number(q.y), number(q.z), number(q.w));
-    const Got read_position = Read(bytes_of(position));
-    ASSERT_EQ(read_position.poses.size(), kind == igtl::PositionMessage::POSITION_ONLY ? 0u : 1u) << kind;
-    for (const math::Pose& one : read_position.poses)
-      EXPECT_LT(math::Distance(one * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-5) << kind;
-  }
+  igtl::PositionMessage::Pointer position = igtl::PositionMessage::New();
+  position->SetDeviceName("left");
+  position->SetPosition(100, -250, 1500);
+  position->SetQuaternion(number(q.x), number(q.y), number(q.z), number(q.w));
+  const Got read_position = Read(bytes_of(position));
+  ASSERT_EQ(read_position.poses.size(), 1u);
+  EXPECT_LT(math::Distance(read_position.poses[0] * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-5);
   igtl::QuaternionTrackingDataElement::Pointer element = igtl::QuaternionTrackingDataElement::New();
   element->SetName("right");
   element->SetType(igtl::QuaternionTrackingDataElement::TYPE_6D);

@@ -11,6 +11,7 @@
 #include "motion_measures.h"
 #include "motion_track.h"
 #include "trocar/core/assert.h"
+#include "trocar/core/csv_field.h"
 #include "trocar/training/metric_definition.h"
 
 namespace trocar::training {
@@ -95,13 +96,6 @@ void SortByDefinition(std::vector<MetricValue>& values) {
   });
 }
 
-/// A text in quotation marks, which are doubled inside.
-std::string QuoteCsv(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string UnitOf(const MetricValue& value) {
   const MetricDefinition* definition = FindMetric(value.metric);
   return definition != nullptr ? definition->unit : "";
@@ -161,8 +155,9 @@ std::string FormatMetricsJson(const AttemptMetrics& metrics) {
 std::string FormatMetricsCsv(const AttemptMetrics& metrics) {
   std::string text = "metric,hand,phase,tool,value,unit\n";
   for (const MetricValue& value : metrics.values) {
-    text += value.metric + "," + value.hand + "," + QuoteCsv(value.phase) + "," + QuoteCsv(value.tool) + "," +
-            nlohmann::ordered_json(value.value).dump() + "," + UnitOf(value) + "\n";
+    text += value.metric + "," + value.hand + "," + core::FormatCsvField(value.phase) + "," +
+            core::FormatCsvField(value.tool) + "," + nlohmann::ordered_json(value.value).dump() + "," +
+            UnitOf(value) + "\n";
   }
   return text;
 }

@@ -103,8 +103,11 @@ TEST(FormatMetricsJson, WritesValuesWithTheirUnits) {
             (nlohmann::json{{"metric", "path_length"}, {"hand", "left"}, {"value", 0.25}, {"unit", "m"}}));
   EXPECT_EQ(json[1].at("phase"), "Preparation");
   EXPECT_EQ(FormatMetricsCsv(metrics),
-            "metric,hand,phase,tool,value,unit\npath_length,left,\"\",\"\",0.25,m\ntime,,\"Preparation\","
-            "\"\",3.0,s\n");
+            "metric,hand,phase,tool,value,unit\npath_length,left,,,0.25,m\ntime,,Preparation,,3.0,s\n");
+  // a trace file names its phases itself
+  metrics.values = {{"time", "", "=HYPERLINK(\"x\")", 3.0, ""}};
+  EXPECT_EQ(FormatMetricsCsv(metrics),
+            "metric,hand,phase,tool,value,unit\ntime,,\"'=HYPERLINK(\"\"x\"\")\",,3.0,s\n");
 }
 
 }  // namespace
