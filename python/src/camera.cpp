@@ -18,8 +18,8 @@ core::Result<std::unique_ptr<Camera>> Camera::Make(int width, int height) {
   auto target = render::OffscreenTarget::Make(width, height);
   if (!target) return target.error();
   context->Release();
-  return std::unique_ptr<Camera>(
-      new Camera(std::make_unique<Graphics>(std::move(*context), std::move(*target), std::nullopt)));
+  return std::unique_ptr<Camera>(new Camera(
+      std::make_unique<Graphics>(Graphics{std::move(*context), std::move(*target), std::nullopt})));
 }
 
 Camera::~Camera() {

@@ -59,6 +59,7 @@ class Stage {
  public:
   explicit Stage(Words command) : command_(std::move(command)) {
     fs::create_directory(Folder());
+    fs::create_directory(StoreFolder());
     for (const cli::CommandOption& option : cli::ListOptions(command_))
       has_json_ = has_json_ || option.name == "--json";
   }
@@ -68,6 +69,8 @@ class Stage {
 
   fs::path Folder() const { return folder_.Path() / MakeHostileText(); }
   std::string Path(const std::string& name) const { return Folder() / name; }
+  /// For a store, which lies in no path with a control character.
+  fs::path StoreFolder() const { return folder_.Path() / "stores"; }
   /// With an empty folder for each run, so that nothing is there already. \param place  where the hostile text is
   void Run(const Words& arguments, const std::string& place) {
     Once(arguments, place, false);
@@ -349,8 +352,9 @@ std::string MakeStore(const fs::path& folder) {
 /// program might have left it. "{store}" is its file, "{person}" the one who is there, "{new}" a new file.
 std::function<void(Stage&)> OfStore(std::vector<Words> all) {
   return [all = std::move(all)](Stage& stage) {
-    const std::string person = MakeStore(stage.Folder());
-    const fs::path file = stage.Folder() / "store.sqlite", kept = stage.Folder() / "kept.sqlite";
+    const fs::path folder = stage.StoreFolder(), file = folder / "store.sqlite",
+                   kept = folder / "kept.sqlite";
+    const std::string person = MakeStore(folder);
     fs::copy_file(file, kept);
     std::vector<std::pair<std::string, std::string>> columns = {{"", ""}};
     {
@@ -367,7 +371,7 @@ std::function<void(Stage&)> OfStore(std::vector<Words> all) {
     for (const auto& [table, column] : columns) {
       for (const std::string& text : {MakeHostileText(), store::EncodeText(MakeBrokenText())}) {
         std::string who = person;
-        for (const auto& entry : fs::directory_iterator(stage.Folder())) {
+        for (const auto& entry : fs::directory_iterator(folder)) {
           if (entry.path() != kept) fs::remove_all(entry.path());
         }
         fs::copy_file(kept, file);
@@ -382,8 +386,8 @@ std::function<void(Stage&)> OfStore(std::vector<Words> all) {
                       {"version", 1},
                       {"names", {{who.size() > 100 ? person : who, "Ada"}}}};
         if (table.empty()) names["names"][person] = MakeHostileText();
-        Write(stage.Path("names.json"), names.dump(-1, ' ', false, Json::error_handler_t::replace));
-        fs::permissions(stage.Path("names.json"), fs::perms::owner_read | fs::perms::owner_write);
+        Write(folder / "names.json", names.dump(-1, ' ', false, Json::error_handler_t::replace));
+        fs::permissions(folder / "names.json", fs::perms::owner_read | fs::perms::owner_write);
         for (Words words : all) {
           for (std::string& word : words) {
             if (word == "{store}") word = file;
@@ -498,6 +502,14 @@ std::map<std::string, std::vector<std::function<void(Stage&)>>> Recipes() {
       {"pictures", {nothing}},
       {"bench", {nothing}},
       {"reproduce report-card", {nothing}},
+      {"reproduce table1", {nothing}},
+      {"reproduce table2", {nothing}},
+      {"reproduce fig6", {nothing}},
+      {"reproduce fig7", {nothing}},
+      {"reproduce fig8", {nothing}},
+      {"reproduce fig9", {nothing}},
+      {"reproduce equilibrium", {nothing}},
+      {"reproduce all", {nothing}},
       {"doctor", {nothing}},
       {"errors", {nothing}},
       {"simulate", {of_scene({"{}", "--ticks", "1"}, 25)}},
@@ -625,17 +637,19 @@ std::map<std::string, std::vector<std::function<void(Stage&)>>> Recipes() {
        {OfStore(
            {{"--task", "peg_transfer", "--level", "normal", "--metric", "time", "--trainee", "{person}"}})}},
       {"store deliver", {[](Stage& stage) {
-         MakeStore(stage.Folder());
-         fs::create_directories(stage.Folder() / "spool");
-         fs::create_symlink("../given.json", stage.Folder() / "spool" / "given.json");
-         stage.RunWith({"--held", "--store", stage.Path("store.sqlite")},
+         const fs::path folder = stage.StoreFolder();
+         MakeStore(folder);
+         fs::create_directories(folder / "spool");
+         fs::create_symlink(stage.Path("given.json"), folder / "spool" / "given.json");
+         stage.RunWith({"--held", "--store", folder / "store.sqlite"},
                        Json::parse(store::WriteAttemptJson(MakeAttempt("T-1"))));
        }}},
       {"store export", {OfStore({{"{new}"}, {"{new.csv}"}})}},
       {"store import", {[](Stage& stage) {
-         MakeStore(stage.Folder());
-         stage.Prepare({"store", "export", stage.Path("all.json"), "--store", stage.Path("store.sqlite")});
-         stage.RunWith({"{}", "--store", stage.Path("new.sqlite")}, ReadJson(stage.Path("all.json")));
+         const fs::path folder = stage.StoreFolder(), all = folder / "all.json";
+         MakeStore(folder);
+         stage.Prepare({"store", "export", all, "--store", folder / "store.sqlite"});
+         stage.RunWith({"{}", "--store", folder / "new.sqlite"}, ReadJson(all));
        }}},
       {"store backup", {OfStore({{"{new}"}})}},
       {"store verify", {OfStore({{"{store}"}, {"--attempts"}, {}})}},

@@ -322,13 +322,14 @@ void AddTransfer(CLI::App& parent, const Options& options, Outcome& outcome) {
       "export",
       "Write everything to a JSON file, or the numbers of all attempts to a CSV file; names are not in it");
   exporting->add_option("file", *file, "New file: .json or .csv")->required()->type_name("FILE");
-  OnStore(*exporting, options, outcome, [file](StoreSession& session) -> core::Status {
+  OnStore(*exporting, options, outcome, [file, options](StoreSession& session) -> core::Status {
     const bool is_csv = file->ends_with(".csv");
     if (!is_csv && !file->ends_with(".json"))
       return core::Error{core::ErrorCode::kUsage, "the file's name ends with .json or .csv"};
     auto done = is_csv ? ExportCsv(session.store, session.viewer, *file)
                        : ExportJson(session.store, session.viewer, *file);
-    if (done.ok()) Say("{1} is written\n", file->c_str());
+    if (done.ok())
+      options->is_json ? PrintStoreJson({{"written", *file}}) : Say("{1} is written\n", file->c_str());
     return done;
   });
   CLI::App* importing = parent.add_subcommand(
@@ -410,14 +411,15 @@ void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
       auto session = OpenSession(*options, settings);
       outcome.status = session.ok() ? Verify(session->store) : core::Status(session.error());
     }
-    if (outcome.status.ok()) Say("all is sound\n");
+    if (outcome.status.ok()) options->is_json ? PrintStoreJson({{"is_sound", true}}) : Say("all is sound\n");
   });
   CLI::App* migrate =
       parent.add_subcommand("migrate", "Make the store, or bring its tables to this program's version");
-  OnStore(*migrate, options, outcome, [](StoreSession& session) -> core::Status {
+  OnStore(*migrate, options, outcome, [options](StoreSession& session) -> core::Status {
     const auto version = session.store.ReadVersion();
     if (!version.ok()) return version.error();
-    Say("the tables are of version {1}\n", *version);
+    options->is_json ? PrintStoreJson({{"version", *version}})
+                     : Say("the tables are of version {1}\n", *version);
     return {};
   });
 }
@@ -427,9 +429,10 @@ void AddKeeping(CLI::App& parent, const Options& options, Outcome& outcome) {
   CLI::App* retain =
       parent.add_subcommand("retain", "Say how long attempts are kept; trocar store tidy applies it");
   retain->add_option("--days", *days, "0: for ever")->required()->check(CLI::Range(0, 36500));
-  OnStore(*retain, options, outcome, [days](StoreSession& session) -> core::Status {
+  OnStore(*retain, options, outcome, [days, options](StoreSession& session) -> core::Status {
     auto set = SetRetention(session.store, session.viewer, *days);
-    if (set.ok()) Say("attempts are kept {1}\n", Days(*days));
+    if (set.ok())
+      options->is_json ? PrintStoreJson({{"days", *days}}) : Say("attempts are kept {1}\n", Days(*days));
     return set;
   });
   CLI::App* tidy = parent.add_subcommand(

@@ -18,6 +18,10 @@ namespace {
 using nlohmann::ordered_json;
 using Options = std::shared_ptr<StoreOptions>;
 
+void SayDone(const StoreOptions& options) {
+  options.is_json ? PrintStoreJson({{"done", true}}) : Say("done\n");
+}
+
 void AddAdd(CLI::App& trainee, const Options& options, Outcome& outcome) {
   CLI::App* command = trainee.add_subcommand("add", "Add a person under a pseudonym");
   struct Arguments {
@@ -113,7 +117,7 @@ void AddChange(CLI::App& trainee, const Options& options, Outcome& outcome) {
   rename->add_option("--to", arguments->to, "New pseudonym")->type_name("PSEUDONYM");
   rename->add_option("--name", arguments->name, "New name, on this computer alone");
   rename->add_option("--role", arguments->role, "trainee, instructor or administrator");
-  OnStore(*rename, options, outcome, [arguments](StoreSession& session) -> core::Status {
+  OnStore(*rename, options, outcome, [arguments, options](StoreSession& session) -> core::Status {
     const auto names = session.store.GetPlace().NamesFile();
     if (auto may = MayManage(session.viewer); !may.ok()) return may;
     if (!arguments->name.empty()) {
@@ -139,7 +143,7 @@ void AddChange(CLI::App& trainee, const Options& options, Outcome& outcome) {
         return renamed;
       if (auto moved = store::MoveName(names, arguments->pseudonym, arguments->to); !moved.ok()) return moved;
     }
-    Say("done\n");
+    SayDone(*options);
     return {};
   });
 }
@@ -154,10 +158,11 @@ void AddErase(CLI::App& trainee, const Options& options, Outcome& outcome) {
       "export", "Write all that is known of a person, with their recordings, to a new folder");
   exporting->add_option("pseudonym", arguments->pseudonym, "Who")->required()->type_name("PSEUDONYM");
   exporting->add_option("-o,--output", arguments->folder, "New folder")->required()->type_name("DIR");
-  OnStore(*exporting, options, outcome, [arguments](StoreSession& session) -> core::Status {
+  OnStore(*exporting, options, outcome, [arguments, options](StoreSession& session) -> core::Status {
     const auto copied = ExportPerson(session.store, session.viewer, arguments->pseudonym, arguments->folder);
     if (!copied.ok()) return copied.error();
-    Say("{1} holds person.json and {2} recordings\n", arguments->folder, *copied);
+    options->is_json ? PrintStoreJson({{"folder", arguments->folder}, {"recordings", *copied}})
+                     : Say("{1} holds person.json and {2} recordings\n", arguments->folder, *copied);
     return {};
   });
   CLI::App* erase = trainee.add_subcommand(
@@ -197,10 +202,10 @@ void AddGroups(CLI::App& parent, const Options& options, Outcome& outcome) {
   auto name = std::make_shared<std::string>(), person = std::make_shared<std::string>();
   CLI::App* add = group->add_subcommand("add", "Make a group");
   add->add_option("group", *name, "Its name")->required();
-  OnStore(*add, options, outcome, [name](StoreSession& session) -> core::Status {
+  OnStore(*add, options, outcome, [name, options](StoreSession& session) -> core::Status {
     const auto added = AddGroup(session.store, session.viewer, *name);
     if (!added.ok()) return added.error();
-    Say("done\n");
+    SayDone(*options);
     return {};
   });
   CLI::App* list = group->add_subcommand("list", "List groups");
@@ -223,11 +228,12 @@ void AddGroups(CLI::App& parent, const Options& options, Outcome& outcome) {
     CLI::App* command = group->add_subcommand(word, help);
     command->add_option("group", *name, "Which group")->required();
     command->add_option("pseudonym", *person, "Who")->required();
-    OnStore(*command, options, outcome, [name, person, change](StoreSession& session) -> core::Status {
-      auto done = change(session.store, session.viewer, *name, *person);
-      if (done.ok()) Say("done\n");
-      return done;
-    });
+    OnStore(*command, options, outcome,
+            [name, person, change, options](StoreSession& session) -> core::Status {
+              auto done = change(session.store, session.viewer, *name, *person);
+              if (done.ok()) SayDone(*options);
+              return done;
+            });
   };
   add_membership("join", "Put a person into a group", store::JoinGroup);
   add_membership("leave", "Take a person out of a group", store::LeaveGroup);
