@@ -174,6 +174,7 @@ void CholecystectomySurgeon::OpenTriangle(const SurgeonAct& act, const Snapshot&
 
 /// A fibre in the corner between duct, artery and gallbladder is too near to them for jaws that open and for current: scissors
 /// take it.
+/// \return whether there is one that they come to, and they were planned
 bool CholecystectomySurgeon::CutLastFibres(const SurgeonAct& act, const Snapshot& seen) {
   if (sharp_rounds_left_ <= 0) return false;
   Spreading work;

@@ -30,13 +30,13 @@ constexpr double kSlowerByWay = 8.0, kSlowerByTurn = 0.3;
 /// Shares of a fibre at which blades take it, how far their tips go beyond it [m], and how wide they stand [-].
 constexpr double kSnipShares[] = {0.5, 0.3, 0.7, 0.15, 0.85}, kSnipBeyond[] = {0.0008, 0.0016},
                  kSnipOpenings[] = {0.15, 0.3};
-constexpr int kSnipSpins = 12;        // over half a turn
-constexpr double kSnipRoom = 0.0004;  // at least, from blades to the skin of a duct and to an organ [m]
-constexpr double kAmpleRoom = 0.0020;
+constexpr int kSnipSpins = 12;         // over half a turn
+constexpr double kSnipRoom = 0.0004;   // at least, from blades to the skin of a duct and to an organ [m]
+constexpr double kAmpleRoom = 0.0020;  // more than that is no better [m]
 constexpr double kSnipInside =
     0.7;  // of the opening, within which the fibre has to cross the blades' plane [-]
-constexpr std::size_t kMostSnipsLooked = 200;
-constexpr double kSnipNear = 0.020;  // of the fibre, what ducts are looked at [m]
+constexpr std::size_t kMostSnipsLooked = 200;  // poses, the roomiest first, of which organs are kept off
+constexpr double kSnipNear = 0.020;            // of the fibre, what ducts are looked at [m]
 
 /// Distance from a point in the opening plane's half y >= 0 to the sector that a jaw sweeps, hinge at the origin.
 double SectorDistance(double along, double aside, double length, double wide) {

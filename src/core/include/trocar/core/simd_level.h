@@ -16,7 +16,7 @@ enum class SimdLevel {
 /// "baseline", "avx2", "avx512"
 std::string_view SimdLevelName(SimdLevel level) noexcept;
 
-/// The widest level that this processor and this build have.
+/// The level that TROCAR_SIMD names, else the widest that this processor and this build have (simd_choice.h).
 SimdLevel FindSimdLevel() noexcept;
 /// True where this processor and this build have `level`.
 bool HasSimdLevel(SimdLevel level) noexcept;
