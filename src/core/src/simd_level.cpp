@@ -30,7 +30,7 @@ std::string_view SimdLevelName(SimdLevel level) noexcept {
 
 bool HasSimdLevel(SimdLevel level) noexcept {
 #if defined(__x86_64__)
-  if (level == SimdLevel::kAvx2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (level == SimdLevel::kAvx2) return __builtin_cpu_supports("avx2");
   if (level == SimdLevel::kAvx512) {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");

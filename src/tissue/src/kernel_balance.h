@@ -41,15 +41,9 @@ inline Doubles Absolute(Doubles v) {
   return Larger(v, -v);
 }
 
-/// a b + c, rounded once where the level has an instruction for it.
+/// a b + c, rounded twice, as MulAdd of floats.
 inline Doubles MulAdd(Doubles a, Doubles b, Doubles c) {
-#if TROCAR_LANES == 16
-  return (Doubles)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
-#elif TROCAR_LANES == 8
-  return (Doubles)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
-#else
   return a * b + c;
-#endif
 }
 inline Doubles Sqrt(Doubles v) {
 #if TROCAR_LANES == 16

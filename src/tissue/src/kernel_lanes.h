@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kernels.h"
-#include "trocar/math/fused_lanes.h"
+#include "trocar/math/lane_arithmetic.h"
 
 namespace trocar::tissue {
 namespace {

@@ -6,11 +6,10 @@
 
 namespace trocar::core {
 
-/// Inner loops that are worth it exist once for each level; what each module promises about their bits stands
-/// with its loops.
+/// Inner loops that are worth it exist once for each level, and give the same bits at each.
 enum class SimdLevel {
   kBaseline,  ///< what every processor of the architecture has (x86-64: SSE2, 4 floats)
-  kAvx2,      ///< 8 floats: AVX2 and FMA
+  kAvx2,      ///< 8 floats: AVX2
   kAvx512     ///< 16 floats: AVX-512 F, VL, DQ and BW (x86-64-v4)
 };
 /// "baseline", "avx2", "avx512"

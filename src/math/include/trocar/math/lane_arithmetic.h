@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file fused_lanes.h  Multiply-add of lanes, and what keeps a compiler from undoing the order of a loop that waits for loads.
-/// As float_lanes.h: for files that are compiled once for each level of vector instructions.
+/// \file lane_arithmetic.h  Sums of products of lanes, and what keeps a compiler from undoing the order of a loop that waits for
+/// loads. As float_lanes.h: for files that are compiled once for each level of vector instructions.
 #pragma once
 
 #include "trocar/math/float_lanes.h"
@@ -8,20 +8,10 @@
 namespace trocar::math {
 namespace {
 
-/// a b + c, rounded once where the level has an instruction for it.
-#if TROCAR_LANES == 16 && defined(__AVX512F__)
-inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
-  return (Lanes)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
-}
-#elif TROCAR_LANES == 8 && defined(__FMA__)
-inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
-  return (Lanes)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
-}
-#else
+/// a b + c, rounded twice: what rounds once is not there on every processor.
 inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
   return a * b + c;
 }
-#endif
 
 #if TROCAR_LANES == 16
 #define TROCAR_LANE_INDICES(OFFSET)                                                                       \
