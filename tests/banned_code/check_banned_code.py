@@ -12,6 +12,7 @@ stands in allowed.txt; an entry there that nothing uses any more is a mistake to
 """
 
 import concurrent.futures
+import fnmatch
 import os
 import pathlib
 import platform
@@ -139,19 +140,20 @@ def find_instructions(library, machine=platform.machine()):
     pattern, found, function = INSTRUCTIONS.get(machine), {}, "?"
     if pattern is None:
         return found
-    with subprocess.Popen(["objdump", "-d", "--no-show-raw-insn", library], stdout=subprocess.PIPE, text=True) as process:
-        for line in process.stdout:
+    # grep leaves functions' names and lines that may be meant
+    with subprocess.Popen(["objdump", "-d", "--no-show-raw-insn", library], stdout=subprocess.PIPE) as listing, \
+            subprocess.Popen(["grep", "-aE", "^[0-9a-f]+ <|\t(vf|f|v?r(sqrt|cp|ecp)|vexp2)"], stdin=listing.stdout,
+                             stdout=subprocess.PIPE, text=True, env={**os.environ, "LC_ALL": "C"}) as lines:
+        listing.stdout.close()
+        for line in lines.stdout:
             if line.startswith("0"):
                 function = line.split("<", 1)[-1].rstrip(">:\n")
                 continue
-            parts = line.split("\t")
-            if len(parts) < 2:
-                continue
-            mnemonic = parts[1].split(None, 1)[0] if parts[1].strip() else ""
-            if mnemonic[:1] in "fvr" and pattern.match(mnemonic):
+            mnemonic = line.split("\t")[1].split(None, 1)[0]
+            if pattern.match(mnemonic):
                 count, first = found.get(mnemonic, (0, function))
                 found[mnemonic] = (count + 1, first)
-    if process.returncode != 0:
+    if listing.returncode != 0:
         sys.exit(f"objdump failed on {library}")
     return found
 
@@ -178,10 +180,16 @@ def find_sources(text):
 
 
 def compare(found, allowed, kinds):
-    """found: (kind, where, what) -> message."""
-    complaints = [message for key, message in sorted(found.items()) if key not in allowed]
+    """found: (kind, where, what) -> message. What stands in `allowed` may be a pattern."""
+    used, complaints = set(), []
+    for key, message in sorted(found.items()):
+        reasons = [entry for entry in allowed if entry[0] == key[0] and fnmatch.fnmatchcase(key[1], entry[1])
+                   and fnmatch.fnmatchcase(key[2], entry[2])]
+        used.update(reasons)
+        if not reasons:
+            complaints.append(message)
     complaints += [f"{ALLOWED}: {' '.join(key)}: nothing uses it any more; take it off the list"
-                   for key in sorted(allowed) if key[0] in kinds and key not in found]
+                   for key in sorted(allowed) if key[0] in kinds and key not in used]
     return complaints
 
 
@@ -273,6 +281,7 @@ def control(scratch):
     keys = {("source", "a.cpp", "sort"): "found"}
     expect("a use without a reason", len(compare(keys, {}, ("source",))), 1)
     expect("a use with a reason", compare(keys, {("source", "a.cpp", "sort"): "whole numbers"}, ("source",)), [])
+    expect("a use with a pattern", compare(keys, {("source", "*.cpp", "so*"): "whole numbers"}, ("source",)), [])
     expect("a reason without a use", len(compare({}, {("source", "a.cpp", "sort"): "whole numbers"}, ("source",))), 1)
     expect("modules", find_modules("a -> \nb -> a\nagent -> b  # x\nrecord -> a\nenvironment ->\nassessment -> agent\nc -> a\n"),
            ["a", "b", "agent", "record", "environment", "assessment"])
