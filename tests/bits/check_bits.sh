@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # Compiles the elementary functions and the tissue solvers with g++ and clang++ at -O1, -O2 and -O3 (the former also at -O0, and for
 # processors with fused multiply-add) and compares what they find, bit by bit.
+# Where it compares several optimisations, it also puts one mistake at a time into a copy of the sources, which must be noticed.
 # usage: check_bits.sh SOURCE_FOLDER SCRATCH_FOLDER [COMPILER...]     exit status 77: a compiler is missing
 set -euo pipefail
 source_folder=$1 scratch=$2
+. "$source_folder/tests/bits/mistakes.sh"
 shift 2
 compilers=("${@:-g++}")
 [ $# -gt 0 ] || compilers=(g++ clang++)
@@ -43,47 +45,74 @@ if [ -n "$fused" ]; then
     { echo "elementary functions: fused multiply-add was not noticed"; exit 1; }
 fi
 
-tissue=$source_folder/src/tissue
-sources=("$source_folder/tests/bits/solve_bits.cpp" "$tissue"/src/*.cpp "$source_folder"/src/core/src/{assert,simd_level,state_archive}.cpp
-  "$source_folder"/src/math/src/pose.cpp "$source_folder"/src/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp)
 # what CMakeLists.txt gives them, but for the optimisation
-flags=(-std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w -I"$tissue/src")
-for module in tissue geometry math core; do flags+=(-I"$source_folder/src/$module/include"); done
+flags=(-std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w)
+solver_sources() {
+  printf '%s\n' "$1"/tests/bits/solve_bits.cpp "$1"/src/tissue/src/*.cpp "$1"/src/core/src/{assert,simd_level,state_archive}.cpp \
+    "$1"/src/math/src/{pose,elementary_*}.cpp "$1"/src/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp
+}
+# solve_bits SOURCES FOLDER COMPILER FLAG...: compiles as many files at a time as there are processors, and prints what the program does
+solve_bits() {
+  local sources=$1 folder=$2 compiler=$3 running=0 file own includes=()
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  for file in tissue geometry math core; do includes+=(-I"$sources/src/$file/include"); done
+  for file in $(solver_sources "$sources"); do
+    own=()
+    if [ "$architecture" = x86_64 ]; then
+      case $file in
+        *kernels_avx2.cpp) own=(-mavx2) ;;
+        *kernels_avx512.cpp)
+          own=(-mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512) ;;
+      esac
+    fi
+    [ $running -lt "$(nproc)" ] || { wait -n; running=$((running - 1)); }
+    "$compiler" "${flags[@]}" "${includes[@]}" -I"$sources"/src/{tissue,math}/src "${@:4}" ${own[@]+"${own[@]}"} \
+      -c "$file" -o "$folder/$(basename "$file" .cpp).o" &
+    running=$((running + 1))
+  done
+  for ((; running > 0; --running)); do wait -n; done
+  "$compiler" "$folder"/*.o -ltbb -lpthread -o "$folder/solve_bits"
+  rm -f "$folder"/*.o
+  "$folder/solve_bits"
+}
 
 first=
 for compiler in "${compilers[@]}"; do
   for level in "${levels[@]}"; do
-    folder=$scratch/$compiler$level
-    rm -rf "$folder"
-    mkdir -p "$folder"
-    running=0
-    for file in "${sources[@]}"; do
-      own=()
-      if [ "$architecture" = x86_64 ]; then
-        case $file in
-          *kernels_avx2.cpp) own=(-mavx2 -mfma) ;;
-          *kernels_avx512.cpp)
-            own=(-mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mprefer-vector-width=512) ;;
-        esac
-      fi
-      # as many at a time as there are processors
-      [ $running -lt "$(nproc)" ] || { wait -n; running=$((running - 1)); }
-      "$compiler" "${flags[@]}" "$level" "${own[@]}" -c "$file" -o "$folder/$(basename "$file" .cpp).o" &
-      running=$((running + 1))
-    done
-    for ((; running > 0; --running)); do wait -n; done
-    "$compiler" "$folder"/*.o -ltbb -lpthread -o "$folder/solve_bits"
-    "$folder/solve_bits" > "$folder/bits"
-    [ -s "$folder/bits" ] || { echo "$compiler $level: nothing was printed"; exit 1; }
+    found=$scratch/$compiler$level.bits
+    solve_bits "$source_folder" "$scratch/$compiler$level" "$compiler" "$level" > "$found"
+    [ -s "$found" ] || { echo "$compiler $level: nothing was printed"; exit 1; }
     if [ -z "$first" ]; then
-      first=$folder/bits
+      first=$found
       cat "$first"
-    elif ! diff "$first" "$folder/bits"; then
+      # each level of vector instructions finds what the baseline finds
+      for simd in avx2 avx512; do
+        ! grep -q "^$simd " "$first" || diff <(sed -n 's/^baseline //p' "$first") <(sed -n "s/^$simd //p" "$first") ||
+          { echo "$simd finds other bits than the baseline"; exit 1; }
+      done
+    elif ! diff "$first" "$found"; then
       echo "$compiler $level finds other bits than the first"
       exit 1
     else
       echo "$compiler $level: the same"
     fi
-    rm -f "$folder"/*.o
   done
+done
+
+# controls
+[ ${#levels[@]} -gt 1 ] || exit 0
+for mistake in "${mistakes[@]}"; do
+  copy=$scratch/mistaken
+  copy_sources "$source_folder" "$copy" src/{tissue,geometry,math,core} tests/bits
+  make_mistake "$mistake" "$copy"
+  if [ "$mistake" = function_of_the_c_library ]; then
+    source_folder=$copy elementary_bits "${compilers[0]}" -ffp-contract=off -O1 > "$scratch/$mistake"
+    same=$scratch/elementary
+  else
+    solve_bits "$copy" "$scratch/mistaken_build" "${compilers[0]}" "${levels[0]}" > "$scratch/$mistake"
+    same=$first
+  fi
+  ! cmp -s "$same" "$scratch/$mistake" || { echo "control: ${mistake//_/ } was not noticed"; exit 1; }
+  echo "control: ${mistake//_/ } is noticed"
 done

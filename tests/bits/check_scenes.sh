@@ -52,18 +52,18 @@ find_libcxx() {
   libcxx_link="-nostdlib++ $root/usr/lib/llvm-$version/lib/libc++.a $root/usr/lib/llvm-$version/lib/libc++abi.a -lpthread"
 }
 
-# make_build BUILD FOLDER [COMPILER_FLAG]: scene_bits of a build
+# make_build BUILD FOLDER [SOURCES]: scene_bits of a build
 make_build() {
   local compiler optimisation library options=() compile link=
   IFS=: read -r compiler optimisation library <<<"$1"
   command -v "$compiler" >/dev/null || { echo "skipped: there is no $compiler here; tools/install-packages --test brings it"; return 77; }
-  compile=${3:-}
+  compile=
   if [ "$library" = libc++ ]; then
     find_libcxx || { echo "skipped: there is no libc++ here, and apt-get cannot fetch it ($scratch/libcxx_log)"; return 77; }
-    compile="-isystem $source_folder/tests/bits/older_libcxx $libcxx_compile $compile" link=$libcxx_link
+    compile="-isystem $source_folder/tests/bits/older_libcxx $libcxx_compile" link=$libcxx_link
     options+=(-DTROCAR_HEADER_ONLY_SPDLOG=ON)
   fi
-  cmake -S "$source_folder" -B "$2" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \
+  cmake -S "${3:-$source_folder}" -B "$2" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_FLAGS="$compile" -DCMAKE_CXX_FLAGS_RELEASE="$optimisation -DNDEBUG" -DCMAKE_CXX_STANDARD_LIBRARIES="$link" \
     -DTROCAR_MODULES="$modules" -DTROCAR_BUILD_TESTS=OFF -DTROCAR_BUILD_BITS=ON -DTROCAR_BUILD_IMPORT=OFF -DTROCAR_PYTHON=OFF \
     -DTROCAR_CUDA=OFF ${options[@]+"${options[@]}"} >"$2.log" 2>&1 && ninja -C "$2" scene_bits >>"$2.log" 2>&1 ||
@@ -128,6 +128,27 @@ for build in ${builds[@]+"${builds[@]}"}; do
   compare "$build" "$folder.txt"
   verify "$folder"
 done
+
+# controls: a copy of the sources with one mistake at a time, each built from where the one before stood
+if [ $control = yes ]; then
+  . "$source_folder/tests/bits/mistakes.sh"
+  copy=$scratch/mistaken
+  copy_sources "$source_folder" "$copy" CMakeLists.txt src cmake assets scenes docs/metrics.json tests/bits tests/golden tools
+  for mistake in "${mistakes[@]}"; do
+    [ "$mistake" != function_of_the_c_library ] || mistake=functions_of_the_c_library
+    make_mistake "$mistake" "$copy"
+    make_build g++:-O2 "$scratch/mistaken_build" "$copy" || { failed=$((failed + 1)); continue; }
+    play "$scratch/mistaken_build" "$scratch/mistaken.txt"
+    undo_mistake "$copy"
+    compared=$((compared + 1))
+    if cmp -s "$scratch/first" "$scratch/mistaken.txt"; then
+      echo "control: ${mistake//_/ } was not noticed"
+      failed=$((failed + 1))
+    else
+      echo "control: ${mistake//_/ } is noticed"
+    fi
+  done
+fi
 
 [ "$failed" -eq 0 ] || { echo "$failed of $compared comparisons failed"; exit 1; }
 [ "$compared" -gt 0 ] || exit 77

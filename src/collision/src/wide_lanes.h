@@ -30,6 +30,20 @@ inline Lanes Pick(LaneBits bits, Lanes a, Lanes b) {
 inline unsigned SignBits(LaneBits bits) {
 #if defined(__AVX__)
   return static_cast<unsigned>(_mm256_movemask_ps((__m256)bits));
+#elif defined(__SSE2__) || defined(__wasm_simd128__)
+  unsigned found = 0;
+  for (int part = 0; part < 2; ++part) {
+#if defined(__SSE2__)
+    __m128 quad;
+    __builtin_memcpy(&quad, reinterpret_cast<const char*>(&bits) + 16 * part, sizeof quad);
+    found |= static_cast<unsigned>(_mm_movemask_ps(quad)) << (4 * part);
+#else
+    v128_t quad;
+    __builtin_memcpy(&quad, reinterpret_cast<const char*>(&bits) + 16 * part, sizeof quad);
+    found |= static_cast<unsigned>(wasm_i32x4_bitmask(quad)) << (4 * part);
+#endif
+  }
+  return found;
 #else
   unsigned found = 0;
   for (int lane = 0; lane < kTreeWidth; ++lane) found |= (bits[lane] < 0 ? 1u : 0u) << lane;

@@ -89,6 +89,15 @@ inline void StoreNodes(Float4* nodes, const Vector& v) {
     _mm_store_ps(&nodes[part + 2].x, z);
     _mm_store_ps(&nodes[part + 3].x, w);
   }
+#elif TROCAR_LANES == 4
+  const Lanes xy = __builtin_shufflevector(v.x, v.y, 0, 4, 1, 5),
+              xy_after = __builtin_shufflevector(v.x, v.y, 2, 6, 3, 7);
+  const Lanes z = __builtin_shufflevector(v.z, Lanes{}, 0, 4, 1, 4),
+              z_after = __builtin_shufflevector(v.z, Lanes{}, 2, 4, 3, 4);
+  Store(&nodes[0].x, __builtin_shufflevector(xy, z, 0, 1, 4, 5));
+  Store(&nodes[1].x, __builtin_shufflevector(xy, z, 2, 3, 6, 7));
+  Store(&nodes[2].x, __builtin_shufflevector(xy_after, z_after, 0, 1, 4, 5));
+  Store(&nodes[3].x, __builtin_shufflevector(xy_after, z_after, 2, 3, 6, 7));
 #else
   for (int lane = 0; lane < TROCAR_LANES; ++lane) nodes[lane] = {v.x[lane], v.y[lane], v.z[lane], 0.0f};
 #endif

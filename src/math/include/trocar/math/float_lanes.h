@@ -8,6 +8,10 @@
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 #include <cstdint>
@@ -59,13 +63,28 @@ inline Lanes Sqrt(Lanes v) {
 inline Lanes Sqrt(Lanes v) {
   return (Lanes)_mm256_sqrt_ps((__m256)v);
 }
-#elif TROCAR_LANES == 4 && defined(__SSE2__)
-inline Lanes Sqrt(Lanes v) {
-  return (Lanes)_mm_sqrt_ps((__m128)v);
-}
 #else
+/// Four floats: what SSE2, NEON and WebAssembly's SIMD128 have.
+typedef float LaneQuad __attribute__((vector_size(16)));
+inline LaneQuad SqrtQuad(LaneQuad v) {
+#if defined(__SSE2__)
+  return (LaneQuad)_mm_sqrt_ps((__m128)v);
+#elif defined(__aarch64__)
+  return (LaneQuad)vsqrtq_f32((float32x4_t)v);
+#elif defined(__wasm_simd128__)
+  return (LaneQuad)wasm_f32x4_sqrt((v128_t)v);
+#else
+  for (int lane = 0; lane < 4; ++lane) v[lane] = __builtin_sqrtf(v[lane]);
+  return v;
+#endif
+}
 inline Lanes Sqrt(Lanes v) {
-  for (int lane = 0; lane < TROCAR_LANES; ++lane) v[lane] = __builtin_sqrtf(v[lane]);
+  for (int part = 0; part < TROCAR_LANES / 4; ++part) {
+    LaneQuad quad;
+    __builtin_memcpy(&quad, reinterpret_cast<const char*>(&v) + 16 * part, sizeof quad);
+    quad = SqrtQuad(quad);
+    __builtin_memcpy(reinterpret_cast<char*>(&v) + 16 * part, &quad, sizeof quad);
+  }
   return v;
 }
 #endif
@@ -121,6 +140,18 @@ inline LaneVector LoadPoints(const Point* points, const At& at) {
   const __m128d abz = (__m128d)_mm_unpackhi_ps(a, b), cdz = (__m128d)_mm_unpackhi_ps(c, d);
   return {(Lanes)_mm_unpacklo_pd(ab, cd), (Lanes)_mm_unpackhi_pd(ab, cd), (Lanes)_mm_unpacklo_pd(abz, cdz)};
 #endif
+}
+#elif TROCAR_LANES == 4
+template <typename Point, typename At>
+inline LaneVector LoadPoints(const Point* points, const At& at) {
+  static_assert(sizeof(Point) == 16 && alignof(Point) == 16);
+  const auto point = [&](int lane) { return Load(&points[at(lane)].x); };
+  const Lanes a = point(0), b = point(1), c = point(2), d = point(3);
+  const Lanes ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Lanes abz = __builtin_shufflevector(a, b, 2, 6, 3, 7),
+              cdz = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
+          __builtin_shufflevector(abz, cdz, 0, 1, 4, 5)};
 }
 #else
 template <typename Point, typename At>
