@@ -77,19 +77,6 @@ inline HalfLanes Sqrt(HalfLanes v) {
 #endif
 }
 
-/// 1 / sqrt(v) to about an ulp, 0 where v is too small to be a squared length. A root and a quotient in single precision with one
-/// step of third order take half the time of those in double precision, and every step is one that IEEE 754 fixes.
-///
-/// Source: Householder's method for 1 / y^2 - v: y (1 + e / 2 + 3 e^2 / 8) with e = 1 - v y^2.
-inline Doubles InverseSqrt(Doubles v) {
-  constexpr double kLeast = 1e-36;  // its root in single precision still has all digits [m^2]
-  const HalfLanes one = HalfLanes{} + 1.0f;
-  const Doubles y = ToDoubles(one / Sqrt(ToFloats(v)));
-  const Doubles e = AllDoubles(1.0) - (v * y) * y;
-  const Doubles better = y + y * (e * (AllDoubles(0.5) + AllDoubles(0.375) * e));
-  return v > kLeast ? better : Doubles{};
-}
-
 struct DoubleVector {
   Doubles x, y, z;
 };
@@ -205,7 +192,8 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
         LoadNodes(pass.position, [others](std::uint32_t at) { return others[at]; }) - here;
     const Doubles k = scale * LoadDoubles(pass.stiffness + entry),
                   rest = LoadDoubles(pass.rest_length + entry);
-    const Doubles length2 = Dot(along, along), inverse = InverseSqrt(length2), length = length2 * inverse;
+    const Doubles length2 = Dot(along, along), length = Sqrt(length2);
+    const Doubles inverse = length2 > 0.0 ? AllDoubles(1.0) / length : none;
     const Doubles b = k * rest * inverse, across = k - b;
     force = MulAdd(across, along, force);
     const Doubles stretch = Absolute(length - rest), tension = k * stretch;
