@@ -4,6 +4,7 @@
 #include <span>
 
 #include "cholecystectomy_surgeon.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::agent {
 
@@ -61,7 +62,7 @@ void CholecystectomySurgeon::CheckPlacedClip(const SurgeonAct& act, const Snapsh
   const Pose& X = seen.instruments[kRight].X_world_tool;
   const Vec3 in = math::Inverse(X) * TubePoint(seen, act.tube, act.share);
   const bool is_between =
-      std::hypot(in.x, in.y) < kBetweenLegs && in.z > kFromTips && in.z < length - kFromTips;
+      math::Hypot(in.x, in.y) < kBetweenLegs && in.z > kFromTips && in.z < length - kFromTips;
   if (is_between || act.count == 0) return CloseClip(act.tube, act.share);
   Reach(kRight, Place::Aim(act.tube, act.share, kStandOff));
   // a little farther along, then a little nearer

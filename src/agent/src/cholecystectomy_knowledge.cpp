@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cholecystectomy_surgeon.h"
+#include "trocar/math/elementary.h"
 #include "trocar/tissue/rest_frame.h"
 
 namespace trocar::agent {
@@ -42,7 +43,7 @@ double CholecystectomySurgeon::CalcAzimuth(std::span<const Vec3> positions, cons
   const Vec3 front = math::Normalized(Vec3{0, 0, 1} - along * along.z, {1, 0, 0});
   const Vec3 to_eye =
       math::Rotate(math::Inverse(X_world_neck.rotation), eye - X_world_neck * known_.rest[duct.front()]);
-  const double azimuth = std::atan2(math::Dot(to_eye, math::Cross(along, front)), math::Dot(to_eye, front));
+  const double azimuth = math::Atan2(math::Dot(to_eye, math::Cross(along, front)), math::Dot(to_eye, front));
   return std::remainder(azimuth - picture_.first_azimuth, 2.0 * M_PI);
 }
 

@@ -9,6 +9,7 @@
 #include "trocar/agent/hand_motion.h"
 #include "trocar/collision/segment_distance.h"
 #include "trocar/geometry/distance.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::agent {
 namespace {
@@ -157,7 +158,7 @@ std::optional<ScissorsPose> FindCut(const DivisionField& field, double arc) {
     const double reach = (1.0 - beyond) * length;
     // wide enough for the vessel, and so far open that they have not closed up to it yet
     const double jaw =
-        std::max(2.0 * std::asin(std::min(1.0, half / reach)), (beyond + kNotYet) * field.scissors->max_jaw);
+        std::max(2.0 * math::Asin(std::min(1.0, half / reach)), (beyond + kNotYet) * field.scissors->max_jaw);
     ScissorsPose pose{0.0, std::min(field.scissors->max_jaw, jaw), beyond};
     const Vec3 tip = p + beyond * length * in;
     const double across = FindSpin(field.port, tip, math::Cross(in, field.tube->DirectionAt(arc)));

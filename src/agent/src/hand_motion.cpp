@@ -4,11 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::agent {
 namespace {
+
+using math::Atan2;
+using math::Cos;
+using math::Sin;
 
 /// Peak over mean speed of a minimum-jerk reach.
 constexpr double kPeakOverMean = 1.875;
@@ -20,7 +25,7 @@ constexpr double kMostOvershoot = 0.006;  // [m]
 Vec3 PickSide(const Vec3& along, double turn) {
   const Vec3 level = math::Normalized(math::Cross(along, {0, 0, 1}), {1, 0, 0});
   const Vec3 up = math::Cross(level, along);
-  return std::cos(turn) * level + std::sin(turn) * (up.z < 0 ? -1.0 : 1.0) * up;
+  return Cos(turn) * level + Sin(turn) * (up.z < 0 ? -1.0 : 1.0) * up;
 }
 
 double StepTowards(double from, double to, double most) {
@@ -117,7 +122,7 @@ Vec3 HandMotion::CalcTremor() const {
   Vec3 offset;
   for (int axis = 0; axis < 3; ++axis) {
     for (const Sine& sine : tremor_[static_cast<std::size_t>(axis)])
-      offset[axis] += skill_.tremor / kSines * std::sin(2 * M_PI * sine.frequency * time_ + sine.phase);
+      offset[axis] += skill_.tremor / kSines * Sin(2 * M_PI * sine.frequency * time_ + sine.phase);
   }
   return offset;
 }
@@ -130,7 +135,7 @@ instrument::TrocarJoints HandMotion::Step(double dt) {
     const double s = t * t * t * (10 + t * (-15 + 6 * t));
     tip_ = math::Lerp(from_, to_, s);
     if (skill_.wander > 0) {
-      const double bend = std::sin(M_PI * s);
+      const double bend = Sin(M_PI * s);
       tip_ = tip_ + bend * bend * bulge_;
     }
     if (is_past_ && !IsMoving()) {
@@ -149,7 +154,7 @@ double FindSpin(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& a
       instrument::CalcToolPose(p_world_port, instrument::FindJoints(p_world_port, p_world_tip, 0.0, 0.0));
   const Vec3 in_tool = math::Rotate(math::Inverse(X.rotation), across);
   // spin turns the opening direction +y towards -x; both senses open alike, so the smaller turn
-  const double spin = std::atan2(-in_tool.x, in_tool.y);
+  const double spin = Atan2(-in_tool.x, in_tool.y);
   return spin > M_PI / 2 ? spin - M_PI : spin < -M_PI / 2 ? spin + M_PI : spin;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::agent {
 namespace {
 
@@ -24,7 +26,7 @@ void HeatMemory::Add(const math::Vec3& place, double seconds) {
 }
 
 void HeatMemory::Cool(double seconds) {
-  const double share = std::exp(-seconds / kCools);
+  const double share = math::Exp(-seconds / kCools);
   for (Warmth& warmth : warmths_) warmth.seconds *= share;
   std::erase_if(warmths_, [](const Warmth& warmth) { return warmth.seconds < kForgotten; });
 }

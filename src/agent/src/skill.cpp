@@ -9,6 +9,7 @@
 #include "cholecystectomy_surgeon.h"
 #include "skilled_surgeon.h"
 #include "task_surgeon.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 
 namespace trocar::agent {
@@ -170,8 +171,8 @@ SurgeonSkill PlantWeakness(SurgeonSkill skill, Weakness weakness, double strengt
 
 SurgeonSkill SampleSkill(const SurgeonSkill& around, double spread, std::uint64_t seed) noexcept {
   math::Random random(seed ^ 0x736b696c6cULL);
-  const double most = std::log1p(spread);
-  const auto vary = [&](double value) { return value * std::exp(random.Uniform(-most, most)); };
+  const double most = math::Log1p(spread);
+  const auto vary = [&](double value) { return value * math::Exp(random.Uniform(-most, most)); };
   SurgeonSkill skill = around;
   skill.hand.speed = vary(skill.hand.speed);
   skill.hand.shortest = vary(skill.hand.shortest);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "state_fields.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 
 namespace trocar::agent {
@@ -36,7 +37,8 @@ Input SkilledSurgeon::Act(const Snapshot& seen) {
     const auto drift = [&](std::size_t axis) {
       double sum = 0;
       for (std::size_t i = 0; i < kSines; ++i)
-        sum += std::sin(2 * M_PI * frequency_[axis][i] * time + phase_[axis][i]) - std::sin(phase_[axis][i]);
+        sum +=
+            math::Sin(2 * M_PI * frequency_[axis][i] * time + phase_[axis][i]) - math::Sin(phase_[axis][i]);
       return drift_ / kSines * sum;
     };
     input.laparoscope.pan += drift(0);

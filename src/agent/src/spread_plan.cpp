@@ -7,11 +7,16 @@
 #include <utility>
 
 #include "trocar/agent/hand_motion.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::agent {
 namespace {
 
+using math::Atan2;
+using math::Cos;
+using math::Hypot;
 using math::Pose;
+using math::Sin;
 
 constexpr std::size_t kMostAims = 60;    // fibres at which jaws are thought of
 constexpr std::size_t kMostLooked = 24;  // poses, the best first, whose way to the organs is looked at
@@ -40,10 +45,10 @@ constexpr double kSnipNear = 0.020;            // of the fibre, what ducts are l
 
 /// Distance from a point in the opening plane's half y >= 0 to the sector that a jaw sweeps, hinge at the origin.
 double SectorDistance(double along, double aside, double length, double wide) {
-  const double angle = std::atan2(aside, along);
-  if (angle <= wide) return std::max(0.0, std::hypot(along, aside) - length);
-  const double on = std::clamp(along * std::cos(wide) + aside * std::sin(wide), 0.0, length);
-  return std::hypot(along - on * std::cos(wide), aside - on * std::sin(wide));
+  const double angle = Atan2(aside, along);
+  if (angle <= wide) return std::max(0.0, Hypot(along, aside) - length);
+  const double on = std::clamp(along * Cos(wide) + aside * Sin(wide), 0.0, length);
+  return Hypot(along - on * Cos(wide), aside - on * Sin(wide));
 }
 
 /// Worth of opening jaws so far at a pose.
@@ -57,15 +62,15 @@ double CalcWorth(const SpreadField& field, const Pose& X_world_tool, double open
     if ((a.x > 0.0) == (b.x > 0.0)) continue;
     const Vec3 p = math::Lerp(a, b, a.x / (a.x - b.x));
     const double along = length - p.z, aside = std::fabs(p.y);
-    if (along <= 0.0 || std::hypot(along, aside) > length) continue;
-    const double angle = std::atan2(aside, along);
+    if (along <= 0.0 || Hypot(along, aside) > length) continue;
+    const double angle = Atan2(aside, along);
     if (angle > narrow && angle < wide) worth += field.weights[i];
   }
   for (const SpreadField::Round& tube : field.tubes) {
     const Vec3 p = X_tool_world * tube.p;
     const double wanted = tube.radius + kBesideTube;
     if (std::fabs(p.x) > wanted) continue;
-    const double distance = std::hypot(p.x, SectorDistance(length - p.z, std::fabs(p.y), length, wide));
+    const double distance = Hypot(p.x, SectorDistance(length - p.z, std::fabs(p.y), length, wide));
     worth -= kPushed * std::max(0.0, wanted - distance);
   }
   return worth;
@@ -89,8 +94,8 @@ bool IsBetween(const instrument::Tool& tool, const collision::Segment& fibre, co
   if ((a.x > 0.0) == (b.x > 0.0)) return false;
   const Vec3 p = math::Lerp(a, b, a.x / (a.x - b.x));
   const double along = tool.jaw_length - p.z;
-  return along > 0.0 && std::hypot(along, p.y) < tool.jaw_length &&
-         std::atan2(std::fabs(p.y), along) < kSnipInside * opening * 0.5 * tool.max_jaw;
+  return along > 0.0 && Hypot(along, p.y) < tool.jaw_length &&
+         Atan2(std::fabs(p.y), along) < kSnipInside * opening * 0.5 * tool.max_jaw;
 }
 
 double FindTubeRoom(const instrument::Tool& tool, std::span<const SpreadField::Round> tubes,
@@ -101,7 +106,7 @@ double FindTubeRoom(const instrument::Tool& tool, std::span<const SpreadField::R
   for (const SpreadField::Round& tube : tubes) {
     const Vec3 p = X_tool_world * tube.p;
     const double off = SectorDistance(tool.jaw_length - p.z, std::fabs(p.y), tool.jaw_length, wide);
-    room = std::min(room, std::hypot(p.x, off) - tube.radius);
+    room = std::min(room, Hypot(p.x, off) - tube.radius);
   }
   return room;
 }

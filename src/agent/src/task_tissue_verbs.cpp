@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "task_surgeon.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::agent {
 
@@ -198,7 +199,7 @@ void TaskSurgeon::CutCircle(const Snapshot& seen, int sheet, double aside, doubl
   const ModelSheet& cloth = scene_->model->sheets[static_cast<std::size_t>(sheet)];
   const auto at = [&](double turn, double out) {
     const double angle = 2 * M_PI * turn - 0.5 * M_PI;
-    return cloth.centre + (cloth.circle + aside + out) * Vec3{std::cos(angle), std::sin(angle), 0};
+    return cloth.centre + (cloth.circle + aside + out) * Vec3{math::Cos(angle), math::Sin(angle), 0};
   };
   const auto pedal = [this, hand](bool is_down) {
     TaskAct act;

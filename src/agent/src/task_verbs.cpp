@@ -6,6 +6,7 @@
 
 #include "state_fields.h"
 #include "task_surgeon.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::agent {
 
@@ -96,7 +97,7 @@ void TaskSurgeon::BeginReachFor(const TaskAct& act, const Snapshot& seen) {
   const Vec3 across = math::Rotate(seen.objects[o].X_world_object.rotation, chosen.across);
   motion.SetJaw(chosen.opening);
   motion.Turn(FindSpin(motion.Port(), tip, across));
-  const bool is_far = std::hypot(tip.x - motion.Tip().x, tip.y - motion.Tip().y) > 2 * kShyness;
+  const bool is_far = math::Hypot(tip.x - motion.Tip().x, tip.y - motion.Tip().y) > 2 * kShyness;
   motion.MoveTo(tip + Vec3{0, 0, is_far ? kShyness : 0});
 }
 

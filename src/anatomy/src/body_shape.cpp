@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::anatomy {
 namespace {
 
@@ -32,7 +34,7 @@ std::optional<double> FrontMap::FindHeight(double x, double y, double radius) co
   const int column = static_cast<int>(std::floor(x / kCell)), row = static_cast<int>(std::floor(y / kCell));
   for (int i = -reach; i <= reach; ++i) {
     for (int j = -reach; j <= reach; ++j) {
-      if (std::hypot(i, j) * kCell > radius) continue;
+      if (math::Hypot(i, j) * kCell > radius) continue;
       const auto found = heights_.find({column + i, row + j});
       if (found != heights_.end()) height = std::max(height.value_or(found->second), found->second);
     }

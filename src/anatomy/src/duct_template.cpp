@@ -9,12 +9,15 @@
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/cubic_spline.h"
+#include "trocar/math/elementary.h"
 #include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
 
 using geometry::TriangleMesh;
+using math::Cos;
+using math::Sin;
 using math::Vec3;
 
 constexpr double kClearMm = 0.6;       // between a tube's skin and an organ
@@ -102,7 +105,7 @@ class Placer {
       std::vector<Vec3> line;
       for (int i = 0; i <= count; ++i) {
         const double t = static_cast<double>(i) / count;
-        const double away = std::sin(M_PI * t);
+        const double away = Sin(M_PI * t);
         Vec3 p = spline.Evaluate(t * spline.Length()) + (amplitude * away) * bow;
         // near the ends the line belongs to the organ that it enters
         if (i > 0 && i < count) p = PushOut(p, (radius + kClearMm) * std::min(1.0, 2.5 * away));
@@ -164,8 +167,7 @@ Hilum FindHilum(const Placer& placer, const Vec3& neck, const Vec3& usual, doubl
   for (int ring = 0; ring <= kRings; ++ring) {
     for (int spoke = 0; spoke < (ring == 0 ? 1 : kSpokes); ++spoke) {
       const double tilt = 0.28 * ring, turn = 2 * M_PI * spoke / kSpokes;
-      const Vec3 direction =
-          std::cos(tilt) * usual + std::sin(tilt) * (std::cos(turn) * u + std::sin(turn) * v);
+      const Vec3 direction = Cos(tilt) * usual + Sin(tilt) * (Cos(turn) * u + Sin(turn) * v);
       const Vec3 junction = neck + cystic_reach * direction;
       constexpr double kWanted = 6.0;  // mm between a junction and the organs
       const double lacking = std::max(0.0, kWanted - placer.FindClearance(junction));

@@ -5,12 +5,18 @@
 #include <cmath>
 
 #include "trocar/geometry/distance.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 #include "trocar/math/rotation_angle.h"
 
 namespace trocar::anatomy {
 namespace {
 
+using math::Asin;
+using math::Cbrt;
+using math::Cos;
+using math::Exp;
+using math::Sin;
 using math::Vec3;
 
 constexpr double kGapMm = 1.3;  // between liver and gallbladder, so that their meshes do not touch
@@ -93,7 +99,7 @@ GeneratedBody::GeneratedBody(std::span<const Parameter> parameters, std::uint64_
   const double fat = number("steatosis");
   cirrhosis_ = number("cirrhosis");
   constexpr double kFatGrowth = 0.25;  // of the volume
-  const Vec3 size = std::cbrt(1.0 + kFatGrowth * fat) *
+  const Vec3 size = Cbrt(1.0 + kFatGrowth * fat) *
                     Vec3{number("liver_transverse"), number("liver_vertical"), number("liver_depth")};
   taper_ = number("right_lobe_taper");
   edge_blend_ = number("liver_edge_rounding") + 12.0 * fat;
@@ -267,11 +273,12 @@ double GeneratedBody::MakeGallbladder(std::span<const Parameter> parameters) {
   // a pouch sags from the free wall of the infundibulum: steeply towards the duct, slowly towards the body
   const auto sag_at = [&](double t) {
     constexpr double kPlace = 0.09, kToDuct = 0.08, kToBody = 0.18;  // along the axis [-]
-    return pouch * std::exp(-std::pow((t - kPlace) / (t < kPlace ? kToDuct : kToBody), 2));
+    const double away = (t - kPlace) / (t < kPlace ? kToDuct : kToBody);
+    return pouch * Exp(-away * away);
   };
 
   const double azimuth = number("gallbladder_azimuth") * math::kDegree;
-  const Vec3 direction = {-std::sin(azimuth), 0, std::cos(azimuth)};
+  const Vec3 direction = {-Sin(azimuth), 0, Cos(azimuth)};
   const double start = -0.5 * length;
   const auto way = FindVisceralWay(-13 * scale_.x + start * direction.x, start * direction.z, direction);
   const double tip = FindEdge(way) + number("fundus_overhang");
@@ -292,8 +299,8 @@ double GeneratedBody::MakeGallbladder(std::span<const Parameter> parameters) {
     const Vec3 side = math::Normalized(Cross(below, direction));
     const double r = radius_at(t);
     // the neck hangs free of the fossa and turns towards the duct
-    const double free = std::pow(1 - t, 3);
-    const double sagitta = length * bend / 8 * (1 - std::pow(2 * t - 1, 2));
+    const double free = (1 - t) * (1 - t) * (1 - t), from_middle = 2 * t - 1;
+    const double sagitta = length * bend / 8 * (1 - from_middle * from_middle);
     // as much radius as way, so that the wall on the liver's side stays; it lies over the duct
     const double sag = sag_at(t), wider = 0.35 * sag;
     axis.points.push_back(on + (r * (1 - 2 * embedding) + 5.0 * free + wider) * below + sagitta * side -
@@ -309,7 +316,7 @@ double GeneratedBody::MakeGallbladder(std::span<const Parameter> parameters) {
   const Vec3 up = viscera_.OutwardAt(points[0]);
   const Vec3 way_out = pouch > 0 ? math::Normalized(onwards + up - Dot(up, onwards) * onwards) : onwards;
   neck_ = points[0] + gallbladder_.radii[0] * way_out;
-  return std::asin(std::clamp(-whole.y / Norm(whole), -1.0, 1.0));
+  return Asin(std::clamp(-whole.y / Norm(whole), -1.0, 1.0));
 }
 
 /// Turns the last quarter of the axis back, away from the liver.
@@ -323,7 +330,7 @@ void GeneratedBody::FoldFundus(Worm& axis) const {
   Vec3 at = axis.points[hinge - 1];
   for (std::size_t i = hinge; i < n; ++i) {
     const double turned = kFold * std::min(1.0, static_cast<double>(i - hinge + 1) / 3.0);
-    at += step * (std::cos(turned) * forward + std::sin(turned) * down);
+    at += step * (Cos(turned) * forward + Sin(turned) * down);
     axis.points[i] = at;
     axis.radii[i] *= 0.86;
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 #include "trocar/meshing/label_volume.h"
 #include "trocar/meshing/mesh_smoothing.h"
 #include "trocar/meshing/volume_mesher.h"
@@ -83,7 +84,7 @@ struct PartMesh {
 };
 
 int BudgetOf(double volume_mm3) {
-  const double ball = std::cbrt(36.0 * M_PI * volume_mm3 * volume_mm3);
+  const double ball = math::Cbrt(36.0 * M_PI * volume_mm3 * volume_mm3);
   // organs are longer and more folded than a ball
   return std::clamp(static_cast<int>(1.6 * ball / kTriangleMm2), kFewestTriangles, kMostTriangles);
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::anatomy {
 namespace {
 
@@ -53,9 +55,9 @@ std::string GuessUnit(double liver_ml) {
                                 {0.1, "its lengths look like centimetres; they must be millimetres"},
                                 {1 / 25.4, "its lengths look like inches; they must be millimetres"},
                                 {0.001, "its lengths look like metres; they must be millimetres"}};
-  const double factor = std::cbrt(liver_ml / kUsualLiverMl);
+  const double factor = math::Cbrt(liver_ml / kUsualLiverMl);
   for (const Guess& guess : kGuesses) {
-    if (std::fabs(std::log(factor / guess.factor)) < std::log(1.4)) return guess.reason;
+    if (std::fabs(math::Log(factor / guess.factor)) < math::Log(1.4)) return guess.reason;
   }
   return "the label is another organ, or the distance of its voxels is wrong along one axis";
 }

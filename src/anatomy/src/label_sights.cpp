@@ -12,8 +12,14 @@
 
 #include "label_neighbours.h"
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::anatomy {
 namespace {
+
+using math::Acos;
+using math::Cbrt;
+using math::Cos;
 
 constexpr double kSpacingMm = 3.0;  // of the lattice; a gallbladder is 30 mm wide
 constexpr double kMostCells = 4e6;  // of it; a larger map gets a coarser one
@@ -50,7 +56,7 @@ Lattice Sample(const images::LabelVolume& volume, const VoxelFrame& frame, const
   const Vec3 extent = high - low;
   const double margin = 2.0 * kSpacingMm;
   lattice.spacing = std::max(
-      kSpacingMm, std::cbrt((extent.x + margin) * (extent.y + margin) * (extent.z + margin) / kMostCells));
+      kSpacingMm, Cbrt((extent.x + margin) * (extent.y + margin) * (extent.z + margin) / kMostCells));
   // two empty points all round
   for (int axis = 0; axis < 3; ++axis) {
     lattice.size[axis] = static_cast<int>(std::floor(extent[axis] / lattice.spacing)) + 5;
@@ -90,9 +96,9 @@ double Elongation(const std::array<double, 6>& c, double least_variance) {
   const double determinant =
       (a * (b * d - c[5] * c[5]) - c[3] * (c[3] * d - c[5] * c[4]) + c[4] * (c[3] * c[5] - b * c[4])) /
       (spread * spread * spread);
-  const double angle = std::acos(std::clamp(0.5 * determinant, -1.0, 1.0)) / 3.0;
-  const double largest = mean + 2.0 * spread * std::cos(angle);
-  const double smallest = mean + 2.0 * spread * std::cos(angle + 2.0 * M_PI / 3.0);
+  const double angle = Acos(std::clamp(0.5 * determinant, -1.0, 1.0)) / 3.0;
+  const double largest = mean + 2.0 * spread * Cos(angle);
+  const double smallest = mean + 2.0 * spread * Cos(angle + 2.0 * M_PI / 3.0);
   return std::sqrt(largest / std::max(smallest, least_variance));
 }
 

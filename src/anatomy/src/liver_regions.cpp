@@ -97,8 +97,8 @@ std::vector<Vec3> CalcBroadNormals(const TriangleMesh& mesh, const geometry::Row
   length /= static_cast<double>(std::max<std::size_t>(edges.size(), 1));
   // each round spreads a normal over about one edge; rounds add as the squares of their reach
   constexpr int kMaxRounds = 200;
-  const int rounds =
-      std::clamp(static_cast<int>(std::lround(std::pow(kSmoothing / length, 2))), 1, kMaxRounds);
+  const double edges_away = kSmoothing / length;
+  const int rounds = std::clamp(static_cast<int>(std::lround(edges_away * edges_away)), 1, kMaxRounds);
   for (int round = 0; round < rounds; ++round) {
     std::vector<Vec3> next = normals;
     for (std::size_t v = 0; v < normals.size(); ++v) {

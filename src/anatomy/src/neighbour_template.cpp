@@ -9,6 +9,7 @@
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/math/elementary.h"
 #include "trocar/meshing/mesh_repair.h"
 #include "trocar/meshing/nearest_surface.h"
 
@@ -46,7 +47,7 @@ Marks FindMarks(const Patient& patient, double midline) {
   marks.fundus = fundus->position, marks.neck = neck->position;
   marks.midline = midline;
   const Vec3 sides = marks.liver.max - marks.liver.min;
-  marks.size = std::clamp(std::cbrt(sides.x / kMeanWidth * (sides.y / kMeanHeight) * (sides.z / kMeanDepth)),
+  marks.size = std::clamp(math::Cbrt(sides.x / kMeanWidth * (sides.y / kMeanHeight) * (sides.z / kMeanDepth)),
                           0.8, 1.25);
   return marks;
 }
@@ -119,7 +120,7 @@ TriangleMesh MakeTemplateTube(const TubeShape& shape, const Obstacles& obstacles
   for (std::size_t i = 0; i < radii.size(); ++i) {
     if (i > 0) along += math::Distance(line.points[i], line.points[i - 1]);
     if (shape.haustra > 0)
-      radii[i] *= 1.0 - shape.haustra * (1.0 - std::sqrt(std::fabs(std::sin(M_PI * along / kPitch))));
+      radii[i] *= 1.0 - shape.haustra * (1.0 - std::sqrt(std::fabs(math::Sin(M_PI * along / kPitch))));
     // round ends
     const double end = std::min(along, length - along) / line.radii[i];
     if (end < 1.0) radii[i] *= std::max(0.35, std::sqrt(1.0 - (1.0 - end) * (1.0 - end)));
@@ -213,7 +214,7 @@ TriangleMesh MakeKidney(const Marks& m, const Obstacles& obstacles) {
     centre += 0.6 * math::Norm(way) * math::Normalized(Vec3{0, -0.8, -0.6});
   }
   for (Vec3& p : kidney.positions) {
-    const double hollow = 0.30 * std::exp(-6.0 * p.y * p.y) * std::max(0.0, p.x) * std::max(0.0, p.x);
+    const double hollow = 0.30 * math::Exp(-6.0 * p.y * p.y) * std::max(0.0, p.x) * std::max(0.0, p.x);
     p = centre + Vec3{radii.x * (p.x - hollow), radii.y * p.y, radii.z * p.z};
   }
   return kidney;

@@ -7,6 +7,7 @@
 #include "duct_template.h"
 #include "gallbladder_bed.h"
 #include "patient_frame.h"
+#include "trocar/math/elementary.h"
 #include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
@@ -30,8 +31,8 @@ core::Status CheckPoint(const Patient& patient, std::uint32_t tube, std::uint32_
 /// 1 at the middle, 0 from `reach` on, smooth.
 double CalcFollow(double away, double reach) {
   if (away >= reach) return away == 0 ? 1.0 : 0.0;
-  const double t = away / reach;
-  return std::pow(1 - t * t, 2);
+  const double t = away / reach, left = 1 - t * t;
+  return left * left;
 }
 
 /// Distance along the line from one point to every other [m].
@@ -88,11 +89,11 @@ void FollowBed(Patient& patient, std::uint32_t gallbladder, const Region& bed) {
           {kGallbladderBed, gallbladder, v, static_cast<std::uint32_t>(liver), carrier});
     }
   }
-  // one order whatever was painted first
-  std::stable_sort(patient.attachments.begin(), patient.attachments.end(),
-                   [&](const Attachment& a, const Attachment& b) {
-                     return is_strand(a) && is_strand(b) && a.vertex_a < b.vertex_a;
-                   });
+  // one order whatever was painted first, in the place of the first strand
+  const auto first = std::find_if(patient.attachments.begin(), patient.attachments.end(), is_strand);
+  const auto last = std::stable_partition(first, patient.attachments.end(), is_strand);
+  std::stable_sort(first, last,
+                   [](const Attachment& a, const Attachment& b) { return a.vertex_a < b.vertex_a; });
 }
 
 }  // namespace
@@ -199,7 +200,7 @@ core::Status ScaleTubeRadius(Patient& patient, std::uint32_t tube, std::uint32_t
   const auto away = CalcAway(line, point);
   for (std::size_t i = 0; i < away.size(); ++i) {
     line.radii[i] =
-        std::clamp(line.radii[i] * std::pow(factor, CalcFollow(away[i], reach)), kThinnest, kThickest);
+        std::clamp(line.radii[i] * math::Pow(factor, CalcFollow(away[i], reach)), kThinnest, kThickest);
   }
   return {};
 }

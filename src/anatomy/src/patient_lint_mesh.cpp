@@ -5,6 +5,7 @@
 #include "patient_frame.h"
 #include "patient_linter.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -41,7 +42,7 @@ Slivers FindSlivers(const TriangleMesh& mesh) {
       const Vec3& here = mesh.positions[mesh.triangles[i][k]];
       const Vec3 a = mesh.positions[mesh.triangles[i][(k + 1) % 3]] - here;
       const Vec3 b = mesh.positions[mesh.triangles[i][(k + 2) % 3]] - here;
-      smallest = std::min(smallest, std::atan2(math::Norm(Cross(a, b)), Dot(a, b)) * 180.0 / M_PI);
+      smallest = std::min(smallest, math::Atan2(math::Norm(Cross(a, b)), Dot(a, b)) * 180.0 / M_PI);
     }
     slivers.count += smallest < kMinAngleDeg ? 1 : 0;
     if (smallest < slivers.angle_deg) slivers.angle_deg = smallest, slivers.worst = i;

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 
 namespace trocar::anatomy {
@@ -16,6 +17,9 @@ namespace {
 
 using core::Error;
 using core::ErrorCode;
+using math::Cos;
+using math::Exp;
+using math::Log;
 
 constexpr const char* kLiverSpread =
     "thecommonvein.net: 200 to 225 x 150 to 175 x 100 to 125 mm; our choice: wide enough for the "
@@ -153,7 +157,7 @@ constexpr IdealRange kIdeal[] = {
 /// Standard normal number (Box and Muller 1958).
 double DrawNormal(math::Random& random) {
   const double u = 1.0 - random.Uniform(), v = random.Uniform();
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+  return std::sqrt(-2.0 * Log(u)) * Cos(2.0 * M_PI * v);
 }
 
 /// Draws until the value lies within the limits, which leave most of the distribution.
@@ -163,7 +167,7 @@ double DrawNumber(math::Random& random, Distribution distribution, double centre
   double value = centre;
   for (int i = 0; i < kMaxDraws; ++i) {
     const double z = spread * DrawNormal(random);
-    value = distribution == kLognormal ? centre * std::exp(z) : centre + z;
+    value = distribution == kLognormal ? centre * Exp(z) : centre + z;
     if (value >= low && value <= high) return value;
   }
   return std::clamp(value, low, high);
@@ -266,10 +270,10 @@ double CalcGallbladderVolume(double length, double diameter) {
                last = radius * CalcGallbladderProfile(1, kUsualNeck);
   const double body = length - first - last;
   constexpr int kSteps = 64;
-  double volume = 2.0 / 3.0 * M_PI * (std::pow(first, 3) + std::pow(last, 3));
+  double volume = 2.0 / 3.0 * M_PI * (first * first * first + last * last * last);
   for (int i = 0; i < kSteps; ++i) {
-    volume +=
-        M_PI * std::pow(radius * CalcGallbladderProfile((i + 0.5) / kSteps, kUsualNeck), 2) * body / kSteps;
+    const double here = radius * CalcGallbladderProfile((i + 0.5) / kSteps, kUsualNeck);
+    volume += M_PI * here * here * body / kSteps;
   }
   return kMlPerCubicMm * volume;
 }

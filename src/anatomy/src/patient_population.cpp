@@ -9,12 +9,14 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -65,7 +67,8 @@ void CountOne(std::span<const std::vector<Parameter>> patients, std::string_view
   for (const ValueCount& value : count.values) {
     const double expected = value.configured * static_cast<double>(count.patients);
     if (expected == 0) continue;
-    count.chi_square += std::pow(static_cast<double>(value.observed) - expected, 2) / expected;
+    const double off = static_cast<double>(value.observed) - expected;
+    count.chi_square += off * off / expected;
     ++count.degrees_of_freedom;
   }
   count.p_value = CalcChiSquareTail(count.chi_square, std::max(1, count.degrees_of_freedom));
@@ -112,6 +115,13 @@ void AddOutcome(PopulationReport& report, std::uint64_t seed, const Outcome& out
   report.smallest_angle_deg = std::min(report.smallest_angle_deg, outcome.smallest_angle_deg);
 }
 
+/// log Gamma(degrees / 2 + 1), by the recurrence from Gamma(1) or Gamma(1/2).
+double CalcLogGamma(int degrees) {
+  double sum = degrees % 2 == 0 ? 0.0 : 0.5 * math::Log(std::numbers::pi);
+  for (int k = degrees; k > 0; k -= 2) sum += math::Log(0.5 * k);
+  return sum;
+}
+
 }  // namespace
 
 double CalcBinomialDeviation(double configured, std::size_t observed, std::size_t trials) {
@@ -124,7 +134,7 @@ double CalcChiSquareTail(double chi_square, int degrees) {
   if (!(chi_square > 0)) return 1.0;
   const double a = 0.5 * degrees, x = 0.5 * chi_square;
   // the series of the lower function: all terms positive, so nothing cancels
-  double term = std::exp(a * std::log(x) - x - std::lgamma(a + 1.0)), sum = term;
+  double term = math::Exp(a * math::Log(x) - x - CalcLogGamma(degrees)), sum = term;
   for (int n = 1; n < 10000 && term > 1e-17 * sum; ++n) {
     term *= x / (a + n);
     sum += term;

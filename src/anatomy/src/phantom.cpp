@@ -9,6 +9,7 @@
 #include "phantom_tissue.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 #include "trocar/meshing/mesh_slice.h"
 #include "trocar/meshing/volume.h"
@@ -59,7 +60,7 @@ void Blur(std::vector<float>& samples, int width, int height, double deviation) 
   std::vector<float> kernel;
   float total = 0;
   for (int i = -reach; i <= reach; ++i) {
-    kernel.push_back(static_cast<float>(std::exp(-0.5 * i * i / (deviation * deviation))));
+    kernel.push_back(static_cast<float>(math::Exp(-0.5 * i * i / (deviation * deviation))));
     total += kernel.back();
   }
   for (float& weight : kernel) weight /= total;
@@ -84,7 +85,9 @@ void Blur(std::vector<float>& samples, int width, int height, double deviation) 
 
 /// Nearly normal deviate of mean 0 and deviation 1.
 double Deviate(math::Random& random) {
-  return 2.0 * (random.Uniform() + random.Uniform() + random.Uniform() - 1.5);
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) sum += random.Uniform();
+  return 2.0 * (sum - 1.5);
 }
 
 /// `count` points evenly along a closed polygon, the first a share `phase` of their distance in.
@@ -328,7 +331,7 @@ contours::ControlPoints Phantom::MakeControlPoints() const {
         auto placed = Spread(loops[i], count, random.Uniform());
         for (Vec2& p : placed) {
           const double turn = random.Uniform(0, 2 * M_PI);
-          p = in_picture(p + c.options.slip_mm * Vec2{std::cos(turn), std::sin(turn)});
+          p = in_picture(p + c.options.slip_mm * Vec2{math::Cos(turn), math::Sin(turn)});
         }
         const auto around = std::count_if(loops.begin(), loops.end(), [&](const auto& other) {
           return &other != &loops[i] && IsInside(loops[i].front(), other);

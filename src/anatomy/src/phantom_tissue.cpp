@@ -6,11 +6,14 @@
 
 #include "trocar/geometry/distance.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 
 namespace trocar::anatomy {
 namespace {
 
+using math::Hypot;
+using math::Pow;
 using math::Vec3;
 
 constexpr int kLattice = 32;  // values a side
@@ -236,12 +239,12 @@ std::vector<PhantomBody::Pipe> PhantomBody::FindVeins(double y) const {
 double PhantomBody::OutlineDepth(const Vec3& p) const {
   constexpr double kRoundness = 2.4;  // 2: an ellipse
   const double x = std::fabs(p.x - midline_) / half_width_, z = std::fabs(p.z - middle_z_) / half_depth_;
-  const double a = std::pow(x, kRoundness), b = std::pow(z, kRoundness);
-  const double f = std::pow(a + b, 1 / kRoundness);
+  const double a = Pow(x, kRoundness), b = Pow(z, kRoundness);
+  const double f = Pow(a + b, 1 / kRoundness);
   if (f < 0.3) return half_depth_;
-  const double scale = std::pow(f, 1 - kRoundness);
-  const double slope = std::hypot(scale * std::pow(x, kRoundness - 1) / half_width_,
-                                  scale * std::pow(z, kRoundness - 1) / half_depth_);
+  const double scale = Pow(f, 1 - kRoundness);
+  const double slope =
+      Hypot(scale * Pow(x, kRoundness - 1) / half_width_, scale * Pow(z, kRoundness - 1) / half_depth_);
   return (1 - f) / slope + 1.5 * noise_.At({p.x, p.y, p.z}, 120);
 }
 
@@ -255,7 +258,8 @@ Substance PhantomBody::FindWall(const Vec3& p, double depth) const {
   const double to_rib = std::fabs(along - kRibDistance * std::round(along / kRibDistance));
   const bool has_ribs = p.y > liver_.min.y + 0.5 * (p.z - middle_z_);
   const double in_muscle = depth - fat;
-  if (has_ribs && to_rib * to_rib + 2.2 * std::pow(in_muscle - 0.5 * kMuscleMm, 2) < kRibHalf * kRibHalf)
+  const double off_middle = in_muscle - 0.5 * kMuscleMm;
+  if (has_ribs && to_rib * to_rib + 2.2 * off_middle * off_middle < kRibHalf * kRibHalf)
     return Substance::kBone;
   // layers of muscle with thin fat between them
   return std::fabs(in_muscle - 0.45 * kMuscleMm) < 0.5 && !has_ribs ? Substance::kFat : Substance::kMuscle;
@@ -265,21 +269,21 @@ Substance PhantomBody::FindSpine(const Vec3& p, bool& is_there) const {
   is_there = true;
   const double x = p.x - midline_, z = p.z - (liver_.min.z - 8);
   constexpr double kVertebra = 33, kDiscHeight = 8;
-  if (std::hypot(x / 21, z / 16) < 1) {
+  if (Hypot(x / 21, z / 16) < 1) {
     return p.y - kVertebra * std::floor(p.y / kVertebra) < kDiscHeight ? Substance::kDisc : Substance::kBone;
   }
-  const double canal = std::hypot(x, z + 24);
+  const double canal = Hypot(x, z + 24);
   if (canal < 5) return Substance::kCord;
   if (canal < 8) return Substance::kFat;
   const bool has_arch = p.y - kVertebra * std::floor(p.y / kVertebra) > 12;
   if (has_arch && (canal < 12 || (std::fabs(x) < 3.5 && z < -30 && z > -58))) return Substance::kBone;
   if (has_arch && std::fabs(z + 20) < 4 && std::fabs(x) < 34) return Substance::kBone;
   for (const double side : {-1.0, 1.0}) {
-    if (std::hypot((x - side * 29) / 27, (z + 38) / 22) < 1) return Substance::kMuscle;
+    if (Hypot((x - side * 29) / 27, (z + 38) / 22) < 1) return Substance::kMuscle;
     const bool is_low = p.y < liver_.min.y + 90;
-    if (is_low && std::hypot((x - side * 34) / 14, (z + 4) / 13) < 1) return Substance::kMuscle;
+    if (is_low && Hypot((x - side * 34) / 14, (z + 4) / 13) < 1) return Substance::kMuscle;
     // crura of the diaphragm
-    if (std::hypot((x - side * 15) / 6, (z - 15) / 10) < 1) return Substance::kMuscle;
+    if (Hypot((x - side * 15) / 6, (z - 15) / 10) < 1) return Substance::kMuscle;
   }
   is_there = false;
   return Substance::kFat;
@@ -317,8 +321,8 @@ Substance PhantomBody::Find(const Vec3& place, const std::vector<Pipe>& pipes, d
     const double inside = kidney->Distance(p);
     if (inside > 0) continue;
     const Vec3 from_hilum = p - kidney->centre - Vec3{kidney->centre.x < midline_ ? 15.0 : -15.0, 0, 3};
-    if (std::hypot(from_hilum.x / 15, from_hilum.y / 22, from_hilum.z / 8) < 1 + 0.5 * noise_.At(p, 16))
-      return Substance::kFat;
+    const Vec3 by_axis{from_hilum.x / 15, from_hilum.y / 22, from_hilum.z / 8};
+    if (Norm(by_axis) < 1 + 0.5 * noise_.At(p, 16)) return Substance::kFat;
     return inside > -9 || noise_.At(p, 18) > 0.3 ? Substance::kKidney : Substance::kMedulla;
   }
   // the lungs reach down furthest behind
@@ -328,8 +332,7 @@ Substance PhantomBody::Find(const Vec3& place, const std::vector<Pipe>& pipes, d
     const double to_organ = std::min({liver_distance, spleen, stomach});
     if (to_organ < kDiaphragmMm) return Substance::kMuscle;
     // fat around the great vessels, and around the heart
-    const bool is_between =
-        std::hypot((p.x - midline_) / 32, (p.z - liver_.min.z - 16) / 34) < 1 || heart < 14;
+    const bool is_between = Hypot((p.x - midline_) / 32, (p.z - liver_.min.z - 16) / 34) < 1 || heart < 14;
     if (!is_between) return Substance::kLung;
   }
   return liver_distance < 3 ? Substance::kConnective : Substance::kFat;

@@ -10,11 +10,14 @@
 
 #include "trocar/anatomy/move_port.h"
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
+
+using math::Hypot;
 
 // The usual patient: fundus from the navel on the insufflated wall, ports as in scenes/cholecystectomy.json [m].
 constexpr Vec3 kUsualFundus{-0.075, 0.095, -0.070};
@@ -165,7 +168,8 @@ class Wall {
  private:
   /// As if nothing lay behind the wall.
   Vec3 PlaceAlone(double x, double y) const {
-    return {x, y, navel_.z - kAcross * std::pow(x - navel_.x, 2) - kAlong * std::pow(y - navel_.y, 2)};
+    const double across = x - navel_.x, along = y - navel_.y;
+    return {x, y, navel_.z - kAcross * across * across - kAlong * along * along};
   }
   void Add(const geometry::TriangleMesh& mesh) {
     for (const Vec3& p : mesh.positions) front_.Add(p);
@@ -384,7 +388,7 @@ std::vector<std::string> SinkUnderGas(Patient& patient) {
                                       0.0, 1.0);
           const Vec3 on = port.position + t * way;
           const double wide = kWide * std::min(1.0, (1.0 - t) * math::Norm(way) / kNarrowFrom);
-          const double aside = std::hypot(v.x - on.x, v.y - on.y);
+          const double aside = Hypot(v.x - on.x, v.y - on.y);
           if (aside < wide) need = std::max(need, v.z - (on.z - wide));
         }
       }
@@ -398,7 +402,7 @@ std::vector<std::string> SinkUnderGas(Patient& patient) {
   const auto sinking = [&](const Vec3& p) {
     double most = 0;
     for (const auto& [cell, need] : needs) {
-      const double aside = std::hypot(p.x - (cell.first + 0.5) * kCell, p.y - (cell.second + 0.5) * kCell);
+      const double aside = Hypot(p.x - (cell.first + 0.5) * kCell, p.y - (cell.second + 0.5) * kCell);
       if (aside >= kFade) continue;
       const double share = 1.0 - aside / kFade;
       most = std::max(most, need * std::min(1.0, 1.15 * share * share * (3.0 - 2.0 * share)));

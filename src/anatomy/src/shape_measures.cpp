@@ -8,6 +8,7 @@
 
 #include "patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/math/vector.h"
 
@@ -92,7 +93,7 @@ class Slabs {
     constexpr std::size_t kThird = kSlabs / 3;
     const Vec3 first = math::Normalized(CentreAt(kThird) - CentreAt(1)),
                last = math::Normalized(CentreAt(kSlabs - 2) - CentreAt(kSlabs - 1 - kThird));
-    return std::acos(std::clamp(Dot(first, last), -1.0, 1.0));
+    return math::Acos(std::clamp(Dot(first, last), -1.0, 1.0));
   }
 
  private:
@@ -206,9 +207,9 @@ core::Result<std::vector<ShapeMeasure>> MeasureShapes(const Patient& patient) {
   add("gallbladder_diameter", kMmPerMetre * slabs.LargestDiameter(), "mm", "largest across the axis");
   add("gallbladder_volume", kMlPerCubicMetre * geometry::CalcVolume(mesh.positions, mesh.triangles), "mL",
       "enclosed");
-  add("gallbladder_inclination", kDegrees * std::asin(std::clamp(-axis.y, -1.0, 1.0)), "deg",
+  add("gallbladder_inclination", kDegrees * math::Asin(std::clamp(-axis.y, -1.0, 1.0)), "deg",
       "of the axis, caudal of the axial plane");
-  add("gallbladder_azimuth", kDegrees * std::atan2(-axis.x, axis.z), "deg",
+  add("gallbladder_azimuth", kDegrees * math::Atan2(-axis.x, axis.z), "deg",
       "of the axis in the axial plane, from anterior to the patient's right");
   add("gallbladder_bend", kDegrees * slabs.Bend(), "deg", "between the centre line's first and last third");
   add("gallbladder_neck", kMmPerMetre * slabs.SmallestDiameter(kNeckFrom, kNeckTo), "mm",

@@ -10,6 +10,7 @@
 #include "patient_frame.h"
 #include "trocar/anatomy/tube_graph.h"
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -147,7 +148,7 @@ double HardNumber(const ParameterRule& rule, const LengthRange* range, int harde
   const double low = range != nullptr ? range->low : rule.low,
                high = range != nullptr ? range->high : rule.high;
   const double z = harder * kCentralShare * spread;
-  return std::clamp(rule.distribution == Distribution::kLognormal ? centre * std::exp(z) : centre + z, low,
+  return std::clamp(rule.distribution == Distribution::kLognormal ? centre * math::Exp(z) : centre + z, low,
                     high);
 }
 

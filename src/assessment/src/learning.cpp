@@ -4,13 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
+
+#include "trocar/math/elementary.h"
 
 namespace trocar::assessment {
 namespace {
 
 using core::Error;
 using core::ErrorCode;
+using math::Exp;
+using math::Log;
+using math::Pow;
 
 constexpr int kRateSteps = 240;   // of the scan over the rate, evenly in its logarithm
 constexpr int kGoldenSteps = 80;  // of the search between two of them
@@ -37,7 +43,7 @@ LineFit FitLine(std::span<const double> values, double rate) {
   std::vector<double> x(n);
   double mean_x = 0, mean_y = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    x[i] = std::pow(static_cast<double>(i + 1), -rate);
+    x[i] = Pow(static_cast<double>(i + 1), -rate);
     mean_x += x[i];
     mean_y += values[i];
   }
@@ -62,6 +68,25 @@ LineFit FitLine(std::span<const double> values, double rate) {
   return flat.error <= falling.error ? flat : falling;
 }
 
+/// The chance that a standard normal deviate lies z > 0 or more away from 0, on either side.
+/// Source: Abramowitz, Stegun, "Handbook of Mathematical Functions", 1964, 26.2.11 and 26.2.14.
+double CalcTwoSidedTail(double z) {
+  constexpr double kFar = 3.0;  // from here on the fraction is the better one
+  constexpr int kTerms = 60;
+  const double twice_density = std::sqrt(2.0 / std::numbers::pi) * Exp(-0.5 * z * z);
+  if (z < kFar) {
+    double term = z, sum = z;
+    for (int n = 1; n < kTerms; ++n) {
+      term *= z * z / (2 * n + 1);
+      sum += term;
+    }
+    return 1.0 - twice_density * sum;
+  }
+  double fraction = z;
+  for (int n = kTerms; n > 0; --n) fraction = z + n / fraction;
+  return twice_density / fraction;
+}
+
 Error TooFew(std::size_t have, std::size_t need, const char* what) {
   return {ErrorCode::kAttemptsTooFew, std::string(what) + " needs " + std::to_string(need) +
                                           " attempts or more, and there are " + std::to_string(have)};
@@ -70,21 +95,21 @@ Error TooFew(std::size_t have, std::size_t need, const char* what) {
 }  // namespace
 
 double LearningCurve::At(double n) const {
-  return plateau + gain * std::pow(n, -rate);
+  return plateau + gain * Pow(n, -rate);
 }
 
 std::optional<std::size_t> LearningCurve::AttemptsUntil(double value) const {
   if (At(1) <= value) return 1;
   if (!(plateau < value) || !(gain > 0)) return std::nullopt;
-  const double n = std::ceil(std::pow(gain / (value - plateau), 1 / rate));
+  const double n = std::ceil(Pow(gain / (value - plateau), 1 / rate));
   if (!(n <= kMostAttempts)) return std::nullopt;
   return static_cast<std::size_t>(n);
 }
 
 core::Result<LearningCurve> FitLearningCurve(std::span<const double> values) {
   if (values.size() < kLeastAttempts) return TooFew(values.size(), kLeastAttempts, "a learning curve");
-  const double low = std::log(kLeastRate), high = std::log(kMostRate);
-  const auto error_at = [&](double log_rate) { return FitLine(values, std::exp(log_rate)).error; };
+  const double low = Log(kLeastRate), high = Log(kMostRate);
+  const auto error_at = [&](double log_rate) { return FitLine(values, Exp(log_rate)).error; };
   const auto rate_of = [&](int i) { return low + (high - low) * i / kRateSteps; };
   int best = 0;
   double least = error_at(low);
@@ -101,12 +126,12 @@ core::Result<LearningCurve> FitLearningCurve(std::span<const double> values) {
     (error_at(left) <= error_at(right) ? b : a) = error_at(left) <= error_at(right) ? right : left;
   }
   const double log_rate = 0.5 * (a + b);
-  const LineFit fit = FitLine(values, std::exp(log_rate));
+  const LineFit fit = FitLine(values, Exp(log_rate));
   LearningCurve curve;
   curve.attempts = values.size();
   curve.plateau = fit.plateau;
   curve.gain = fit.gain;
-  curve.rate = fit.gain > 0 ? std::exp(log_rate) : 0.0;
+  curve.rate = fit.gain > 0 ? Exp(log_rate) : 0.0;
   curve.rms = std::sqrt(fit.error / static_cast<double>(values.size()));
   curve.is_rate_at_bound = fit.gain > 0 && (log_rate - low < kSameRate || high - log_rate < kSameRate);
   return curve;
@@ -135,11 +160,11 @@ core::Result<Cusum> CalcCusum(const std::vector<bool>& failed, const CusumSettin
         "a CUSUM needs 0 < acceptable < unacceptable < 1 as failure rates, and alpha and beta between 0 "
         "and 0.5; 0.05, 0.10, 0.05 and 0.05 are usual"};
   }
-  const double p = std::log(p1 / p0), q = std::log((1 - p0) / (1 - p1));
+  const double p = Log(p1 / p0), q = Log((1 - p0) / (1 - p1));
   Cusum cusum;
   cusum.step = q / (p + q);
-  cusum.h0 = -std::log((1 - settings.alpha) / settings.beta) / (p + q);
-  cusum.h1 = std::log((1 - settings.beta) / settings.alpha) / (p + q);
+  cusum.h0 = -Log((1 - settings.alpha) / settings.beta) / (p + q);
+  cusum.h1 = Log((1 - settings.beta) / settings.alpha) / (p + q);
   double sum = 0;
   for (std::size_t i = 0; i < failed.size(); ++i) {
     sum += failed[i] ? 1 - cusum.step : -cusum.step;
@@ -188,7 +213,7 @@ core::Result<Trend> CalcTrend(std::span<const double> values, Better better) {
   variance /= 18;
   if (variance > 0 && concordance != 0) {
     const double z = (std::fabs(concordance) - 1) / std::sqrt(variance);
-    trend.probability = std::erfc(z / std::sqrt(2.0));
+    trend.probability = CalcTwoSidedTail(z);
   }
   if (trend.probability < kTrendProbability) {
     const bool falls = concordance < 0;

@@ -148,6 +148,17 @@ TEST(CalcTrend, FindsARowThatFalls) {
             TrendVerdict::kWorsening);
 }
 
+// n values that rise have S = n (n - 1) / 2 and variance n (n - 1) (2 n + 5) / 18: near and far tails of the normal distribution
+TEST(CalcTrend, GivesTheNormalDistributionsTails) {
+  for (int n = 5; n <= 60; ++n) {
+    std::vector<double> values;
+    for (int i = 0; i < n; ++i) values.push_back(i);
+    const double pairs = 0.5 * n * (n - 1), z = (pairs - 1) / std::sqrt(pairs * (2 * n + 5) / 9);
+    const double expected = std::erfc(z / std::sqrt(2.0));
+    EXPECT_NEAR(CalcTrend(values, Better::kLower)->probability, expected, 1e-12 * expected) << n;
+  }
+}
+
 TEST(CalcTrend, FindsNoneInAShuffledRowOrInEqualValues) {
   EXPECT_EQ(CalcTrend(std::vector<double>{3, 1, 4, 1, 5}, Better::kLower)->verdict, TrendVerdict::kNone);
   const auto equal = CalcTrend(std::vector<double>{7, 7, 7, 7, 7}, Better::kLower);

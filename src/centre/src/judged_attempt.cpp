@@ -127,7 +127,7 @@ void SetMark(const record::Replay& replay, const record::Description& descriptio
                      std::chrono::system_clock::now().time_since_epoch())
                      .count();
   if (replay.IsAtEnd() && !replay.IsEndingSame()) {
-    const bool is_of_this_version = description.program == core::VersionText();
+    const bool is_of_this_version = record::IsOfThisProgram(description);
     mark.claim = replay.GetRecording().ending->outcome;
     mark.state = is_of_this_version ? store::Verification::kRefused : store::Verification::kUnverified;
     mark.why = is_of_this_version ? store::WhyUnverified::kOtherEnding : store::WhyUnverified::kOtherVersion;

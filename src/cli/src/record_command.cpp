@@ -15,6 +15,7 @@
 #include "trocar/core/state_hash.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/replay.h"
+#include "trocar/simulation/engine_bits.h"
 
 namespace trocar::cli {
 namespace {
@@ -33,6 +34,7 @@ ordered_json InfoJson(const Recording& recording) {
                        {"player", d.player},
                        {"started", d.started},
                        {"program", d.program},
+                       {"engine_bits", d.engine_bits},
                        {"compiler", d.compiler},
                        {"first_tick", recording.FirstTick()},
                        {"branched", nullptr},
@@ -101,6 +103,11 @@ void PrintInfo(const Recording& recording) {
        {"played by", TranslateComposed(d.player)},
        {"started", d.started},
        {"written by", "trocar " + d.program + ", " + d.compiler},
+       {"engine",
+        d.engine_bits == simulation::kEngineBits
+            ? std::to_string(d.engine_bits)
+            : TranslateWith("{1}; this program is engine {2} and cannot replay it, that version can",
+                            {std::to_string(d.engine_bits), std::to_string(simulation::kEngineBits)})},
        {"goes on from",
         d.branched_from.empty()
             ? "-"

@@ -8,6 +8,7 @@
 #include "ray_crossing.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::collision {
 
@@ -64,7 +65,7 @@ double CalcAngleAt(std::span<const Vec3> positions, const Triangle& triangle, st
   const int i = triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
   const Vec3 &a = positions[triangle[i]], &b = positions[triangle[(i + 1) % 3]],
              &c = positions[triangle[(i + 2) % 3]];
-  return std::atan2(math::Norm(math::Cross(b - a, c - a)), Dot(b - a, c - a));
+  return math::Atan2(math::Norm(math::Cross(b - a, c - a)), Dot(b - a, c - a));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "trocar/contours/contour_spline.h"
 #include "trocar/core/assert.h"
 #include "trocar/images/png_file.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::contours {
 namespace {
@@ -82,7 +83,7 @@ std::vector<Vec2> SimulateClicks(const Outline& outline, int count, double noise
       const auto at = static_cast<std::size_t>((part - std::floor(part)) * static_cast<double>(curve.size()));
       const double angle = random.Uniform(0.0, 2.0 * M_PI);
       const Vec2 moved =
-          curve[std::min(at, curve.size() - 1)] + noise_px * Vec2{std::cos(angle), std::sin(angle)};
+          curve[std::min(at, curve.size() - 1)] + noise_px * Vec2{math::Cos(angle), math::Sin(angle)};
       clicks.push_back(
           {std::clamp(moved.x, 0.0, series.width - 1.0), std::clamp(moved.y, 0.0, series.height - 1.0)});
     }

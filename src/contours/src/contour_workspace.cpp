@@ -10,6 +10,7 @@
 #include "trocar/contours/contour_propagation.h"
 #include "trocar/contours/reference_judge.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/math/vector.h"
 #include "trocar/meshing/volume_mesher.h"
 #include "trocar/roles/roles.h"
 
@@ -238,7 +239,7 @@ std::vector<ContourWorkspace::ReferenceLines> ContourWorkspace::FindReference(in
   std::array<double, 3> step;  // [mm]
   for (int axis = 0; axis < 3; ++axis) {
     const auto& d = labels.direction[axis];
-    step[axis] = std::hypot(d[0], d[1], d[2]);
+    step[axis] = math::Norm(math::Vec3{d[0], d[1], d[2]});
   }
   const int k = static_cast<int>(std::floor((slice - points.first_slice + 0.5) * points.slice_mm / step[2]));
   if (k < 0 || k >= labels.size[2]) return {};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::contours {
 namespace {
@@ -14,7 +15,7 @@ std::vector<float> MakeGaussian(double sigma) {
   std::vector<float> kernel(2 * static_cast<std::size_t>(radius) + 1);
   float sum = 0;
   for (int i = -radius; i <= radius; ++i) {
-    kernel[i + radius] = static_cast<float>(std::exp(-0.5 * i * i / (sigma * sigma)));
+    kernel[i + radius] = static_cast<float>(math::Exp(-0.5 * i * i / (sigma * sigma)));
     sum += kernel[i + radius];
   }
   for (float& weight : kernel) weight /= sum;

@@ -11,6 +11,7 @@
 #include "trocar/contours/contour_spline.h"
 #include "trocar/contours/reference_contours.h"
 #include "trocar/core/assert.h"
+#include "trocar/math/vector.h"
 
 namespace trocar::contours {
 namespace {
@@ -202,8 +203,9 @@ core::Status CheckPlace(const GrowthRequest& request, const Box& box, OrganRole 
       for (const auto& polygon : slice.contours) {
         for (const Vec2& p : polygon) {
           const double along = (slice.slice - request.slice) * request.points.slice_mm;
-          nearest = std::min(nearest, std::hypot(request.points.pixel_mm * (p.x - column),
-                                                 request.points.pixel_mm * (p.y - row), along));
+          const double pixel = request.points.pixel_mm;
+          nearest =
+              std::min(nearest, math::Norm(math::Vec3{pixel * (p.x - column), pixel * (p.y - row), along}));
         }
       }
     }

@@ -14,6 +14,7 @@
 #include "trocar/contours/contour_spline.h"
 #include "trocar/contours/reference_contours.h"
 #include "trocar/images/label_alignment.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 
 namespace trocar::contours {
@@ -118,7 +119,7 @@ Overlap CompareAll(const ControlPoints& points, const Structure& structure, cons
 
 Vec2 Missed(const Vec2& place, double miss_px, math::Random& random) {
   const double angle = random.Uniform(0, 2 * M_PI);
-  return place + miss_px * Vec2{std::cos(angle), std::sin(angle)};
+  return place + miss_px * Vec2{math::Cos(angle), math::Sin(angle)};
 }
 
 Vec2 NearestOn(const std::vector<Outline>& outlines, const Vec2& p) {

@@ -8,6 +8,7 @@
 
 #include "trocar/contours/edge_field.h"
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::contours {
 namespace {
@@ -37,8 +38,8 @@ Gradient CalcGradient(const EdgeField& field, int x, int y) {
   const float spread = std::sqrt((xx - yy) * (xx - yy) + 4 * xy * xy);
   const float largest = 0.5f * (xx + yy + spread);
   if (!(largest > 0)) return {0, 0, 0};
-  const float angle = 0.5f * std::atan2(2 * xy, xx - yy);
-  return {std::cos(angle), std::sin(angle), std::sqrt(largest)};
+  const auto [sine, cosine] = math::SinCos(0.5 * math::Atan2(2 * xy, xx - yy));
+  return {static_cast<float>(cosine), static_cast<float>(sine), std::sqrt(largest)};
 }
 
 }  // namespace

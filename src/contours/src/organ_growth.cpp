@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::contours {
 namespace {
@@ -87,7 +88,7 @@ void Blur(std::vector<float>& values, const Lattice& at, double deviation_mm) {
     const int reach = static_cast<int>(std::ceil(2.5 * deviation)), n = at.size[axis];
     std::vector<float> kernel;
     for (int i = 0; i <= reach; ++i)
-      kernel.push_back(static_cast<float>(std::exp(-0.5 * i * i / (deviation * deviation))));
+      kernel.push_back(static_cast<float>(math::Exp(-0.5 * i * i / (deviation * deviation))));
     float total = kernel[0];
     for (int i = 1; i <= reach; ++i) total += 2 * kernel[i];
     for (float& weight : kernel) weight /= total;
@@ -155,7 +156,8 @@ std::vector<std::size_t> FindBall(const Lattice& at, const std::array<int, 3>& s
         for (int axis = 0; axis < 3; ++axis) {
           const int p = seed[axis] + d[axis];
           is_there = is_there && p >= 0 && p < at.size[axis];
-          away += std::pow(d[axis] * at.step[axis], 2);
+          const double aside = d[axis] * at.step[axis];
+          away += aside * aside;
           index += static_cast<std::size_t>(std::max(p, 0)) * at.Stride(axis);
         }
         if (is_there && away <= radius * radius) ball.push_back(index);
@@ -353,7 +355,10 @@ class Growth {
       if (cores[i] == 0) continue;
       const auto p = at_.Place(i);
       double away = 0;
-      for (int axis = 0; axis < 3; ++axis) away += std::pow((p[axis] - place_[axis]) * at_.step[axis], 2);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double aside = (p[axis] - place_[axis]) * at_.step[axis];
+        away += aside * aside;
+      }
       if (away < least) least = away, best = i;
     }
     return best;

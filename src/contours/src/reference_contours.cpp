@@ -68,8 +68,10 @@ core::Result<std::array<double, 3>> FindLabelStep(const images::LabelVolume& lab
     const auto& d = directions[axis];
     const double lps[3] = {d[0], -d[2], d[1]};
     double along = 0, length = 0;
-    for (int k = 0; k < 3; ++k)
-      along += lps[k] * labels.direction[axis][k], length += std::pow(labels.direction[axis][k], 2);
+    for (int k = 0; k < 3; ++k) {
+      const double part = labels.direction[axis][k];
+      along += lps[k] * part, length += part * part;
+    }
     step[axis] = std::sqrt(length);
     if (std::fabs(along - step[axis]) > 1e-3)
       return mismatch("axis " + std::to_string(axis + 1) + " points elsewhere");

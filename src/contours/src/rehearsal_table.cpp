@@ -22,7 +22,8 @@ Spread CalcSpread(const OrganRehearsal& organ, double (*value)(const RehearsalRu
   for (const auto& run : organ.runs) spread.mean += value(run) / n;
   spread.least = spread.most = value(organ.runs.front());
   for (const auto& run : organ.runs) {
-    spread.deviation += std::pow(value(run) - spread.mean, 2);
+    const double off = value(run) - spread.mean;
+    spread.deviation += off * off;
     spread.least = std::min(spread.least, value(run));
     spread.most = std::max(spread.most, value(run));
   }

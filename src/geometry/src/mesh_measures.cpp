@@ -11,6 +11,7 @@
 #include "trocar/core/assert.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/geometry/mesh_topology.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::geometry {
 namespace {
@@ -24,7 +25,7 @@ constexpr double kMaxCellsATriangle = 4096;  // larger triangles stay outside th
 
 /// Angle between two directions [rad].
 double CalcAngle(const Vec3& a, const Vec3& b) {
-  return std::atan2(Norm(Cross(a, b)), Dot(a, b));
+  return math::Atan2(Norm(Cross(a, b)), Dot(a, b));
 }
 
 /// Whether the triangles around each vertex form one fan: neighbours in the fan share an edge at the vertex.

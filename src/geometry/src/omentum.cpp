@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/geometry/primitives.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/noise.h"
 
 namespace trocar::geometry {
@@ -25,7 +26,7 @@ TriangleMesh MakeOmentum(std::span<const Ball> above) {
     const double side = p.x / 0.19;
     double floor = -0.112 - 0.035 * side * side + 0.012 * slow;
     for (const Ball& o : above) {
-      const double aside = std::hypot(p.x - o.centre.x, p.y - o.centre.y);
+      const double aside = math::Hypot(p.x - o.centre.x, p.y - o.centre.y);
       const double limit = o.centre.z - o.radius - 0.004 + 1.1 * std::max(0.0, aside - o.radius);
       floor = std::min(floor, limit);
     }

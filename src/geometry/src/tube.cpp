@@ -6,6 +6,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/math/cubic_spline.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/pose.h"
 
 namespace trocar::geometry {
@@ -77,7 +78,7 @@ void CalcTubeSkin(std::span<const Vec3> points, std::span<const double> radii, i
     for (int side = 0; side < sides; ++side) {
       const double angle = 2.0 * M_PI * side / sides;
       skin[i * static_cast<std::size_t>(sides) + static_cast<std::size_t>(side)] =
-          points[i] + radii[i] * (std::cos(angle) * across + std::sin(angle) * up);
+          points[i] + radii[i] * (math::Cos(angle) * across + math::Sin(angle) * up);
     }
   }
   skin[n * static_cast<std::size_t>(sides)] = points[0];

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 #include "trocar/math/vector.h"
 
@@ -89,8 +90,9 @@ std::vector<float> MakeKernel(double deviation_px) {
   std::vector<float> kernel;
   float total = 0;
   for (int i = -reach; i <= reach; ++i) {
-    kernel.push_back(
-        deviation_px > 0 ? static_cast<float>(std::exp(-0.5 * i * i / (deviation_px * deviation_px))) : 1.0f);
+    kernel.push_back(deviation_px > 0
+                         ? static_cast<float>(math::Exp(-0.5 * i * i / (deviation_px * deviation_px)))
+                         : 1.0f);
     total += kernel.back();
   }
   for (float& weight : kernel) weight /= total;

@@ -9,6 +9,7 @@
 
 #include "trocar/core/printable.h"
 #include "trocar/core/translate.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::images {
 namespace {
@@ -260,7 +261,7 @@ std::optional<Error> FindShift(Pictures slices, std::span<const Placed> placed, 
   if (sideways <= kShearMm) return std::nullopt;
   // what a gantry can be tilted by, to either side
   constexpr double kMostGantryTiltDeg = 31;
-  const double tilt_deg = std::atan2(sideways, std::fabs(along)) * 180 / std::numbers::pi;
+  const double tilt_deg = math::Atan2(sideways, std::fabs(along)) * 180 / std::numbers::pi;
   if (tilt_deg > kMostGantryTiltDeg) {
     return Error{ErrorCode::kImageSeriesUneven, "the slices are shifted against each other, by " +
                                                     Millimetres(sideways) + " in all; resample the series"};

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::images {
 namespace {
 
@@ -28,7 +30,7 @@ constexpr Word kWords[] = {{"left", 0, 1.0},      {"right", 0, -1.0},   {"poster
 core::Result<NamedAxes> NameAxes(const std::array<Vec3, 3>& direction) {
   for (int i = 0; i < 3; ++i) {
     const double cosine = Dot(direction[i], direction[(i + 1) % 3]);
-    if (std::fabs(cosine) > std::sin(kMostShearDeg / kDegrees)) {
+    if (std::fabs(cosine) > math::Sin(kMostShearDeg / kDegrees)) {
       return Error{
           ErrorCode::kImageGeometryInvalid,
           "its axes are not at right angles (a tilted gantry?); resample it, for instance with 3D Slicer"};
@@ -42,7 +44,7 @@ core::Result<NamedAxes> NameAxes(const std::array<Vec3, 3>& direction) {
     }
     named.axes[i] = best->name;
     const double cosine = std::min(1.0, best->sign * direction[i][best->world]);
-    named.tilt_deg = std::max(named.tilt_deg, std::acos(cosine) * kDegrees);
+    named.tilt_deg = std::max(named.tilt_deg, math::Acos(cosine) * kDegrees);
   }
   // axes at right angles that get one word twice are at least 44 degrees off it
   if (named.tilt_deg > kMostTiltDeg) {

@@ -7,6 +7,7 @@
 #include "loft.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::instrument {
 namespace {
@@ -38,9 +39,9 @@ geometry::TriangleMesh MakeGrasperJaw(const Tool& tool, int side) {
   const double length = tool.jaw_length, half = 0.5 * tool.jaw_width, thick = tool.jaw_thickness;
   std::vector<Ring> rings;
   for (int i = 0; i < kSamples; ++i) {
-    const double angle = 2.0 * M_PI * i / kSamples, c = std::cos(angle), s = std::sin(angle);
+    const double angle = 2.0 * M_PI * i / kSamples, c = math::Cos(angle), s = math::Sin(angle);
     const auto square = [](double value, double power) {
-      return std::copysign(std::pow(std::abs(value), power), value);
+      return std::copysign(math::Pow(std::abs(value), power), value);
     };
     // outline and window; z falls towards the tip
     const double z = 0.5 * length * (1.0 - square(c, 0.45)), across = square(s, 0.45);

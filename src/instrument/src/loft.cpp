@@ -6,9 +6,14 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::instrument {
 namespace {
+
+using math::Cos;
+using math::Pow;
+using math::Sin;
 
 constexpr double kMostChamfer = 0.0004;  // m
 
@@ -79,9 +84,9 @@ Ring MakeRoundRing(double z, double half_width, double half_height, double squar
   // a superellipse: exponent 2 is round
   const double power = 2.0 / (2.0 + 6.0 * squareness);
   for (int i = 0; i < points; ++i) {
-    const double angle = 2.0 * M_PI * i / points, c = std::cos(angle), s = std::sin(angle);
-    ring.push_back({half_width * std::copysign(std::pow(std::abs(c), power), c),
-                    half_height * std::copysign(std::pow(std::abs(s), power), s), z});
+    const double angle = 2.0 * M_PI * i / points, c = Cos(angle), s = Sin(angle);
+    ring.push_back({half_width * std::copysign(Pow(std::abs(c), power), c),
+                    half_height * std::copysign(Pow(std::abs(s), power), s), z});
   }
   return ring;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "trocar/math/elementary.h"
 namespace trocar::instrument {
 namespace {
 
@@ -46,7 +48,7 @@ Vec3 JawHinge(const Tool& tool) noexcept {
 
 Vec3 JawTip(const Tool& tool, double jaw, int side) noexcept {
   jaw = std::min(jaw, tool.max_jaw);
-  return JawHinge(tool) + tool.jaw_length * Vec3{0, side * std::sin(0.5 * jaw), -std::cos(0.5 * jaw)};
+  return JawHinge(tool) + tool.jaw_length * Vec3{0, side * math::Sin(0.5 * jaw), -math::Cos(0.5 * jaw)};
 }
 
 ToolCapsules CalcCapsules(const Tool& tool, double jaw, double shaft_reach) noexcept {

@@ -8,11 +8,15 @@
 #include "loft.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/instrument/tool.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::instrument {
 namespace {
 
 using geometry::TriangleMesh;
+using math::Cos;
+using math::Pow;
+using math::Sin;
 using Kind = ToolPart::Kind;
 
 constexpr int kSides = 24;
@@ -63,7 +67,7 @@ TriangleMesh MakeHook(const Tool& tool) {
   add(0, 0.5 * (tool.jaw_length + kToeBend), r);
   for (int i = 0; i <= 8; ++i) {
     const double angle = 0.5 * M_PI * i / 8;
-    add(kToeBend * (1 - std::cos(angle)), kToeBend * (1 - std::sin(angle)), r);
+    add(kToeBend * (1 - Cos(angle)), kToeBend * (1 - Sin(angle)), r);
   }
   add(kToeLength - 0.8 * r, 0, 0.95 * r);
   add(kToeLength - 0.25 * r, 0, 0.75 * r);
@@ -116,7 +120,7 @@ TriangleMesh MakeSuctionTube(const Tool& tool) {
         const double radius = is_inner ? inner : (ring == 0 ? 0.94 * outer : outer);
         double z = kStep * (ring - (is_corner ? 0.28 * up : 0.0));
         if (ring + 1 == kRings) z = is_inner ? kBoreDepth : tool.shaft_length;
-        mesh.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+        mesh.positions.push_back({radius * Cos(angle), radius * Sin(angle), z});
       }
     }
   }
@@ -182,11 +186,11 @@ TriangleMesh MakeBagRing(const Tool& tool) {
   std::vector<Ring> rings;
   for (int i = 0; i < kAround; ++i) {
     const double angle = 2 * M_PI * i / kAround;
-    const Vec3 out{std::sin(angle), 0, std::cos(angle)}, centre = Vec3{0, 0, -0.5 * kBagMouth} + radius * out;
+    const Vec3 out{Sin(angle), 0, Cos(angle)}, centre = Vec3{0, 0, -0.5 * kBagMouth} + radius * out;
     Ring ring;
     for (int side = 0; side < kWireSides; ++side) {
       const double turn = 2 * M_PI * side / kWireSides;
-      ring.push_back(centre + kBagWire * (std::cos(turn) * out + Vec3{0, std::sin(turn), 0}));
+      ring.push_back(centre + kBagWire * (Cos(turn) * out + Vec3{0, Sin(turn), 0}));
     }
     rings.push_back(std::move(ring));
   }
@@ -205,18 +209,18 @@ TriangleMesh MakePouch() {
     const bool is_inside = step > kDown;
     const double down = static_cast<double>(is_inside ? step - kDown - 1 : kDown - step) / kDown;
     const double wall = is_inside ? kPouchThickness : 0.0;
-    const double profile = std::sqrt(std::max(0.0, 1.0 - std::pow(down, 2.6))) * (1.0 - 0.06 * down) + 0.012;
+    const double profile = std::sqrt(std::max(0.0, 1.0 - Pow(down, 2.6))) * (1.0 - 0.06 * down) + 0.012;
     Ring ring;
     for (int i = 0; i < kAround; ++i) {
       const double angle = 2 * M_PI * i / kAround;
       // folds hang down from the ring, and cross folds where the film is crumpled
       const double folded = std::sqrt(down);
       const double crease =
-          1.0 + folded * (0.085 * std::cos(5 * angle + 4 * down) + 0.050 * std::cos(9 * angle - 7 * down) +
-                          0.025 * std::cos(17 * angle + 11 * down));
+          1.0 + folded * (0.085 * Cos(5 * angle + 4 * down) + 0.050 * Cos(9 * angle - 7 * down) +
+                          0.025 * Cos(17 * angle + 11 * down));
       const double radius = (0.5 * kBagMouth - kBagWire) * profile * crease - wall * profile;
-      ring.push_back({radius * std::sin(angle), -kBagDepth * down + (is_inside ? wall * down : 0.0),
-                      -0.5 * kBagMouth + radius * std::cos(angle)});
+      ring.push_back({radius * Sin(angle), -kBagDepth * down + (is_inside ? wall * down : 0.0),
+                      -0.5 * kBagMouth + radius * Cos(angle)});
     }
     rings.push_back(std::move(ring));
   }

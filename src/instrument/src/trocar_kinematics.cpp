@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::instrument {
 namespace {
 
@@ -33,7 +35,7 @@ TrocarJoints FindJoints(const Vec3& p_world_port, const Vec3& p_world_tip, doubl
   const double depth = math::Norm(reach);
   const Vec3 axis = math::Normalized(reach, {0, 0, -1});
   // axis = (-sin(pan) cos(tilt), sin(tilt), -cos(pan) cos(tilt))
-  return {std::atan2(-axis.x, -axis.z), std::asin(std::clamp(axis.y, -1.0, 1.0)), spin, depth, jaw};
+  return {math::Atan2(-axis.x, -axis.z), math::Asin(std::clamp(axis.y, -1.0, 1.0)), spin, depth, jaw};
 }
 
 TrocarJoints LimitSpeed(const TrocarJoints& from, const TrocarJoints& to, double max_tip_speed,

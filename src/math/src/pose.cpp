@@ -3,11 +3,13 @@
 
 #include <cmath>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::math {
 
 Quaternion RotationAbout(const Vec3& axis, double angle) {
-  const double s = std::sin(0.5 * angle);
-  return {std::cos(0.5 * angle), s * axis.x, s * axis.y, s * axis.z};
+  const auto [s, c] = SinCos(0.5 * angle);
+  return {c, s * axis.x, s * axis.y, s * axis.z};
 }
 
 Quaternion operator*(const Quaternion& a, const Quaternion& b) {

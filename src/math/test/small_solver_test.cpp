@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "trocar/math/random.h"
 
@@ -65,6 +67,51 @@ TEST(SolveSmall, WithoutPivotsAnEmptyRowGivesZero) {
   Vector x{};
   ASSERT_TRUE((SolveSmall<Pivots::kNone>(gram, Vector{1, 5, 2}, 3, x)));
   EXPECT_EQ(x, (Vector{0.5, 0, 0.5}));
+}
+
+std::vector<SmallVector<4>> DrawRows(std::size_t count, Random& random) {
+  std::vector<SmallVector<4>> rows(count);
+  for (SmallVector<4>& row : rows) {
+    for (double& entry : row) entry = random.Uniform(-1, 1);
+    row[2] *= 1e-4;
+  }
+  return rows;
+}
+
+// oracle: Eigen's decomposition
+TEST(SolveLeastSquares, FindsWhatEigenFinds) {
+  Random random(6);
+  for (int trial = 0; trial < 200; ++trial) {
+    auto rows = DrawRows(4 + trial, random);
+    std::vector<double> b(rows.size());
+    for (double& entry : b) entry = random.Uniform(-1, 1);
+    Eigen::MatrixXd a(rows.size(), 4);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (std::size_t k = 0; k < 4; ++k) a(i, k) = rows[i][k];
+    }
+    const Eigen::VectorXd expected =
+        a.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(b.data(), a.rows()));
+    const auto x = SolveLeastSquares<4>(rows, b);
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(x[k], expected[k], 1e-9 * (1 + std::fabs(expected[k]))) << "seed 6, trial " << trial;
+  }
+}
+
+TEST(SolveLeastSquares, LeavesOutWhatTheRowsDoNotDetermine) {
+  Random random(7);
+  auto rows = DrawRows(20, random);
+  std::vector<double> b;
+  for (SmallVector<4>& row : rows) {
+    row[1] = 3 * row[0], row[3] = 0;
+    b.push_back(6 * row[0] - 2 * row[2]);
+  }
+  const auto x = SolveLeastSquares<4>(rows, b);
+  EXPECT_EQ(x[0], 0) << "the longer of the two columns stays";
+  EXPECT_NEAR(x[1], 2, 1e-12);
+  EXPECT_NEAR(x[2], -2, 1e-9);
+  EXPECT_EQ(x[3], 0);
+  std::vector<SmallVector<4>> nothing(5);
+  EXPECT_EQ(SolveLeastSquares<4>(nothing, std::span(b).first(5)), SmallVector<4>{});
 }
 
 }  // namespace

@@ -72,7 +72,8 @@ void Blur(ScalarVolume& volume, int rounds) {
 
 /// Moves the surface so that `volume_mm3` lies inside: what a blur took comes back.
 void SetInsideVolume(ScalarVolume& volume, double volume_mm3) {
-  const auto wanted = static_cast<std::size_t>(volume_mm3 / std::pow(volume.spacing, 3));
+  const auto wanted =
+      static_cast<std::size_t>(volume_mm3 / (volume.spacing * volume.spacing * volume.spacing));
   // the level lies near zero: only what is near needs an order
   for (double reach = 2.0 * volume.spacing;; reach *= 4.0) {
     std::vector<float> near;
@@ -148,7 +149,8 @@ core::Result<ScalarVolume> MakeLabelVolume(std::vector<FilledSlice> slices, doub
   });
   auto volume = MakeVolume(slices, pixel_mm, settings.spacing_mm);
   if (!volume.ok()) return volume.error();
-  Blur(*volume, static_cast<int>(std::lround(std::pow(settings.blur_mm / settings.spacing_mm, 2))));
+  const double reach = settings.blur_mm / settings.spacing_mm;
+  Blur(*volume, static_cast<int>(std::lround(reach * reach)));
   SetInsideVolume(*volume, enclosed_mm3);
   return volume;
 }

@@ -13,6 +13,7 @@
 
 #include "editable_surface.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 #include "trocar/meshing/mesh_smoothing.h"
 #include "trocar/meshing/nearest_surface.h"
 
@@ -152,7 +153,7 @@ void FlipEdges(EditableSurface& surface) {
       const auto angle = [&](std::uint32_t at) {
         const Vec3 p = surface.Position(edge.a) - surface.Position(at),
                    q = surface.Position(edge.b) - surface.Position(at);
-        return std::atan2(Norm(Cross(p, q)), Dot(p, q));
+        return math::Atan2(Norm(Cross(p, q)), Dot(p, q));
       };
       if (angle(edge.c) + angle(edge.d) <= M_PI + 1e-9) continue;  // Delaunay already
       // no vertex of three triangles: it would be a spike that later steps cannot relax

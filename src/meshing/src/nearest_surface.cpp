@@ -7,6 +7,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::meshing {
 
@@ -120,7 +121,7 @@ bool NearestSurface::IsInside(const Vec3& p) const {
     const Vec3 a = mesh_.positions[t[0]] - p, b = mesh_.positions[t[1]] - p, c = mesh_.positions[t[2]] - p;
     const double la = Norm(a), lb = Norm(b), lc = Norm(c);
     sum += 2.0 *
-           std::atan2(Dot(a, Cross(b, c)), la * lb * lc + Dot(a, b) * lc + Dot(b, c) * la + Dot(c, a) * lb);
+           math::Atan2(Dot(a, Cross(b, c)), la * lb * lc + Dot(a, b) * lc + Dot(b, c) * la + Dot(c, a) * lb);
   }
   return sum > 2.0 * M_PI;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surface_edits.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/rotation_angle.h"
 
 namespace trocar::meshing {
@@ -144,7 +145,7 @@ class SliverRemover {
     for (const double step : kSteps) {
       for (int i = 0; i < 8; ++i) {
         const double angle = i * M_PI / 4;
-        consider(edits_.MakeMove(v, p + step * length * (std::cos(angle) * u + std::sin(angle) * w)), 1.0);
+        consider(edits_.MakeMove(v, p + step * length * (math::Cos(angle) * u + math::Sin(angle) * w)), 1.0);
       }
       for (const double side : {-1.0, 1.0})
         consider(edits_.MakeMove(v, p + side * step * length * normal), kNormalStepsWorth);

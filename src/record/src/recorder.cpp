@@ -27,6 +27,7 @@
 #include "trocar/core/version.h"
 #include "trocar/record/input_codec.h"
 #include "trocar/record/outcome.h"
+#include "trocar/simulation/engine_bits.h"
 
 namespace trocar::record {
 namespace {
@@ -387,6 +388,7 @@ core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   description.model = simulation.ModelFingerprint();
   description.first_tick = simulation.GetSnapshot().tick;
   description.program = std::string(core::VersionText());
+  description.engine_bits = simulation::kEngineBits;
   description.compiler = CompilerText();
   const ClockReading start = settings.clocks();
   description.started = FormatWallClock(start.wall);

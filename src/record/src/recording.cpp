@@ -11,8 +11,10 @@
 #include "state_coder.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/user_folder.h"
+#include "trocar/core/version.h"
 #include "trocar/record/input_codec.h"
 #include "trocar/scene/task.h"
+#include "trocar/simulation/engine_bits.h"
 
 namespace trocar::record {
 namespace {
@@ -184,6 +186,10 @@ core::Result<Recording> ReadRecording(const std::filesystem::path& path) {
 
 std::filesystem::path FindRecordingFolder() {
   return core::FindUserDataFolder() / "recordings";
+}
+
+bool IsOfThisProgram(const Description& d) {
+  return d.program == core::VersionText() && d.engine_bits == simulation::kEngineBits;
 }
 
 core::Result<scene::Scene> MakeScene(const Description& d) {

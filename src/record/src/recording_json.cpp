@@ -18,6 +18,8 @@ using nlohmann::ordered_json;
 
 constexpr std::array<const char*, 3> kKinds = {"scene", "task", "operation"};
 
+constexpr std::uint64_t kMostEngineBits = 1'000'000;
+
 /// It holds the outcome as a text, with an escape for each of its quotes.
 constexpr core::JsonLimits kEndingLimits{4u << 20, 4, 100, 100, 2u << 20};
 
@@ -67,6 +69,7 @@ std::string WriteDescription(const Description& d) {
                        {"first_tick", d.first_tick},
                        {"player", d.player},
                        {"program", d.program},
+                       {"engine_bits", d.engine_bits},
                        {"compiler", d.compiler},
                        {"started", d.started}};
   if (!d.branched_from.empty()) {
@@ -92,6 +95,11 @@ bool ReadDescription(std::string_view text, Description& d) {
     if (!branched->is_object() || !ReadText(*branched, "from", d.branched_from) ||
         !ReadHex(*branched, "id", d.branched_id) || !ReadCount(*branched, "tick", d.branched_tick))
       return false;
+  }
+  // older files do not say
+  if (std::uint64_t bits = 1; json.contains("engine_bits")) {
+    if (!ReadCount(json, "engine_bits", bits) || bits > kMostEngineBits) return false;
+    d.engine_bits = static_cast<int>(bits);
   }
   return d.tick_seconds > 0 && std::isfinite(d.tick_seconds) && ReadText(json, "name", d.name) &&
          ReadText(json, "level", d.level) && ReadText(json, "patient", d.patient) &&

@@ -7,6 +7,7 @@
 
 #include "state_index.h"
 #include "trocar/record/outcome.h"
+#include "trocar/simulation/engine_bits.h"
 
 namespace trocar::record {
 namespace {
@@ -44,6 +45,13 @@ core::Result<Replay> Replay::Open(Recording recording, int threads) {
 }
 
 core::Result<Replay> Replay::Open(Recording recording, const ReplaySettings& settings) {
+  if (recording.description.engine_bits != simulation::kEngineBits) {
+    return Refuse("the recording is of an engine that computed other last bits (Trocar " +
+                  recording.description.program + ", engine " +
+                  std::to_string(recording.description.engine_bits) + "; this one is engine " +
+                  std::to_string(simulation::kEngineBits) +
+                  "), and would become another attempt here; replay and verify it with that version");
+  }
   auto scene = MakeScene(recording.description);
   if (!scene.ok()) return scene.error();
   auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*scene)),

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "trocar/instrument/tool.h"
+#include "trocar/math/elementary.h"
 #include "trocar/record/replay.h"
 #include "trocar/simulation/attempt_end.h"
 #include "trocar/training/injury.h"
@@ -59,7 +60,7 @@ training::CameraSample SampleCamera(const math::Pose& X_world_laparoscope) {
   const math::Quaternion& rotation = X_world_laparoscope.rotation;
   const double lean = math::Rotate(rotation, {1, 0, 0}).y;
   return {X_world_laparoscope.translation, math::Rotate(rotation, {0, 0, -1}),
-          std::asin(std::clamp(lean, -1.0, 1.0))};
+          math::Asin(std::clamp(lean, -1.0, 1.0))};
 }
 
 /// Whether an event is that of closing a clip: around something, or around nothing.
@@ -254,7 +255,7 @@ void TraceBuilder::Content::AddClips(const Snapshot& now, const std::vector<scen
       const math::Pose& X = now.instruments[static_cast<std::size_t>(record.hand)].X_world_tool;
       const Vec3 jaws = math::Rotate(X.rotation, {0, 0, -1});
       const Vec3 line = math::Rotate(clip.X_world_clip.rotation, {0, 0, 1});
-      record.angle = std::acos(std::clamp(std::fabs(math::Dot(jaws, line)), 0.0, 1.0));
+      record.angle = math::Acos(std::clamp(std::fabs(math::Dot(jaws, line)), 0.0, 1.0));
     }
     trace.clips.push_back(std::move(record));
   }

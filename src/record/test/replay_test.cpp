@@ -9,6 +9,7 @@
 #include "recorded_scene.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/record/outcome.h"
+#include "trocar/simulation/engine_bits.h"
 
 namespace trocar::record {
 namespace {
@@ -50,6 +51,18 @@ TEST_F(ReplayTest, IsTheSameToTheBitWithAnyNumberOfThreads) {
     EXPECT_EQ(verified->hashes, kTicks / 30 + 1);
     EXPECT_EQ(replay.GetSimulation().Hash(), hash_);
   }
+}
+
+TEST_F(ReplayTest, OnlyTheEngineThatIsNotedReplaysIt) {
+  Recording recording = ReadIt();
+  EXPECT_EQ(recording.description.engine_bits, simulation::kEngineBits);
+  EXPECT_TRUE(IsOfThisProgram(recording.description));
+  ++recording.description.engine_bits;
+  EXPECT_FALSE(IsOfThisProgram(recording.description));
+  const auto replay = Replay::Open(std::move(recording), 1);
+  ASSERT_FALSE(replay.ok());
+  EXPECT_THAT(replay.error().message,
+              testing::HasSubstr("engine " + std::to_string(simulation::kEngineBits)));
 }
 
 TEST_F(ReplayTest, SeeksToAnyMoment) {

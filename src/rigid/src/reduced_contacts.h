@@ -6,15 +6,15 @@
 #include <cstddef>
 #include <vector>
 
-#include "bullet_units.h"
+#include "own_motion.h"
 
 namespace trocar::rigid {
 
 /// A world whose solver sees, of the points in which two bodies touch with one normal, the deepest and the outermost only.
 /// A force at any other point of them is a sum of forces at these.
-class ReducedContactWorld final : public btDiscreteDynamicsWorld {
+class ReducedContactWorld final : public OwnMotionWorld {
  public:
-  using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
+  using OwnMotionWorld::OwnMotionWorld;
 
   /// What a step's solver sees.
   void performDiscreteCollisionDetection() override;

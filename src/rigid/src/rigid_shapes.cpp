@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::rigid {
 namespace {
 
@@ -63,9 +65,12 @@ void MakeShapes(const RigidBody& definition, std::vector<std::unique_ptr<btColli
   for (const RigidShape& shape : definition.shapes) {
     const Vec3& s = shape.size;
     switch (shape.kind) {
-      case RigidShape::Kind::kBox:
-        add(shape.X_body_shape, std::make_unique<btBoxShape>(ToBullet(s)));
+      case RigidShape::Kind::kBox: {
+        auto box = std::make_unique<btBoxShape>(ToBullet(s));
+        box->initializePolyhedralFeatures();
+        add(shape.X_body_shape, std::move(box));
         break;
+      }
       case RigidShape::Kind::kCylinder:
         add(shape.X_body_shape, std::make_unique<btCylinderShapeZ>(ToBullet(Vec3{s.x, s.x, s.z})));
         break;
@@ -84,9 +89,10 @@ void MakeShapes(const RigidBody& definition, std::vector<std::unique_ptr<btColli
       case RigidShape::Kind::kRing:
         for (int part = 0; part < kRingParts; ++part) {
           const double angle = 2 * std::numbers::pi * part / kRingParts;
-          const Vec3 out{std::cos(angle), std::sin(angle), 0}, tangent{-std::sin(angle), std::cos(angle), 0};
+          const math::SineCosine at = math::SinCos(angle);
+          const Vec3 out{at.cosine, at.sine, 0}, tangent{-at.sine, at.cosine, 0};
           const Pose X_ring_part{math::RotationBetween({0, 0, 1}, tangent), s.x * out};
-          auto capsule = along_z(s.y, s.x * std::tan(std::numbers::pi / kRingParts));
+          auto capsule = along_z(s.y, s.x * math::Tan(std::numbers::pi / kRingParts));
           whole->addChildShape(ToBullet(shape.X_body_shape * X_ring_part), capsule.get());
           shapes.push_back(std::move(capsule));
         }

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/rigid/rigid_world.h"
 
-#include <BulletDynamics/ConstraintSolver/btFixedConstraint.h>
-#include <btBulletDynamicsCommon.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +10,8 @@
 
 #include "bullet_units.h"
 #include "capsule_on_box.h"
+#include "hold_constraint.h"
+#include "own_motion.h"
 #include "reduced_contacts.h"
 #include "rigid_shapes.h"
 #include "rigid_state.h"
@@ -89,7 +88,7 @@ struct RigidWorld::Content {
     std::array<std::unique_ptr<btCollisionShape>, kToolPartCount> shapes;
     std::array<std::unique_ptr<btRigidBody>, kToolPartCount> parts;
     std::array<btTransform, kToolPartCount> from, to;
-    std::unique_ptr<btFixedConstraint> hold;
+    std::unique_ptr<HoldConstraint> hold;
     btJointFeedback feedback = NoFeedback();
     std::int32_t held = -1;
     double hold_force = 0;
@@ -112,7 +111,7 @@ struct RigidWorld::Content {
   std::unique_ptr<btDefaultCollisionConfiguration> configuration;
   std::unique_ptr<btCollisionDispatcher> dispatcher;
   std::unique_ptr<btDbvtBroadphase> broadphase;
-  std::unique_ptr<btSequentialImpulseConstraintSolver> solver;
+  std::unique_ptr<OwnMotionSolver> solver;
   std::vector<Body> bodies;
   std::vector<Tool> tools;
   std::unique_ptr<ReducedContactWorld> world;
@@ -148,15 +147,20 @@ struct RigidWorld::Content {
       dispatcher = std::make_unique<btCollisionDispatcher>(configuration.get());
       dispatcher->registerCollisionCreateFunc(CAPSULE_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, &capsule_on_box);
       dispatcher->registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE, &capsule_on_box);
+      // as any two polyhedra: what Bullet has for boxes sorts contacts by angles from the C library
+      dispatcher->registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE,
+                                              configuration->getCollisionAlgorithmCreateFunc(
+                                                  CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE));
     }
     TROCAR_ASSERT(dispatcher->getNumManifolds() == 0);
-    solver = std::make_unique<btSequentialImpulseConstraintSolver>();
+    solver = std::make_unique<OwnMotionSolver>();
     broadphase = std::make_unique<btDbvtBroadphase>();
     world = std::make_unique<ReducedContactWorld>(dispatcher.get(), broadphase.get(), solver.get(),
                                                   configuration.get());
     world->setGravity(ToBullet(gravity));
     world->getSolverInfo().m_numIterations = kSolverIterations;
-    world->getSolverInfo().m_leastSquaresResidualThreshold = std::pow(kConvergedSpeed * kScale, 2);
+    world->getSolverInfo().m_leastSquaresResidualThreshold =
+        kConvergedSpeed * kScale * (kConvergedSpeed * kScale);
     world->getSolverInfo().m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
     for (std::size_t i = 0; i < bodies.size(); ++i) Add(i);
     for (std::size_t i = 0; i < tools.size(); ++i) AddToolParts(i);
@@ -268,11 +272,7 @@ struct RigidWorld::Content {
   void SoftenHolds(double dt) {
     const double sum = dt * kHoldStiffness + kHoldDamping;
     for (Tool& tool : tools) {
-      if (!tool.hold) continue;
-      for (int axis = 0; axis < 6; ++axis) {
-        tool.hold->setParam(BT_CONSTRAINT_STOP_CFM, 1 / sum, axis);
-        tool.hold->setParam(BT_CONSTRAINT_STOP_ERP, dt * kHoldStiffness / sum, axis);
-      }
+      if (tool.hold) tool.hold->Soften(1 / sum, dt * kHoldStiffness / sum);
     }
   }
 
@@ -303,7 +303,7 @@ struct RigidWorld::Content {
         saved.from[part] = SaveTransform(tool.from[part]);
         state.touched.push_back(tool.touched[part]);
       }
-      if (tool.hold) saved.X_carrier_body = SaveTransform(tool.hold->getFrameOffsetA());
+      if (tool.hold) saved.X_carrier_body = SaveTransform(tool.hold->X_carrier_body());
       saved.hold_force = tool.hold_force;
       saved.held = tool.held;
       saved.ticks_over = tool.ticks_over;
@@ -348,7 +348,6 @@ struct RigidWorld::Content {
       for (std::size_t part = 0; part < kToolPartCount; ++part) {
         tool.from[part] = tool.to[part] = LoadTransform(saved.from[part]);
         tool.parts[part]->setWorldTransform(LoadTransform(saved.parts[part]));
-        tool.parts[part]->setInterpolationWorldTransform(tool.parts[part]->getWorldTransform());
         tool.touched[part] = state.touched[t * kToolPartCount + part];
       }
       tool.force = saved.force;
@@ -370,8 +369,7 @@ struct RigidWorld::Content {
       part->setIgnoreCollisionCheck(&body, true);
       body.setIgnoreCollisionCheck(part.get(), true);
     }
-    tool.hold = std::make_unique<btFixedConstraint>(*tool.parts[kShaftPart], body, X_carrier_body,
-                                                    btTransform::getIdentity());
+    tool.hold = std::make_unique<HoldConstraint>(*tool.parts[kShaftPart], body, X_carrier_body);
     tool.hold->setJointFeedback(&tool.feedback);
     tool.feedback = NoFeedback();
     world->addConstraint(tool.hold.get());
@@ -469,11 +467,10 @@ void RigidWorld::Step() {
       for (std::size_t part = 0; part < kToolPartCount; ++part) {
         const btTransform& from = tool.from[part];
         const btTransform& to = tool.to[part];
-        tool.parts[part]->setWorldTransform(btTransform(from.getRotation().slerp(to.getRotation(), share),
-                                                        from.getOrigin().lerp(to.getOrigin(), share)));
-        // Bullet works a kinematic body's velocity out from where it was interpolated last
-        tool.parts[part]->saveKinematicState(dt);
-        tool.parts[part]->setInterpolationWorldTransform(tool.parts[part]->getWorldTransform());
+        tool.parts[part]->setWorldTransform(
+            step == substeps ? to
+                             : btTransform(TurnPart(from.getRotation(), to.getRotation(), share),
+                                           from.getOrigin().lerp(to.getOrigin(), share)));
       }
     }
     content.world->stepSimulation(dt, 0);

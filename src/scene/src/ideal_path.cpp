@@ -12,6 +12,7 @@
 #include "scene_objects.h"
 #include "task_names.h"
 #include "trocar/instrument/trocar_kinematics.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::scene {
 namespace {
@@ -89,10 +90,10 @@ class PathReader {
   /// From the point of the circle that lies nearest, once round.
   void AddCircle(const ModelSheet& sheet) {
     const Vec3 from = path_.back() - sheet.centre;
-    const double first = std::atan2(from.y, from.x);
+    const double first = math::Atan2(from.y, from.x);
     for (int side = 0; side <= kCircleSides; ++side) {
       const double angle = first + 2.0 * M_PI * side / kCircleSides;
-      Add(sheet.centre + sheet.circle * Vec3{std::cos(angle), std::sin(angle), 0.0});
+      Add(sheet.centre + sheet.circle * Vec3{math::Cos(angle), math::Sin(angle), 0.0});
     }
   }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 
 namespace trocar::scene {
@@ -36,7 +37,7 @@ double NumberOf(const anatomy::Patient& patient, std::string_view name, double o
 
 /// 1 for a slider at 0, `most` at 1, geometrically between.
 double Grow(double most, double slider) {
-  return slider == 0 ? 1.0 : std::pow(most, std::clamp(slider, 0.0, 1.0));
+  return slider == 0 ? 1.0 : math::Pow(most, std::clamp(slider, 0.0, 1.0));
 }
 
 }  // namespace

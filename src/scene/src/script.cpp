@@ -9,6 +9,7 @@
 #include "field_ranges.h"
 #include "scene_objects.h"
 #include "trocar/core/json.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 #include "trocar/math/rotation_angle.h"
 
@@ -27,7 +28,7 @@ std::array<Vec3, kHandCount> CalcTremor(double amplitude, std::uint64_t seed, do
     for (int axis = 0; axis < 3; ++axis) {
       for (int sine = 0; sine < kTremorSines; ++sine) {
         const double frequency = random.Uniform(8.0, 12.0), phase = random.Uniform(0.0, 2.0 * M_PI);
-        offset[axis] += amplitude / kTremorSines * std::sin(2.0 * M_PI * frequency * time + phase);
+        offset[axis] += amplitude / kTremorSines * math::Sin(2.0 * M_PI * frequency * time + phase);
       }
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/instrument/state_fields.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::simulation {
 
@@ -26,7 +27,7 @@ constexpr double kMostDepth = 0.28;   // of the lens [m]
 /// Of a point in the picture, from its middle: 1 at the rim of the round field. Large behind the lens.
 double CalcEccentricity(const math::Pose& X_world_lens, double field_of_view, const Vec3& p) noexcept {
   const Vec3 p_lens = math::Inverse(X_world_lens) * p;
-  return std::atan2(std::hypot(p_lens.x, p_lens.y), -p_lens.z) / (0.5 * field_of_view);
+  return math::Atan2(math::Hypot(p_lens.x, p_lens.y), -p_lens.z) / (0.5 * field_of_view);
 }
 
 }  // namespace
@@ -45,7 +46,8 @@ const instrument::TrocarJoints& CameraHolder::Follow(const LaparoscopeSetup& set
   double apart = 0;  // of a tip from the middle [m]
   for (const Vec3& tip : tips) apart = std::max(apart, math::Distance(tip, middle));
   // far enough for both tips to lie within the inner zone
-  const double wanted = std::clamp(apart / std::tan(kInner * 0.5 * setup.field_of_view), kNearest, kFarthest);
+  const double wanted =
+      std::clamp(apart / math::Tan(kInner * 0.5 * setup.field_of_view), kNearest, kFarthest);
   const math::Pose X = CalcLaparoscopePose(setup, now_);
   double outermost = 0;
   for (const Vec3& tip : tips) outermost = std::max(outermost, CalcEccentricity(X, setup.field_of_view, tip));

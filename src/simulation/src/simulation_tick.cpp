@@ -6,11 +6,14 @@
 
 #include "bad_tick.h"
 #include "simulation_content.h"
+#include "trocar/math/elementary.h"
 #include "trocar/tissue/conserved_equilibrium.h"
 #include "trocar/tissue/damage.h"
 
 namespace trocar::simulation {
 
+using math::Cos;
+using math::Sin;
 using scene::CalcLaparoscopePose;
 using scene::ClampSettings;
 namespace {
@@ -24,8 +27,7 @@ constexpr double kPushedIn = 0.04;
 /// Gravity in the patient's frame when the table is tilted [m/s^2].
 Vec3 CalcGravity(const LiveSettings& settings) noexcept {
   const double head = settings.head_up, right = settings.right_up;
-  return settings.gravity *
-         Vec3{std::sin(right) * std::cos(head), -std::sin(head), -std::cos(right) * std::cos(head)};
+  return settings.gravity * Vec3{Sin(right) * Cos(head), -Sin(head), -Cos(right) * Cos(head)};
 }
 
 }  // namespace

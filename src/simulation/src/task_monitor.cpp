@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "trocar/math/elementary.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::simulation {
@@ -45,10 +46,10 @@ std::int32_t FirstHand(std::uint8_t mask) noexcept {
 bool IsSeen(const Region& region, const Condition& c, const Pose& X_world_laparoscope) noexcept {
   const Vec3 p = math::Inverse(X_world_laparoscope) * region.centre;
   const double distance = math::Norm(p);
-  if (!(distance >= c.near && distance <= c.far) || !(-p.z >= std::cos(c.angle) * distance)) return false;
+  if (!(distance >= c.near && distance <= c.far) || !(-p.z >= math::Cos(c.angle) * distance)) return false;
   if (!region.facing) return true;
   const Vec3 to_lens = (X_world_laparoscope.translation - region.centre) / distance;
-  return math::Dot(to_lens, *region.facing) >= std::cos(c.facing_angle);
+  return math::Dot(to_lens, *region.facing) >= math::Cos(c.facing_angle);
 }
 
 /// True in one tick only.

@@ -57,7 +57,7 @@ core::Result<Attempt> ReplayAttempt(record::Recording recording, const std::file
   if (!described.ok()) return described;
   Attempt attempt = std::move(*described);
   VerificationMark& mark = attempt.mark;
-  const bool is_of_this_version = recording.description.program == core::VersionText();
+  const bool is_of_this_version = record::IsOfThisProgram(recording.description);
   const bool is_from_state = recording.FirstTick() > 0;
   const bool has_other_ending = recording.is_ending_refused;
   mark.program = core::VersionText();

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::surgery {
 namespace {
 
@@ -24,7 +26,7 @@ BedOoze::BedOoze(std::span<const LiverFibre> fibres, double bleeding, const BedO
 
 double BedOoze::Update(const tissue::TissueState& tissue, const Electrosurgery& heat, std::size_t node_count,
                        double seconds) noexcept {
-  const double share = 1.0 - std::exp(-seconds / settings_.clot_seconds);
+  const double share = 1.0 - math::Exp(-seconds / settings_.clot_seconds);
   double out = 0;
   for (Place& place : places_) {
     const bool is_intact = tissue.strand_is_intact[place.strand] != 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/surgery/cavity.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "trocar/core/state_archive.h"
+#include "trocar/math/small_solver.h"
 #include "trocar/surgery/organ_contact.h"
 
 namespace trocar::surgery {
@@ -22,17 +22,15 @@ constexpr double kMostMotion = 0.02;
 void FitDome(std::span<const Vec3> points, Cavity& cavity) {
   if (points.size() < kLeastDomePoints) return;
   std::vector<Vec3> upper(points.begin(), points.end());
-  std::sort(upper.begin(), upper.end(), [](const Vec3& a, const Vec3& b) { return a.y > b.y; });
+  std::stable_sort(upper.begin(), upper.end(), [](const Vec3& a, const Vec3& b) { return a.y > b.y; });
   upper.resize((upper.size() + 1) / 2);
-  const auto count = static_cast<Eigen::Index>(upper.size());
-  Eigen::MatrixXd rows(count, 5);
-  Eigen::VectorXd heights(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Vec3& p = upper[static_cast<std::size_t>(i)];
-    rows.row(i) << 1.0, p.x, p.z, p.x * p.x, p.z * p.z;
-    heights[i] = p.y;
+  std::vector<math::SmallVector<5>> rows;
+  std::vector<double> heights;
+  for (const Vec3& p : upper) {
+    rows.push_back({1.0, p.x, p.z, p.x * p.x, p.z * p.z});
+    heights.push_back(p.y);
   }
-  const Eigen::VectorXd c = rows.colPivHouseholderQr().solve(heights);
+  const auto c = math::SolveLeastSquares<5>(rows, heights);
   const auto is_dome = [](double square) {
     return -2.0 * square * kLargestRadius > 1.0 && -2.0 * square * kSmallestRadius < 1.0;
   };

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::surgery {
 
 ClipHold CalcClipHold(const ClipGrip& grip, const ClipHoldSettings& settings) noexcept {
   const double closure = std::clamp(grip.closure, 0.0, 1.0);
-  double share = std::pow(closure, settings.partial_power);
+  double share = math::Pow(closure, settings.partial_power);
   if (grip.is_crossed) share *= settings.crossed_share;
   // more tissue between the legs springs them open
   const double thick = settings.thick_radius / std::max(grip.vessel_radius, settings.thick_radius);

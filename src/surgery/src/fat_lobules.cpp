@@ -7,6 +7,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/geometry/distance.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 
 namespace trocar::surgery {
@@ -91,7 +92,7 @@ void FatLobules::Resize() noexcept {
       Lobule& lobule = lobules_[kOnStrand * i + k];
       const double body = static_cast<double>(lobule.left) / static_cast<double>(lobule.near);
       lobule.thin = kThinnest + (1.0 - kThinnest) * std::min(1.0, body / kRemnant);
-      lobule.radius = lobule.full * std::cbrt(filling * lobule.thin * lobule.thin * lobule.thin);
+      lobule.radius = lobule.full * math::Cbrt(filling * lobule.thin * lobule.thin * lobule.thin);
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/core/state_archive.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::surgery {
 namespace {
@@ -161,7 +162,7 @@ FlowReport FlowNetwork::Solve(const VesselActs& acts) noexcept {
   pressure_.fill(0.0);
   for (std::size_t o = 0; o < outlet_count; ++o) pressure_[outlets[o].node] = 1e3;
   const auto orifice = [&](const Outlet& outlet) {
-    return outlet.coefficient / std::sqrt(std::hypot(pressure_[outlet.node], kSmoothPressure));
+    return outlet.coefficient / std::sqrt(math::Hypot(pressure_[outlet.node], kSmoothPressure));
   };
   std::array<std::array<double, kMostNodes>, kMostNodes> matrix;
   for (int round = 0; round < kOrificeRounds; ++round) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
@@ -124,8 +125,8 @@ double GallstoneSpill::StopJaw(int hand, const instrument::Tool& tool, const Pos
     const double radius = stone.body.radius, from_hinge = tool.jaw_length - p.z;
     if (from_hinge < settings_.near_hinge * tool.jaw_length || p.z < -settings_.jaw_reach * radius) continue;
     if (std::fabs(p.x) > 0.5 * tool.jaw_width + settings_.jaw_reach * radius) continue;
-    if (std::fabs(p.y) > from_hinge * std::tan(0.5 * jaw_before)) continue;
-    const double opening = 2.0 * std::asin(std::min(1.0, radius / from_hinge));
+    if (std::fabs(p.y) > from_hinge * math::Tan(0.5 * jaw_before)) continue;
+    const double opening = 2.0 * math::Asin(std::min(1.0, radius / from_hinge));
     // taken as both jaws touch it, or as they close
     const double at = std::max(opening, closed);
     if (jaw_before <= at || jaw > at || opening <= widest) continue;
@@ -171,7 +172,7 @@ int GallstoneSpill::CatchInBag(const Pose& X_world_bag) noexcept {
     if (stone.place != StonePlace::kSpilled || stone.body.IsLying()) continue;
     // the ring lies ahead of the tool's tip, the pouch hangs below it
     const Vec3 p = X_bag_world * stone.body.position;
-    if (std::hypot(p.x, p.z + kRadius) > kRadius || p.y > 0.0 || p.y < -instrument::kBagDepth) continue;
+    if (math::Hypot(p.x, p.z + kRadius) > kRadius || p.y > 0.0 || p.y < -instrument::kBagDepth) continue;
     stone.place = StonePlace::kInBag;
     ++count;
   }

@@ -9,11 +9,16 @@
 #include "trocar/collision/queries.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/distance.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
 namespace {
+
+using math::Cos;
+using math::Exp;
+using math::Log;
 
 constexpr double kSpread = 0.25;       // of the logarithm of diameters within one patient
 constexpr double kMostFilling = 0.5;   // of the gallbladder by stones
@@ -175,8 +180,7 @@ void Rub(const Vec3& normal, const Vec3& gravity, double seconds, LooseStone& st
   const double pressed = std::max(0.0, -math::Dot(gravity, normal));
   const double speed = math::Norm(stone.velocity);
   if (!(speed > 0.0)) return;
-  const double slower =
-      std::max(0.0, speed * std::exp(-seconds / kWetSeconds) - kFriction * pressed * seconds);
+  const double slower = std::max(0.0, speed * Exp(-seconds / kWetSeconds) - kFriction * pressed * seconds);
   stone.velocity *= slower / speed;
 }
 
@@ -237,9 +241,8 @@ std::vector<double> DrawGallstones(const GallstoneSettings& settings, double cap
   for (int i = 0; i < settings.count; ++i) {
     // Box and Muller; cut off at three deviations
     const double u = 1.0 - random.Uniform(), v = random.Uniform();
-    const double z =
-        std::clamp(std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v), -3.0, 3.0);
-    const double diameter = std::max(kSmallest, settings.median_diameter * std::exp(kSpread * z));
+    const double z = std::clamp(std::sqrt(-2.0 * Log(u)) * Cos(2.0 * std::numbers::pi * v), -3.0, 3.0);
+    const double diameter = std::max(kSmallest, settings.median_diameter * Exp(kSpread * z));
     const double volume = std::numbers::pi / 6.0 * diameter * diameter * diameter;
     if (volume > unfilled) continue;
     unfilled -= volume;

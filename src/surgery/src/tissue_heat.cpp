@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::surgery {
 namespace {
@@ -118,7 +119,7 @@ double TissueHeat::Step(std::span<const Source> sources, double seconds, HeatSta
       }
       if (temperature > kHarmless) {
         state.damage[i] += dt * constants_.damage_rate *
-                           std::exp(-constants_.damage_energy / (kGasConstant * (temperature + kKelvin)));
+                           math::Exp(-constants_.damage_energy / (kGasConstant * (temperature + kKelvin)));
       }
       if (temperature > constants_.char_temperature) {
         state.charring[i] = std::min(

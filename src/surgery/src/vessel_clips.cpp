@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "trocar/collision/segment_distance.h"
+#include "trocar/math/elementary.h"
 #include "trocar/surgery/clip_hold.h"
 #include "trocar/surgery/vessels.h"
 
@@ -27,8 +28,8 @@ std::optional<Vessels::Caught> Vessels::Catch(const instrument::Tool& tool, cons
     const collision::Segment axis{position[tubes_.Node(edge[0])], position[tubes_.Node(edge[1])]};
     const auto near = collision::FindNearestSegmentSegment({hinge, tip}, axis);
     const double distance = std::sqrt(near.squared_distance);
-    const double radius = std::lerp(graph.radii[edge[0]], graph.radii[edge[1]], near.parameter_b);
-    const double half = near.parameter_a * tool.jaw_length * std::sin(0.5 * jaw);
+    const double radius = math::Lerp(graph.radii[edge[0]], graph.radii[edge[1]], near.parameter_b);
+    const double half = near.parameter_a * tool.jaw_length * math::Sin(0.5 * jaw);
     if (distance > std::max(half, radius + settings_.clip_shape.catch_beside) || distance >= best) continue;
     best = distance;
     caught = Caught{edge[0], edge[1], near.parameter_b, near.parameter_a, radius};
@@ -69,7 +70,7 @@ ClipResult Vessels::Clip(const instrument::Tool& tool, const Pose& X_world_tool,
   const double inside = std::max(0.0, std::min(to, length) - std::max(from, 0.0));
   const double closure = std::clamp(inside / (2.0 * half), 0.0, 1.0);
   clip.a = caught->a, clip.b = caught->b, clip.t = caught->t;
-  clip.place = {tube_of_[clip.a], std::lerp(arc_of_[clip.a], arc_of_[clip.b], clip.t)};
+  clip.place = {tube_of_[clip.a], math::Lerp(arc_of_[clip.a], arc_of_[clip.b], clip.t)};
   for (Clipped& other : clips_) {
     if (!other.is_lost && other.place.tube == clip.place.tube &&
         std::fabs(other.place.arc - clip.place.arc) < settings_.clip_shape.width)

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::tissue {
 namespace {
 
@@ -52,7 +54,7 @@ double CalcLowest(int cycle) noexcept {
 
 /// Iterations that damp everything down to `lowest` to a ten-thousandth.
 int CalcCycle(double lowest) noexcept {
-  return static_cast<int>(std::ceil(std::log(2e4) / (2.0 * std::sqrt(lowest))));
+  return static_cast<int>(std::ceil(math::Log(2e4) / (2.0 * std::sqrt(lowest))));
 }
 
 /// Runs cycles until the residual is at most `force`, or for so many iterations.

@@ -53,7 +53,7 @@ Symmetric3 CalcBlock(const TissueModel& model, const TissueLoad& load, const Tis
       AddIsotropic(block, stiffness);
       continue;
     }
-    const double across = std::fmax(transverse_share, 1.0 - half.rest_length / length);
+    const double across = math::Max(transverse_share, 1.0 - half.rest_length / length);
     AddDirection(block, along / length, stiffness * (1.0 - across));
     AddIsotropic(block, stiffness * across);
   }
@@ -65,7 +65,7 @@ Symmetric3 CalcBlock(const TissueModel& model, const TissueLoad& load, const Tis
   return block;
 }
 
-/// std::fmax without its care for NaN, which the state guard finds; a call in the hot loop otherwise.
+/// math::Max without its care for NaN, which the state guard finds: one comparison in the hot loop.
 double Larger(double a, double b) noexcept {
   return a > b ? a : b;
 }
@@ -238,9 +238,9 @@ SolveReport SolveChebyshevJacobiWang2015(const LinearisedModel& springs, Chebysh
       constraints->Project(state, scratch.previous);
       SetConstantForces(model, load, scratch);
     }
-    smallest = std::fmin(smallest, residual);
+    smallest = math::Min(smallest, residual);
     if (residual > kGrowthLimit * smallest) {
-      transverse_share = std::fmin(kShareGrowth * transverse_share, 1.0);
+      transverse_share = math::Min(kShareGrowth * transverse_share, 1.0);
       smallest = residual;
       in_cycle = 0;
       ++report.restarts;

@@ -399,7 +399,7 @@ Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::spa
   for (std::size_t i = 0; i < count; ++i) {
     const OrganVolume& organ = state.organs[i];
     // through a hole gas enters before the sac is sucked in
-    if (organ.opening_area > 0.0) lambda[i] = std::fmax(lambda[i], -organ.pressure);
+    if (organ.opening_area > 0.0) lambda[i] = math::Max(lambda[i], -organ.pressure);
   }
   const auto shift_of = [&](std::size_t k) {
     Vec3 shift;
@@ -408,7 +408,7 @@ Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::spa
   };
   double longest2 = 0;
   for (std::size_t k = 0; k < tissue.position.size(); ++k)
-    longest2 = std::fmax(longest2, math::SquaredNorm(shift_of(k)));
+    longest2 = math::Max(longest2, math::SquaredNorm(shift_of(k)));
   const double part = longest2 > kMaxShift * kMaxShift ? kMaxShift / std::sqrt(longest2) : 1.0;
   const auto move_by = [&](double share) {
     for (std::size_t k = 0; k < tissue.position.size(); ++k) {
@@ -425,8 +425,8 @@ Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::spa
     const OrganVolume& organ = state.organs[i];
     volume[i] = MeasureVolume(i, tissue);
     if (error[i] == 0.0) continue;
-    worst_before = std::fmax(worst_before, std::fabs(organ.volume / organ.target - 1.0));
-    worst_after = std::fmax(worst_after, std::fabs(volume[i] / organ.target - 1.0));
+    worst_before = math::Max(worst_before, std::fabs(organ.volume / organ.target - 1.0));
+    worst_after = math::Max(worst_after, std::fabs(volume[i] / organ.target - 1.0));
   }
   if (worst_after <= worst_before) {
     for (std::size_t i = 0; i < count; ++i) state.organs[i].volume = volume[i];
@@ -449,7 +449,7 @@ bool Conservation::AreVolumesInReach(const TissueState& tissue, const Conservati
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
     const OrganVolume& organ = state.organs[i];
     ahead_volume_[i] = MeasureGradient(i, tissue, ahead_gradient_);
-    const double reach = std::fmax(kMaxVolumeStep * organ.target, std::fabs(organ.volume - organ.target));
+    const double reach = math::Max(kMaxVolumeStep * organ.target, std::fabs(organ.volume - organ.target));
     if (IsSealed(organ) && !(std::fabs(ahead_volume_[i] - organ.target) <= reach)) return false;
   }
   has_ahead_ = true;
@@ -459,7 +459,7 @@ bool Conservation::AreVolumesInReach(const TissueState& tissue, const Conservati
 void Conservation::AddPressure(std::size_t organ, double change, ConservationState& state) const noexcept {
   double& pressure = state.organs[organ].pressure;
   pressure += change;
-  if (state.organs[organ].opening_area > 0.0) pressure = std::fmax(pressure, 0.0);
+  if (state.organs[organ].opening_area > 0.0) pressure = math::Max(pressure, 0.0);
 }
 
 void Conservation::Leak(double dt, ConservationState& state) const noexcept {
@@ -470,7 +470,7 @@ void Conservation::Leak(double dt, ConservationState& state) const noexcept {
         organ.compliance > 0.0 ? organ.compliance : std::numeric_limits<double>::infinity();
     const double flow =
         CalcOutflow(organ.pressure, compliance, organ.opening_area, settings_.organs[i].fluid_density, dt);
-    const double outflow = std::fmin(flow, std::fmax(organ.target, 0.0));  // no more than is inside
+    const double outflow = math::Min(flow, math::Max(organ.target, 0.0));  // no more than is inside
     organ.target -= outflow;
     organ.leaked += outflow;
   }
@@ -533,7 +533,7 @@ double FillToPressure(EquilibriumSolver& solver, std::size_t organ, double press
   int still = 0;
   for (int filling = 0; filling < kMaxFillings && still < 3; ++filling) {
     // a pressure acts along normals that turn as the sac swells: step by step it stays near its equilibrium
-    filled.pressure = pressure * std::fmin(1.0, (filling + 1) / 8.0);
+    filled.pressure = pressure * math::Min(1.0, (filling + 1) / 8.0);
     conservation.PredictRigidMotion(tissue, state);
     TissueLoad loaded = load;
     loaded.external_force = conservation.CalcForce(tissue, load, state);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 #include "trocar/tissue/spring_law.h"
 
 namespace trocar::tissue {
@@ -52,7 +53,7 @@ std::size_t TearSprings(const TissueModel& model, double dt, TissueState& state,
         // the same stiffness and factor on both sides: what is left of a spring carries what is left of its load
         const double share = CalcSpringTension(law, 1.0, half.rest_length, length) /
                              CalcSpringTension(law, 1.0, half.rest_length, longest);
-        damage += law.damage_rate * std::pow(share, law.damage_exponent) * dt;
+        damage += law.damage_rate * math::Pow(share, law.damage_exponent) * dt;
       }
       if (!(length > longest || damage >= 1.0)) continue;
       state.spring_factor[half.spring] = 0.0;

@@ -58,9 +58,9 @@ SolveReport SolveGaussSeidelBrown2001(const TissueModel& model, GaussSeidelScrat
     double largest = 0, scale = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
       if (state.condition[i] == NodeCondition::kPrescribed) continue;
-      scale = std::fmax(scale, CalcForceScale(model, load, state.position, i));
+      scale = math::Max(scale, CalcForceScale(model, load, state.position, i));
       scratch.residual[i] = math::Norm(calc_residual(i));
-      largest = std::fmax(largest, scratch.residual[i]);
+      largest = math::Max(largest, scratch.residual[i]);
     }
     report.force_scale = scale;
     report.residual = scale > 0.0 ? largest / scale : 0.0;

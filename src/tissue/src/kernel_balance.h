@@ -27,9 +27,17 @@ inline Doubles LoadFloats(const float* from) {
   __builtin_memcpy(&v, from, sizeof v);
   return __builtin_convertvector(v, Doubles);
 }
+inline void StoreHalf(float* to, HalfLanes v) {
+  __builtin_memcpy(to, &v, sizeof v);
+}
 inline void StoreFloats(float* to, Doubles v) {
-  const HalfLanes half = __builtin_convertvector(v, HalfLanes);
-  __builtin_memcpy(to, &half, sizeof half);
+  StoreHalf(to, __builtin_convertvector(v, HalfLanes));
+}
+inline HalfLanes ToFloats(Doubles v) {
+  return __builtin_convertvector(v, HalfLanes);
+}
+inline Doubles ToDoubles(HalfLanes v) {
+  return __builtin_convertvector(v, Doubles);
 }
 inline Doubles AllDoubles(double value) {
   return value - Doubles{};
@@ -54,6 +62,17 @@ inline Doubles Sqrt(Doubles v) {
   return (Doubles)_mm_sqrt_pd((__m128d)v);
 #else
   for (std::uint32_t lane = 0; lane < kDoubles; ++lane) v[lane] = __builtin_sqrt(v[lane]);
+  return v;
+#endif
+}
+
+inline HalfLanes Sqrt(HalfLanes v) {
+#if TROCAR_LANES == 16
+  return (HalfLanes)_mm256_sqrt_ps((__m256)v);
+#elif TROCAR_LANES == 8
+  return (HalfLanes)_mm_sqrt_ps((__m128)v);
+#else
+  for (std::uint32_t lane = 0; lane < kDoubles; ++lane) v[lane] = __builtin_sqrtf(v[lane]);
   return v;
 #endif
 }
@@ -162,12 +181,9 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
   Doubles energy = MulAdd(AllDoubles(0.5) * shape, distance2, Dot(force, offset));
   Doubles largest = Larger(shape * Sqrt(distance2), value(kOuterSize));
   force = MulAdd(shape, offset, force);
-  DoubleSymmetric block;
-  if constexpr (kHasStiffness) {
-    block = LoadSymmetric(pass.diagonal_excess + std::size_t{slice} * 6 * kSliceNodes + lane);
-    const Doubles strands = value(kStrands);
-    block.xx += strands, block.yy += strands, block.zz += strands;
-  }
+  struct {
+    HalfLanes xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
+  } block;  // of the springs
   Doubles stored = {};
   for (std::uint32_t step = pass.table.starts[slice]; step < pass.table.starts[slice + 1]; ++step) {
     const std::size_t entry = std::size_t{step} * kSliceNodes + lane;
@@ -184,20 +200,28 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
     largest = Larger(tension, largest);
     stored = MulAdd(tension, stretch, stored);
     if constexpr (kHasStiffness) {
-      const Doubles root = Sqrt(b) * inverse;  // times the extent: b u u^T = v v^T
-      const DoubleVector v = {root * along.x, root * along.y, root * along.z};
+      // b u u^T = v v^T; single precision is what is kept of it
+      const HalfLanes root = Sqrt(ToFloats(b)), a = ToFloats(across);
+      const HalfLanes x = root * ToFloats(inverse * along.x), y = root * ToFloats(inverse * along.y),
+                      z = root * ToFloats(inverse * along.z);
       float* const link = pass.links + std::size_t{step} * kSpringLinkFloats * kSliceNodes + lane;
-      StoreFloats(link, across), StoreFloats(link + kSliceNodes, v.x);
-      StoreFloats(link + 2 * kSliceNodes, v.y), StoreFloats(link + 3 * kSliceNodes, v.z);
-      const Doubles firm = Larger(across, none);
-      block.xx += firm + v.x * v.x, block.xy += v.x * v.y, block.xz += v.x * v.z;
-      block.yy += firm + v.y * v.y, block.yz += v.y * v.z, block.zz += firm + v.z * v.z;
+      StoreHalf(link, a), StoreHalf(link + kSliceNodes, x);
+      StoreHalf(link + 2 * kSliceNodes, y), StoreHalf(link + 3 * kSliceNodes, z);
+      const HalfLanes firm = a > 0.0f ? a : HalfLanes{};
+      block.xx += firm + x * x, block.xy += x * y, block.xz += x * z;
+      block.yy += firm + y * y, block.yz += y * z, block.zz += firm + z * z;
     }
   }
   energy = MulAdd(AllDoubles(0.25), stored, energy);
   const Doubles is_free = value(kFree), squared = Dot(force, force);
-  if constexpr (kHasStiffness)
-    StoreSymmetric(pass.inverse + std::size_t{slice} * 6 * kSliceNodes + lane, Invert(block, is_free));
+  if constexpr (kHasStiffness) {
+    DoubleSymmetric own = LoadSymmetric(pass.diagonal_excess + std::size_t{slice} * 6 * kSliceNodes + lane);
+    const Doubles strands = value(kStrands);
+    own.xx += strands + ToDoubles(block.xx), own.xy += ToDoubles(block.xy), own.xz += ToDoubles(block.xz);
+    own.yy += strands + ToDoubles(block.yy), own.yz += ToDoubles(block.yz),
+        own.zz += strands + ToDoubles(block.zz);
+    StoreSymmetric(pass.inverse + std::size_t{slice} * 6 * kSliceNodes + lane, Invert(own, is_free));
+  }
   AddTo(sums.energy + lane, energy);
   AddTo(sums.poison + lane, none * squared);
   RaiseTo(sums.residual2 + lane, is_free * squared);

@@ -10,16 +10,16 @@ namespace {
 /// to + d x t
 inline Vector AddTurn(const float* t, const Vector& d, const Vector& to) {
   const Lanes x = Load(t), y = Load(t + kSliceNodes), z = Load(t + 2 * kSliceNodes);
-  return {MulAdd(d.y, z, MulAdd(-d.z, y, to.x)), MulAdd(d.z, x, MulAdd(-d.x, z, to.y)),
-          MulAdd(d.x, y, MulAdd(-d.y, x, to.z))};
+  return {to.x + (d.y * z - d.z * y), to.y + (d.z * x - d.x * z), to.z + (d.x * y - d.y * x)};
 }
 
-/// to + S d
+/// to + S d. Only the last sum waits for what was added before.
 template <std::size_t kLinkFloats>
 inline Vector AddLink(const float* link, const Vector& d, const Vector& to) {
   if constexpr (kLinkFloats == kBlockFloats) return MulAddSymmetric(link, d, to);
   const Vector v = {Load(link + kSliceNodes), Load(link + 2 * kSliceNodes), Load(link + 3 * kSliceNodes)};
-  return MulAdd(MulAdd(v.z, d.z, MulAdd(v.y, d.y, v.x * d.x)), v, MulAdd(Load(link), d, to));
+  const Lanes a = Load(link), along = (v.x * d.x + v.y * d.y) + v.z * d.z;
+  return {to.x + (a * d.x + along * v.x), to.y + (a * d.y + along * v.y), to.z + (a * d.z + along * v.z)};
 }
 
 template <std::size_t kLinkFloats, LinkPass kPass, bool kHasTurns = false>

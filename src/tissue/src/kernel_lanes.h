@@ -108,9 +108,8 @@ inline Vector MulAddSymmetric(const float* m, const Vector& v, const Vector& to)
   const Lanes xx = Load(m), yy = Load(m + 3 * kSliceNodes), zz = Load(m + 5 * kSliceNodes);
   Lanes xy = Load(m + kSliceNodes), xz = Load(m + 2 * kSliceNodes), yz = Load(m + 4 * kSliceNodes);
   KeepInRegister(xy), KeepInRegister(xz), KeepInRegister(yz);
-  return {MulAdd(xz, v.z, MulAdd(xy, v.y, MulAdd(xx, v.x, to.x))),
-          MulAdd(yz, v.z, MulAdd(yy, v.y, MulAdd(xy, v.x, to.y))),
-          MulAdd(zz, v.z, MulAdd(yz, v.y, MulAdd(xz, v.x, to.z)))};
+  return {to.x + ((xx * v.x + xy * v.y) + xz * v.z), to.y + ((xy * v.x + yy * v.y) + yz * v.z),
+          to.z + ((xz * v.x + yz * v.y) + zz * v.z)};
 }
 
 /// Length of a spring's extent.

@@ -46,7 +46,7 @@ void LinearResponse::SetStiffness(const TissueState& state, const TissueLoad& lo
           CalcTangentSpring(model.laws[model.spring_law[half.spring]], state.spring_factor[half.spring],
                             half.stiffness, half.rest_length, length);
       const double stiffness = load.stiffness_scale * line.stiffness;
-      const double across = length > 0.0 ? std::fmax(0.0, 1.0 - line.rest_length / length) : 1.0;
+      const double across = length > 0.0 ? math::Max(0.0, 1.0 - line.rest_length / length) : 1.0;
       Link& link = springs_[h];
       link.isotropic = stiffness * across;
       link.along = length > 0.0 ? (std::sqrt(stiffness * (1.0 - across)) / length) * along : Vec3{};

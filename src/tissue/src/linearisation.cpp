@@ -210,7 +210,7 @@ void Linearisation::SetForce(std::uint32_t first, std::uint32_t last) noexcept {
 
 void Linearisation::AddOuter(std::uint32_t node, const Vec3& force, double size) noexcept {
   for (int axis = 0; axis < 3; ++axis) At(node, static_cast<BalanceValue>(kOuterX + axis)) += force[axis];
-  At(node, kOuterSize) = std::fmax(At(node, kOuterSize), size);
+  At(node, kOuterSize) = math::Max(At(node, kOuterSize), size);
 }
 
 /// Strands and contacts are few, and each changes two or three nodes: their force joins the constant one.
@@ -302,9 +302,9 @@ void Linearisation::Run(const Kernels& kernels, Workers& workers, BalancePass pa
   all.energy = energy;
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
     all.energy += sums[chunk].energy;
-    all.residual2 = std::fmax(all.residual2, sums[chunk].residual2);
-    all.force = std::fmax(all.force, sums[chunk].force);
-    all.distance2 = std::fmax(all.distance2, sums[chunk].distance2);
+    all.residual2 = math::Max(all.residual2, sums[chunk].residual2);
+    all.force = math::Max(all.force, sums[chunk].force);
+    all.distance2 = math::Max(all.distance2, sums[chunk].distance2);
     all.is_finite = all.is_finite && sums[chunk].is_finite;
   }
   balance.energy = all.energy;

@@ -207,8 +207,8 @@ LocalSolve::Report LocalSolve::Solve(const Kernels& kernels, Workers& workers, d
     const TruncatedReport linear = SolveTruncated(
         kernels, workers, kMaxLinearIterations, region.Radius(), {step_, r_, z_, p_, q_}, multiply,
         precondition,
-        [&](double left, double) { return left <= std::fmax(kForcing * seen, kSeenShare * tolerance); });
-    report.smallest_ritz = std::fmin(report.smallest_ritz, linear.smallest_ritz);
+        [&](double left, double) { return left <= math::Max(kForcing * seen, kSeenShare * tolerance); });
+    report.smallest_ritz = math::Min(report.smallest_ritz, linear.smallest_ritz);
     const double length = FindLongest(kernels, workers, step_);
     if (!(length > 0.0 && length < INFINITY)) break;
     const double before = balance_.energy, slope = -CalcDot(kernels, workers, balance_.residual, step_);
@@ -232,7 +232,7 @@ LocalSolve::Report LocalSolve::Solve(const Kernels& kernels, Workers& workers, d
   for (std::uint32_t a = 0; a < free_count_; ++a) {
     const Double4 &to = position_[a], &from = first_[a];
     position[nodes_[a]] = to;
-    longest2 = std::fmax(longest2, math::SquaredNorm(Vec3{to.x - from.x, to.y - from.y, to.z - from.z}));
+    longest2 = math::Max(longest2, math::SquaredNorm(Vec3{to.x - from.x, to.y - from.y, to.z - from.z}));
   }
   report.longest = std::sqrt(longest2);
   return report;

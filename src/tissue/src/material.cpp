@@ -47,7 +47,7 @@ std::vector<BendingSpring> CalcBendingSprings(std::span<const Vec3> positions,
       sides.push_back({{low, high}, t[(i + 2) % 3], area});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::stable_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return a.edge != b.edge ? a.edge < b.edge : a.corner < b.corner;
   });
   std::vector<BendingSpring> springs;
@@ -58,7 +58,7 @@ std::vector<BendingSpring> CalcBendingSprings(std::span<const Vec3> positions,
     if (!(length2 > 0.0)) continue;
     springs.push_back({one.corner, other.corner, membrane_modulus * (one.area + other.area) / length2});
   }
-  std::sort(springs.begin(), springs.end(), [](const BendingSpring& a, const BendingSpring& b) {
+  std::stable_sort(springs.begin(), springs.end(), [](const BendingSpring& a, const BendingSpring& b) {
     return a.a != b.a ? a.a < b.a : a.b < b.b;
   });
   // corners that face each other across two edges, or along an edge of their own, share one spring of the sum

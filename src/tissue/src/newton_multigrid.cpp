@@ -179,7 +179,7 @@ void NewtonMultigrid::Predict(Context& c, std::span<const Vec3> extrapolation) n
   if (c.constraints == nullptr) return;
   const double least = kLeastExtrapolation * springs_->mean_length;
   double longest2 = 0;
-  for (const Vec3& move : extrapolation) longest2 = std::fmax(longest2, math::SquaredNorm(move));
+  for (const Vec3& move : extrapolation) longest2 = math::Max(longest2, math::SquaredNorm(move));
   if (!(longest2 > least * least)) return;
   linearisation_.CalcBalance(c.kernels, c.workers, position_, balance_);
   const double before = balance_.energy;
@@ -248,11 +248,11 @@ NewtonMultigrid::Step NewtonMultigrid::SolveStep(Context& c) noexcept {
       {step_, r_, z_, p_, q_}, [&] { Multiply(c, p_.data(), q_.data()); },
       [&] { return preconditioner_.Apply(c.kernels, c.workers, r_, z_); },
       [&](double left, double ritz) {
-        return left <= loose || left <= tolerance * CalcVisibleShare(std::fmin(c.smallest_ritz, ritz));
+        return left <= loose || left <= tolerance * CalcVisibleShare(math::Min(c.smallest_ritz, ritz));
       });
   // what the constraints carry is asked for
   if (step.linear.reached_radius) preconditioner_.ProjectResidual(c.kernels, c.workers, r_);
-  c.smallest_ritz = std::fmin(c.smallest_ritz, step.linear.smallest_ritz);
+  c.smallest_ritz = math::Min(c.smallest_ritz, step.linear.smallest_ritz);
   c.report.linear_iterations += step.linear.iterations;
   c.report.negative_curvatures += step.linear.met_negative_curvature;
   step.length = FindLongest(c.kernels, c.workers, step_);
@@ -319,7 +319,7 @@ void NewtonMultigrid::FollowMove(Context& c, const Step& step, const Advancement
   c.moved += advancement.share * step.length + advancement.local.longest;
   if (c.moved > kStaleMove * springs_->mean_length) UpdateCoarseLevels(c);
   if (advancement.share * step.length > kSnapMove * springs_->mean_length) c.smallest_ritz = INFINITY;
-  c.smallest_ritz = std::fmin(c.smallest_ritz, kLocalRitzFactor * advancement.local.smallest_ritz);
+  c.smallest_ritz = math::Min(c.smallest_ritz, kLocalRitzFactor * advancement.local.smallest_ritz);
   // an equilibrium that negative curvature was met next to is a saddle, and not the end
   if (c.follows_snap_through && step.linear.met_negative_curvature) c.smallest_ritz = 0.0;
 }

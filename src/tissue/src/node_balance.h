@@ -25,14 +25,14 @@ inline Vec3 GatherContactForce(const TissueLoad& load, std::span<const Vec3> pos
 inline double CalcForceScale(const TissueModel& model, const TissueLoad& load, std::span<const Vec3> position,
                              std::uint32_t i) noexcept {
   double largest =
-      std::fmax(load.shape_scale * model.shape_stiffness[i] * math::Distance(model.rest[i], position[i]),
+      math::Max(load.shape_scale * model.shape_stiffness[i] * math::Distance(model.rest[i], position[i]),
                 model.mass[i] * math::Norm(load.gravity));
   for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
     const auto& half = model.half_springs[h];
     const double stretch = math::Distance(position[i], position[half.other]) - half.rest_length;
-    largest = std::fmax(largest, load.stiffness_scale * half.stiffness * std::fabs(stretch));
+    largest = math::Max(largest, load.stiffness_scale * half.stiffness * std::fabs(stretch));
   }
-  if (!load.external_force.empty()) largest = std::fmax(largest, math::Norm(load.external_force[i]));
+  if (!load.external_force.empty()) largest = math::Max(largest, math::Norm(load.external_force[i]));
   return largest;
 }
 

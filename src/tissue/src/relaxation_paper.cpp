@@ -23,8 +23,8 @@ SolveReport SolveRelaxationPaper(const TissueModel& model, const IterationSettin
       if (state.condition[i] == NodeCondition::kPrescribed) continue;
       const Vec3 residual = GatherNodeForce(model, state.strand_is_intact, load, state.position, i) +
                             GatherContactForce(load, state.position, i);
-      scale = std::fmax(scale, CalcForceScale(model, load, state.position, i));
-      largest = std::fmax(largest, math::Norm(residual));
+      scale = math::Max(scale, CalcForceScale(model, load, state.position, i));
+      largest = math::Max(largest, math::Norm(residual));
       state.position[i] += alpha * residual;
     }
     ++report.iterations;

@@ -123,7 +123,7 @@ Pose FitRigidMotion(const MotionMoments& moments, const Quaternion& previous) no
   Matrix3 m = moments.outer;
   AddOuter(m, -moments.weight, centre, rest_centre);
   double largest = 0;
-  for (const double entry : m) largest = std::fmax(largest, std::fabs(entry));
+  for (const double entry : m) largest = math::Max(largest, std::fabs(entry));
   const Matrix3 prior = ToMatrix(previous);
   // a lone point has no extent at all: any positive weight then makes the prior decide
   const double trace = largest > 0.0 ? kPriorShare * largest : 1.0;

@@ -94,8 +94,8 @@ double SpringLinearisation::UpdateTangents(const TissueState& state) noexcept {
     const TangentSpring next = CalcTangentSpring(model_->laws[model_->spring_law[spring]], factor_[spring],
                                                  half.stiffness, half.rest_length, length);
     const double tension = next.stiffness * (length - next.rest_length);
-    error = std::fmax(error, std::fabs(tension - stiffness_before * (length - rest_before)));
-    largest = std::fmax(largest, std::fabs(tension));
+    error = math::Max(error, std::fabs(tension - stiffness_before * (length - rest_before)));
+    largest = math::Max(largest, std::fabs(tension));
     if (next.stiffness != stiffness_before || next.rest_length != rest_before)
       SetTangent(spring, next.stiffness, next.rest_length);
   }

@@ -82,8 +82,9 @@ TissueModel MakeTissueModel(const TissueDefinition& definition) {
   model.laws = definition.laws;
   for (std::size_t i = 0; i < n; ++i) {
     std::sort(model.half_springs.begin() + model.spring_starts[i],
-              model.half_springs.begin() + model.spring_starts[i + 1],
-              [](const auto& a, const auto& b) { return a.other < b.other; });
+              model.half_springs.begin() + model.spring_starts[i + 1], [](const auto& a, const auto& b) {
+                return a.other != b.other ? a.other < b.other : a.spring < b.spring;
+              });
   }
 
   model.strand_starts = CountEnds(definition.strands, n);

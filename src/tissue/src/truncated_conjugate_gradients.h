@@ -58,7 +58,7 @@ TruncatedReport SolveTruncated(const Kernels& kernels, Workers& workers, int max
     // along a direction of negative curvature the energy only falls: as far as the range reaches
     double length = report.met_negative_curvature ? INFINITY : rz / pq;
     report.reached_radius = reached + length * longest > radius;
-    if (report.reached_radius) length = std::fmax(0.0, radius - reached) / longest;
+    if (report.reached_radius) length = math::Max(0.0, radius - reached) / longest;
     reached += length * longest;
     const auto alpha = static_cast<float>(length);
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {

@@ -42,7 +42,8 @@ double CalcClosedVolume(std::span<const Vec3> position,
 double CalcOutflow(double pressure, double compliance, double area, double density, double dt) noexcept {
   if (!(pressure > 0.0 && compliance > 0.0 && area > 0.0 && density > 0.0 && dt > 0.0)) return 0.0;
   // dV^2 = a^2 (P - dV / c)  with  a = C_d A dt sqrt(2 / rho); the stable form of the positive root
-  const double a2 = std::pow(kDischargeCoefficient * area * dt, 2) * 2.0 / density;
+  const double reached = kDischargeCoefficient * area * dt;
+  const double a2 = reached * reached * 2.0 / density;
   const double b = a2 / compliance;
   const double outflow = 2.0 * a2 * pressure / (b + std::sqrt(b * b + 4.0 * a2 * pressure));
   return std::min(outflow, compliance * pressure);

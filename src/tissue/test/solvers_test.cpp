@@ -239,8 +239,7 @@ TEST(SolverNames, AreKnownBothWays) {
   EXPECT_FALSE(FindSolverKind("magic").has_value());
 }
 
-// AVX2 and AVX-512 to the bit; the baseline has no fused multiply-add and agrees to single precision.
-TEST(SimdLevels, Agree) {
+TEST(SimdLevels, GiveTheSameBits) {
   for (const bool is_shuffled : {false, true}) {
     const Sheet sheet = MakeSheet(29, 0.05, is_shuffled);
     const auto solve = [&](SimdLevel level, SolverKind kind) {
@@ -249,13 +248,10 @@ TEST(SimdLevels, Agree) {
       (void)solver.Solve(Exact(kind), sheet.Load(), state);
       return state;
     };
-    for (const SolverKind kind : {SolverKind::kAcceleratedDescent, SolverKind::kNewtonMultigrid}) {
-      const TissueState baseline = solve(SimdLevel::kBaseline, kind);
-      if (!HasSimdLevel(SimdLevel::kAvx2)) GTEST_SKIP() << "this processor has no AVX2";
-      const TissueState avx2 = solve(SimdLevel::kAvx2, kind);
-      EXPECT_LT(CalcError(sheet.model, avx2, baseline), 3e-5);
-      if (!HasSimdLevel(SimdLevel::kAvx512)) GTEST_SKIP() << "this processor has no AVX-512";
-      EXPECT_EQ(Hash(solve(SimdLevel::kAvx512, kind)), Hash(avx2)) << SolverName(kind);
+    for (const SolverKind kind : kSolverKinds) {
+      const std::uint64_t baseline = Hash(solve(SimdLevel::kBaseline, kind));
+      for (const SimdLevel level : Levels())
+        EXPECT_EQ(Hash(solve(level, kind)), baseline) << SolverName(kind) << ", " << SimdLevelName(level);
     }
   }
 }
@@ -270,7 +266,7 @@ TEST(StructuredMesh, IsTheSameAsAnyOther) {
     (void)solver.Solve(Exact(SolverKind::kAcceleratedDescent), sheet.Load(), state);
     return state;
   };
-  EXPECT_LT(CalcError(sheet.model, solve(true), solve(false)), 2e-5);
+  EXPECT_LT(CalcError(sheet.model, solve(true), solve(false)), 5e-5);
 }
 
 // Other diagonals, stiffness that differs from spring to spring, and a grid that lies askew in space.

@@ -118,7 +118,7 @@ Status CheckEquilibrium(GpuBenchmarkRun& run) {
         double largest = 0;
         for (std::size_t i = 0; i < residual.size(); ++i) {
           if (truth.condition[i] != NodeCondition::kPrescribed)
-            largest = std::fmax(largest, math::Norm(residual[i]));
+            largest = math::Max(largest, math::Norm(residual[i]));
         }
         const double force = math::Norm(problem.forces[0]);
         if (!(largest <= 1e-4 * force)) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::training {
@@ -109,7 +110,7 @@ double DissectionMonitor::CalcAzimuth(const tissue::TissueState& tissue, const V
   const Vec3 along = math::Normalized(duct_rest_[1] - duct_rest_[0]);
   const Vec3 front = math::Normalized(Vec3{0, 0, 1} - along * along.z, {1, 0, 0});
   const Vec3 to_eye = math::Rotate(math::Inverse(neck_turn_), eye - X_world_neck * duct_rest_[1]);
-  const double azimuth = std::atan2(math::Dot(to_eye, math::Cross(along, front)), math::Dot(to_eye, front));
+  const double azimuth = math::Atan2(math::Dot(to_eye, math::Cross(along, front)), math::Dot(to_eye, front));
   if (!has_looked_) first_azimuth_ = azimuth;
   has_looked_ = true;
   return std::remainder(azimuth - first_azimuth_, 2.0 * M_PI);

@@ -5,10 +5,14 @@
 #include <cmath>
 #include <span>
 
+#include "trocar/math/elementary.h"
 #include "trocar/training/smoothness.h"
 
 namespace trocar::training {
 namespace {
+
+using math::Atan2;
+using math::Cbrt;
 
 /// A spread of speed below it is that of a still hand [m/s].
 constexpr double kConstantSpeed = 1e-3;
@@ -66,13 +70,13 @@ void MeasureSpace(const MotionTrack& track, const AttemptPart& part, std::string
   for (std::size_t k = 0; k < track.Size(); ++k) {
     if (!part.has_sample[k]) continue;
     const double ahead = math::Dot(track.axis[k], mean);
-    left_right.Add(std::atan2(math::Dot(track.axis[k], across), ahead));
-    up_down.Add(std::atan2(math::Dot(track.axis[k], along), ahead));
+    left_right.Add(Atan2(math::Dot(track.axis[k], across), ahead));
+    up_down.Add(Atan2(math::Dot(track.axis[k], along), ahead));
     depth.Add(track.insertion[k]);
   }
   const double area = left_right.Width() * up_down.Width();
   list.Add("angular_area", part, hand, std::sqrt(area));
-  list.Add("angular_volume", part, hand, std::cbrt(area * depth.Width()));
+  list.Add("angular_volume", part, hand, Cbrt(area * depth.Width()));
 }
 
 void MeasureMovements(const MotionTrack& track, const AttemptPart& part, std::string_view hand,
@@ -149,8 +153,9 @@ void MeasureHandMotion(const MotionTrack& track, const std::optional<double>& id
   }
   if (path > 0.0) {
     const double jerk = SumOf(track.squared_jerk, part.has_sample) / settings.sample_rate_hz;
+    const double square = part.seconds * part.seconds;
     list.Add("motion_smoothness", part, hand,
-             std::sqrt(std::pow(part.seconds, 5) / (2.0 * path * path) * jerk));
+             std::sqrt(square * square * part.seconds / (2.0 * path * path) * jerk));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "trocar/math/elementary.h"
 #include "trocar/training/signal.h"
 
 namespace trocar::training {
@@ -64,7 +65,7 @@ std::vector<double> CalcSteps(const std::vector<T>& values, double noise, CalcDi
 }
 
 double AngleBetween(const Vec3& a, const Vec3& b) {
-  return std::atan2(math::Norm(math::Cross(a, b)), math::Dot(a, b));
+  return math::Atan2(math::Norm(math::Cross(a, b)), math::Dot(a, b));
 }
 double CalcDifference(double a, double b) {
   return std::fabs(a - b);

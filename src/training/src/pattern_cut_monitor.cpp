@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/elementary.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::training {
@@ -17,7 +18,7 @@ constexpr double kOnBorder = 1e-6;  // [m]
 /// Between a circle about the origin and an edge, as far as the edge is seen from there: its angle times half the difference of
 /// the squared distances [m^2].
 double CalcAreaOff(const Vec3& a, const Vec3& b, double radius) noexcept {
-  const double angle = std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
+  const double angle = math::Atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
   const double squared =
       math::SquaredNorm(a + b) / 4 + math::SquaredDistance(a, b) / 12;  // mean along the edge
   return 0.5 * std::fabs(angle * (squared - radius * radius));

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::training {
 namespace {
@@ -19,7 +20,7 @@ struct Biquad {
 
 /// Bilinear transform with the corner kept at `corner_hz`.
 Biquad MakeButterworth(double corner_hz, double step) {
-  const double k = std::tan(std::numbers::pi * corner_hz * step);
+  const double k = math::Tan(std::numbers::pi * corner_hz * step);
   const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * k + k * k);
   return {k * k * norm, 2.0 * k * k * norm, k * k * norm, 2.0 * (k * k - 1.0) * norm,
           (1.0 - std::numbers::sqrt2 * k + k * k) * norm};
@@ -104,7 +105,7 @@ std::vector<double> CalcAmplitudeSpectrum(std::span<const double> values, std::s
   std::vector<std::complex<double>> roots(length / 2);
   for (std::size_t i = 0; i < roots.size(); ++i) {
     const double angle = -2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length);
-    roots[i] = {std::cos(angle), std::sin(angle)};
+    roots[i] = {math::Cos(angle), math::Sin(angle)};
   }
   for (std::size_t half = 1; half < length; half *= 2) {
     const std::size_t stride = length / (2 * half);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/elementary.h"
 #include "trocar/training/signal.h"
 
 namespace trocar::training {
@@ -69,7 +70,7 @@ std::optional<double> CalcDimensionlessJerk(std::span<const double> speed, doubl
 std::optional<double> CalcLogDimensionlessJerk(std::span<const double> speed, double sample_rate_hz) {
   const std::optional<double> jerk = CalcDimensionlessJerk(speed, sample_rate_hz);
   if (!jerk || *jerk == 0.0) return std::nullopt;
-  return -std::log(std::fabs(*jerk));
+  return -math::Log(std::fabs(*jerk));
 }
 
 }  // namespace trocar::training

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::training {
 
 using math::Vec3;
@@ -34,7 +36,7 @@ double DistanceToSegment(const Flat& p, const Flat& a, const Flat& b) {
   const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
   const double along =
       squared > 0.0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0) : 0.0;
-  return std::hypot(p.x - a.x - along * dx, p.y - a.y - along * dy);
+  return math::Hypot(p.x - a.x - along * dx, p.y - a.y - along * dy);
 }
 
 bool IsInside(std::span<const Flat> outline, const Flat& p) {
@@ -78,7 +80,7 @@ TriangleWindow::TriangleWindow(const TriangleBorders& borders, std::span<const T
   std::vector<Flat> patches;
   std::copy_if(all.begin(), all.end(), std::back_inserter(patches), [&](const Flat& patch) {
     return std::none_of(kept.begin(), kept.end(), [&](const Flat& duct) {
-      return std::hypot(patch.x - duct.x, patch.y - duct.y) < settings.kept_fat;
+      return math::Hypot(patch.x - duct.x, patch.y - duct.y) < settings.kept_fat;
     });
   });
   if (patches.empty()) patches = all;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "trocar/math/elementary.h"
+
 namespace trocar::training {
 namespace {
 
@@ -72,7 +74,7 @@ std::string NameOf(const Triplet& triplet) {
 
 void PhaseRecogniser::Update(std::span<const Triplet> acts, const OperationFacts& facts,
                              double seconds) noexcept {
-  const double fade = std::exp(-seconds / kFadeSeconds);
+  const double fade = math::Exp(-seconds / kFadeSeconds);
   for (double& evidence : evidence_) evidence *= fade;
   for (const Triplet& act : acts) {
     if (const auto phase = PhaseOf(act, facts)) evidence_[static_cast<std::size_t>(*phase)] += seconds;

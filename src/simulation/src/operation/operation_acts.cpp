@@ -5,6 +5,7 @@
 
 #include "operation/operation.h"
 #include "trocar/geometry/openings.h"
+#include "trocar/math/elementary.h"
 
 namespace trocar::simulation {
 namespace {
@@ -303,7 +304,7 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
   EmitRetrieved(hand, stones_.Aspirate(hands.X_proxy[h].translation,
                                        2.0 * instrument::kSuctionBore * Tool(hand).shaft_radius));
   // the pool as a half sphere
-  const double radius = std::cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
+  const double radius = math::Cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
   if (math::Distance(hands.X_proxy[h].translation, facts_.p_pool) > radius + Suction().pool_reach) return;
   if (fluids_.Aspirate(Suction().aspirate_rate * hands.seconds) > 0.0)
     acts_.Add({InstrumentKind::kIrrigator, Verb::kAspirate, training::Target::kFluid}, hand);

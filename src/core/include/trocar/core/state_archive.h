@@ -31,6 +31,9 @@ inline constexpr bool kIsPlainState = std::is_arithmetic_v<T> || std::is_enum_v<
 /// A byte that is neither 0 nor 1 is no bool: it is read as a number and compared.
 template <>
 inline constexpr bool kIsPlainState<bool> = false;
+/// Sizes and counts go as eight bytes, also where they have four.
+template <>
+inline constexpr bool kIsPlainState<std::size_t> = sizeof(std::size_t) == sizeof(std::uint64_t);
 
 class StateArchive {
  public:
@@ -121,6 +124,10 @@ class StateArchive {
       std::uint8_t byte = value ? 1 : 0;
       Bytes(&byte, 1);
       if (IsRestoring() && ok()) value = byte != 0;
+    } else if constexpr (std::is_same_v<T, std::size_t>) {
+      std::uint64_t word = value;
+      Bytes(&word, sizeof(word));
+      if (IsRestoring() && ok()) value = static_cast<std::size_t>(word);
     } else if constexpr (std::is_same_v<T, std::string>) {
       value.resize(Count(value.size(), 1));
       Bytes(value.data(), value.size());

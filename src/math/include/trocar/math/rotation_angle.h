@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/elementary.h"
 #include "trocar/math/pose.h"
 
 namespace trocar::math {
@@ -18,12 +19,12 @@ inline double SquaredNorm(const Quaternion& q) noexcept {
 
 /// Between two orientations, 0 to pi; q and -q are one [rad].
 inline double AngleBetween(const Quaternion& a, const Quaternion& b) noexcept {
-  return 2.0 * std::acos(std::min(1.0, std::fabs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z)));
+  return 2.0 * Acos(std::min(1.0, std::fabs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z)));
 }
 
 /// Between two directions of any length but 0, 0 to pi [rad].
 inline double AngleBetween(const Vec3& a, const Vec3& b) noexcept {
-  return std::acos(std::clamp(Dot(Normalized(a), Normalized(b)), -1.0, 1.0));
+  return Acos(std::clamp(Dot(Normalized(a), Normalized(b)), -1.0, 1.0));
 }
 
 }  // namespace trocar::math

@@ -74,11 +74,23 @@ inline Vec3 Normalized(const Vec3& a, const Vec3& fallback = {0, 0, 1}) {
   return norm > 0.0 ? a / norm : fallback;
 }
 
+/// The smaller number, not NaN where one of them is none. Of equal ones, zeros of both signs too, the first: std::fmin may give
+/// either zero.
+inline double Min(double a, double b) {
+  return b < a || a != a ? b : a;
+}
+/// The larger number, as Min.
+inline double Max(double a, double b) {
+  return b > a || a != a ? b : a;
+}
 inline Vec3 Min(const Vec3& a, const Vec3& b) {
-  return {std::fmin(a.x, b.x), std::fmin(a.y, b.y), std::fmin(a.z, b.z)};
+  return {Min(a.x, b.x), Min(a.y, b.y), Min(a.z, b.z)};
 }
 inline Vec3 Max(const Vec3& a, const Vec3& b) {
-  return {std::fmax(a.x, b.x), std::fmax(a.y, b.y), std::fmax(a.z, b.z)};
+  return {Max(a.x, b.x), Max(a.y, b.y), Max(a.z, b.z)};
+}
+inline double Lerp(double a, double b, double t) {
+  return a + t * (b - a);
 }
 inline Vec3 Lerp(const Vec3& a, const Vec3& b, double t) {
   return a + t * (b - a);

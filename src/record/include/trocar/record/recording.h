@@ -35,6 +35,7 @@ struct Description {
       0;               ///< at which it begins; not 0 where it goes on from a saved state or another recording
   std::string player;  ///< "expert, seed 3", "mouse and keyboard", ...
   std::string program;   ///< version that wrote it
+  int engine_bits = 1;   ///< its simulation::kEngineBits; 1 where a file does not say
   std::string compiler;  ///< that built it
   std::string started;   ///< wall clock with its offset: "2026-11-24T22:50:20+00:00"
   /// Where it goes on from another recording ("take over here", "what if"): its file's name and id, and the tick; else empty
@@ -42,6 +43,9 @@ struct Description {
   std::string branched_from;
   std::uint64_t branched_id = 0, branched_tick = 0;
 };
+
+/// Whether a program of this version and engine wrote it: then it replays to the bit, or was changed since.
+bool IsOfThisProgram(const Description& description);
 
 /// Makes the scene that a recording is of.
 /// \return the file's errors; of another seed or patient is found out only by the model's fingerprint
