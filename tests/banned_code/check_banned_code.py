@@ -19,6 +19,7 @@ import platform
 import re
 import subprocess
 import sys
+import tempfile
 
 ROOTS = ("agent", "record", "environment", "assessment")
 ALLOWED = "tests/banned_code/allowed.txt"
@@ -140,21 +141,25 @@ def find_instructions(library, machine=platform.machine()):
     pattern, found, function = INSTRUCTIONS.get(machine), {}, "?"
     if pattern is None:
         return found
-    # grep leaves functions' names and lines that may be meant
-    with subprocess.Popen(["objdump", "-d", "--no-show-raw-insn", library], stdout=subprocess.PIPE) as listing, \
-            subprocess.Popen(["grep", "-aE", "^[0-9a-f]+ <|\t(vf|f|v?r(sqrt|cp|ecp)|vexp2)"], stdin=listing.stdout,
-                             stdout=subprocess.PIPE, text=True, env={**os.environ, "LC_ALL": "C"}) as lines:
-        listing.stdout.close()
-        for line in lines.stdout:
-            if line.startswith("0"):
-                function = line.split("<", 1)[-1].rstrip(">:\n")
-                continue
-            mnemonic = line.split("\t")[1].split(None, 1)[0]
-            if pattern.match(mnemonic):
-                count, first = found.get(mnemonic, (0, function))
-                found[mnemonic] = (count + 1, first)
-    if listing.returncode != 0:
-        sys.exit(f"objdump failed on {library}")
+    with tempfile.TemporaryDirectory() as folder:
+        # as one object: of a library with thousands of sections objdump takes minutes
+        whole = pathlib.Path(folder, "whole.so")
+        subprocess.run(["ld", "-shared", "-S", "--defsym=__dso_handle=0", "--whole-archive", library, "-o", whole], check=True)
+        # grep leaves functions' names and lines that may be meant
+        with subprocess.Popen(["objdump", "-d", "--no-show-raw-insn", whole], stdout=subprocess.PIPE) as listing, \
+                subprocess.Popen(["grep", "-aE", "^[0-9a-f]+ <|\t(vf|f|v?r(sqrt|cp|ecp)|vexp2)"], stdin=listing.stdout,
+                                 stdout=subprocess.PIPE, text=True, env={**os.environ, "LC_ALL": "C"}) as lines:
+            listing.stdout.close()
+            for line in lines.stdout:
+                if line.startswith("0"):
+                    function = line.split("<", 1)[-1].rstrip(">:\n")
+                    continue
+                mnemonic = line.split("\t")[1].split(None, 1)[0]
+                if pattern.match(mnemonic):
+                    count, first = found.get(mnemonic, (0, function))
+                    found[mnemonic] = (count + 1, first)
+        if listing.returncode != 0:
+            sys.exit(f"objdump failed on {library}")
     return found
 
 
@@ -265,7 +270,7 @@ def control(scratch):
     scratch.mkdir(parents=True, exist_ok=True)
     (scratch / "control.cpp").write_text(CONTROL)
     is_x86 = platform.machine() == "x86_64"
-    compiler = [os.environ.get("CXX", "g++"), "-std=c++20", "-O2", "-c", scratch / "control.cpp", "-o"]
+    compiler = [os.environ.get("CXX", "g++"), "-std=c++20", "-O2", "-fPIC", "-c", scratch / "control.cpp", "-o"]
     subprocess.run([*compiler, scratch / "fused.o", "-ffp-contract=fast", *(["-mfma"] if is_x86 else [])], check=True)
     subprocess.run([*compiler, scratch / "plain.o", "-ffp-contract=off"], check=True)
     names = set(find_imports(scratch / "plain.o", list_mathematical_names()))
