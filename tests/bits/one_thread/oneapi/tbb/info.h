@@ -2,5 +2,7 @@
 // See global_control.h.
 #pragma once
 namespace tbb::info {
-inline int default_concurrency() { return 1; }
+inline int default_concurrency() {
+  return 1;
+}
 }  // namespace tbb::info
