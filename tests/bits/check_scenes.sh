@@ -48,7 +48,7 @@ find_libcxx() {
     (cd "$root" && apt-get download -q "libc++-$version-dev" "libc++abi-$version-dev" 2>&1 && for file in *.deb; do dpkg -x "$file" .; done) \
       >"$scratch/libcxx_log" || return 1
   fi
-  libcxx_compile="-nostdinc++ -isystem $root/usr/lib/llvm-$version/include/c++/v1"
+  libcxx_compile="-Wno-unused-command-line-argument -nostdinc++ -isystem $root/usr/lib/llvm-$version/include/c++/v1"
   libcxx_link="-nostdlib++ $root/usr/lib/llvm-$version/lib/libc++.a $root/usr/lib/llvm-$version/lib/libc++abi.a -lpthread"
 }
 

@@ -4,7 +4,7 @@ mistakes=(fused_multiply_add function_of_the_c_library unstable_sort)
 
 # make_mistake NAME SOURCES: in SOURCES/src; the file that is changed is kept for undo_mistake
 make_mistake() {
-  local file from to
+  local file from to instead=no
   case $1 in
     fused_multiply_add) # rounded once, as a processor with FMA would
       file=math/include/trocar/math/lane_arithmetic.h from='inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {'
@@ -14,19 +14,19 @@ make_mistake() {
     functions_of_the_c_library) # those that every tick calls
       file=math/src/elementary_trigonometric.cpp from='SineCosine SinCos(double x) noexcept {'
       to='return {__builtin_sin(x), __builtin_cos(x)};' ;;
-    unstable_sort) # eight neighbours each are equal
-      file=tissue/src/tissue_model.cpp from='[](const auto& a, const auto& b) { return a.other < b.other; });'
-      to= ;;
+    unstable_sort) # neighbours that are equal stay as they come
+      file=tissue/src/tissue_model.cpp from='return a.other != b.other ? a.other < b.other : a.spring < b.spring;'
+      to='return a.other % 8 < b.other % 8;' instead=yes ;;
   esac
   cp "$2/src/$file" "$2/src/$file.right"
-  python3 - "$2/src/$file" "$from" "$to" <<'PYTHON'
+  python3 - "$2/src/$file" "$from" "$to" $instead <<'PYTHON'
 import pathlib
 import sys
-path, old, new = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
+path, old, new, instead = pathlib.Path(sys.argv[1]), *sys.argv[2:]
 text = path.read_text()
 if text.count(old) != 1:
     sys.exit(f"{path}: \"{old}\" is not there once; say in tests/bits/mistakes.sh what is")
-path.write_text(text.replace(old, f"{old}\n  {new}" if new else old.replace("a.other < b.other", "a.other / 8 < b.other / 8")))
+path.write_text(text.replace(old, new if instead == "yes" else f"{old}\n  {new}"))
 PYTHON
 }
 
