@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // No call of the C library's elementary functions, whose last bit no standard fixes, may decide what a tick computes.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "counted_functions.h"
 #include "golden_play.h"
+#include "trocar_test/temporary_folder.h"
 
 extern "C" double CallExp(double x);  // calls_exp.cpp
 
@@ -33,14 +32,13 @@ std::vector<Golden> GoldensOf(const std::string& lane) {
 
 /// Makes it and plays so many ticks, or to its end.
 void ExpectNoCalls(const Golden& golden, std::uint64_t most_ticks) {
-  const std::string scratch = testing::TempDir() + "/counted_functions_" + std::to_string(getpid());
+  const test::TemporaryFolder scratch;
   CallTable making, deciding, stepping;
   const auto make = [&] {
     const Counting counting(making);
-    return GoldenPlay::Make(golden, TROCAR_SOURCE_DIR, scratch, 2);
+    return GoldenPlay::Make(golden, TROCAR_SOURCE_DIR, scratch.Path(), 2);
   };
   auto play = make();
-  std::filesystem::remove_all(scratch);
   ASSERT_TRUE(play.ok()) << play.error().Text();
   for (std::uint64_t tick = 0; tick < most_ticks && !play->IsOver(); ++tick) {
     scene::Input input;

@@ -67,6 +67,8 @@ TEST_F(EndedEarly, RefusedMemoryIsAnErrorWithACodeAndARemedy) {
     const test::ProcessResult result = RunLimited("-v " + std::to_string(limit), work);
     constexpr int kLoaderRefused = 127;
     if (result.status == 0 || result.status == kLoaderRefused) continue;
+    // at the next limit after the loader's, what libraries make before main() may be refused, which nothing can catch
+    if (refused == 0 && result.err.starts_with("terminate called")) continue;
     EXPECT_THAT(result.err, HasSubstr("trocar: E-SIM-005 ")) << limit << ": " << result.err;
     EXPECT_THAT(result.err, HasSubstr("ulimit -v"));
     EXPECT_EQ(result.status, 1);

@@ -12,7 +12,7 @@ class HoldConstraint final : public btTypedConstraint {
   HoldConstraint(btRigidBody& carrier, btRigidBody& body, const btTransform& X_carrier_body)
       : btTypedConstraint(FIXED_CONSTRAINT_TYPE, carrier, body), X_carrier_body_(X_carrier_body) {}
 
-  const btTransform& X_carrier_body() const { return X_carrier_body_; }
+  const btTransform& PlaceInCarrier() const { return X_carrier_body_; }
   /// \param cfm, erp  constraint force mixing and error reduction in Bullet's units. Source: Smith, Open Dynamics Engine manual,
   ///   section 3.8.
   void Soften(double cfm, double erp) { cfm_ = cfm, erp_ = erp; }

@@ -303,7 +303,7 @@ struct RigidWorld::Content {
         saved.from[part] = SaveTransform(tool.from[part]);
         state.touched.push_back(tool.touched[part]);
       }
-      if (tool.hold) saved.X_carrier_body = SaveTransform(tool.hold->X_carrier_body());
+      if (tool.hold) saved.X_carrier_body = SaveTransform(tool.hold->PlaceInCarrier());
       saved.hold_force = tool.hold_force;
       saved.held = tool.held;
       saved.ticks_over = tool.ticks_over;

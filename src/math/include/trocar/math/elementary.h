@@ -8,8 +8,8 @@
 /// nor promise anything about the flags of exceptions.
 ///
 /// What IEEE 754 or integer arithmetic decides alone stays with the standard library: std::sqrt, fabs, copysign, floor,
-/// ceil, trunc, round, lround, rint, nearbyint, fmod, remainder, ldexp, frexp, fmin and fmax of numbers that differ. For
-/// squares and cubes write products.
+/// ceil, trunc, round, lround, rint, nearbyint, fmod, remainder, ldexp, frexp. Which zero fmin and fmax give is open: vector.h
+/// has Min and Max. For squares and cubes write products.
 #pragma once
 
 namespace trocar::math {

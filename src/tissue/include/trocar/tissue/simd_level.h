@@ -6,9 +6,8 @@
 
 namespace trocar::tissue {
 
-/// The inner loops exist once for each level. None reorders or approximates, and each rounds a product and a
-/// sum together only where it says so: one level's bits do not depend on compiler or optimisation. AVX2 and
-/// AVX-512 give the same bits; the baseline has no fused multiply-add and differs in the last place.
+/// The inner loops exist once for each level, of one body. None reorders, approximates or fuses: all give the same bits, with
+/// every compiler and optimisation.
 using core::SimdLevel;
 
 using core::FindSimdLevel;
