@@ -106,7 +106,7 @@ void PrintInfo(const Recording& recording) {
        {"engine",
         d.engine_bits == simulation::kEngineBits
             ? std::to_string(d.engine_bits)
-            : TranslateWith("{1}; this program is engine {2} and cannot replay it, that version can",
+            : TranslateWith("{1}; this program has engine {2} and cannot replay it, one of engine {1} can",
                             {std::to_string(d.engine_bits), std::to_string(simulation::kEngineBits)})},
        {"goes on from",
         d.branched_from.empty()

@@ -46,11 +46,12 @@ core::Result<Replay> Replay::Open(Recording recording, int threads) {
 
 core::Result<Replay> Replay::Open(Recording recording, const ReplaySettings& settings) {
   if (recording.description.engine_bits != simulation::kEngineBits) {
-    return Refuse("the recording is of an engine that computed other last bits (Trocar " +
-                  recording.description.program + ", engine " +
-                  std::to_string(recording.description.engine_bits) + "; this one is engine " +
+    const std::string own = std::to_string(recording.description.engine_bits);
+    return Refuse("the recording is of engine " + own + " (Trocar " + recording.description.program +
+                  "), which computes other last bits than this program's engine " +
                   std::to_string(simulation::kEngineBits) +
-                  "), and would become another attempt here; replay and verify it with that version");
+                  ", and would become another attempt here; replay and verify it with a program of engine " +
+                  own);
   }
   auto scene = MakeScene(recording.description);
   if (!scene.ok()) return scene.error();

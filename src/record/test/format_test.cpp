@@ -76,7 +76,7 @@ TEST(Format, AnotherEngineIsNamedAndNothingElseIsReplayed) {
   EXPECT_EQ(replay.error().code, core::ErrorCode::kRecordingInvalid);
   EXPECT_THAT(replay.error().message,
               testing::AllOf(testing::HasSubstr("other last bits"), testing::HasSubstr("Trocar 0.1.0"),
-                             testing::HasSubstr("with that version")));
+                             testing::HasSubstr("with a program of engine 1")));
 }
 
 }  // namespace

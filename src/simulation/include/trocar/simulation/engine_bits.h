@@ -5,7 +5,7 @@
 namespace trocar::simulation {
 
 /// Programs of one number compute the same states from the same scene and inputs, to the bit, on every processor and platform.
-/// Whoever changes what a tick computes raises it. 1: results depended on the processor and on its C library (Trocar 0.1.0).
+/// Whoever changes what a tick computes raises it. 1: results depended on the processor and on its C library (before 2026-11-29).
 inline constexpr int kEngineBits = 2;
 
 }  // namespace trocar::simulation
