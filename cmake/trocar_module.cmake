@@ -3,7 +3,8 @@
 # Where tests are built, to compile a file well takes longer than it wins, but for what is computed in every tick or frame: that has
 # -O2. What people see and click has -O0, and so have the tests of modules that are not fast; all else has -O1 by its preset.
 set(TROCAR_FAST_MODULES
-  anatomy collision core geometry haptics images instrument math meshing record render rigid scene simulation surgery tissue tissue_cuda training view)
+  anatomy base cholecystectomy collision files geometry haptics host images instrument math meshing patient record render rigid scene simulation surgery tissue
+  tissue_cuda training view)
 set(TROCAR_SHOWING_MODULES assessment centre cli doctor editor gui presenter rehearsal report sound store study)
 
 # for the targets of this folder that come after it
@@ -14,15 +15,17 @@ endfunction()
 # trocar_module(NAME
 #   PUBLIC_HEADERS include/trocar/NAME/a.h ...   each compiles alone (target all_verify_interface_header_sets)
 #   SOURCES src/a.cpp ...
-#   DEPENDS core math ...                        modules above this one
+#   DEPENDS base math ...                        modules above this one
 #   LIBRARIES Eigen3::Eigen ...                  third-party, private
-#   TESTS test/a_test.cpp ...)                   one executable NAME_tests, each case a ctest
+#   TESTS test/a_test.cpp ...                    one executable NAME_tests, each case a ctest
+#   TEST_DEPENDS files ...)                      modules that the tests use besides
 function(trocar_module name)
-  cmake_parse_arguments(arg "" "" "PUBLIC_HEADERS;SOURCES;DEPENDS;LIBRARIES;TESTS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "PUBLIC_HEADERS;SOURCES;DEPENDS;LIBRARIES;TESTS;TEST_DEPENDS" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "trocar_module(${name}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()
   list(TRANSFORM arg_DEPENDS PREPEND trocar_)
+  list(TRANSFORM arg_TEST_DEPENDS PREPEND trocar_)
   cmake_language(DEFER CALL trocar_unity_builds)
   if(name IN_LIST TROCAR_SHOWING_MODULES)
     trocar_compile_quickly()
@@ -44,7 +47,7 @@ function(trocar_module name)
   endif()
   if(TROCAR_BUILD_TESTS AND arg_TESTS)
     add_executable(${name}_tests ${arg_TESTS})
-    target_link_libraries(${name}_tests PRIVATE trocar_${name} ${arg_LIBRARIES} trocar_test_folders GTest::gmock GTest::gtest_main)
+    target_link_libraries(${name}_tests PRIVATE trocar_${name} ${arg_TEST_DEPENDS} ${arg_LIBRARIES} trocar_test_folders GTest::gmock GTest::gtest_main)
     target_include_directories(${name}_tests PRIVATE src)
     if(NOT name IN_LIST TROCAR_FAST_MODULES)
       target_compile_options(${name}_tests PRIVATE $<$<CONFIG:RelWithDebInfo>:-O0>)

@@ -6,7 +6,7 @@
 
 #include "haply/haply_messages.h"
 #include "haply/web_socket.h"
-#include "trocar/core/safe_file.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/emulator.h"
 
@@ -29,7 +29,7 @@ std::unique_ptr<Emulator> MakeEmulator(const std::string& parser, const SensorMo
 }
 
 bool Write(const std::string& folder, int number, const std::string& stream) {
-  const auto done = trocar::core::WriteFile(folder + "/seed" + std::to_string(number), stream);
+  const auto done = trocar::host::WriteFile(folder + "/seed" + std::to_string(number), stream);
   if (!done) std::puts(done.error().Text().c_str());
   return done.ok();
 }

@@ -5,7 +5,8 @@
 #include <memory>
 
 #include "trocar/agent/skill.h"
-#include "trocar/core/safe_file.h"
+#include "trocar/files/task_file.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/record/trace.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/simulation.h"
@@ -16,14 +17,14 @@ using namespace trocar;  // NOLINT(google-build-using-namespace): a sample shows
 
 int main(int argc, char** argv) {
   if (argc != 3) return std::printf("use: sample_coach RULES.json VALIDITY.json\n"), 2;
-  const auto rules_text = core::ReadFile(argv[1]), validity_text = core::ReadFile(argv[2]);
+  const auto rules_text = host::ReadFile(argv[1]), validity_text = host::ReadFile(argv[2]);
   if (!rules_text.ok() || !validity_text.ok()) return std::printf("the files cannot be read\n"), 1;
   const auto rules = training::ParseCoachRules(*rules_text, argv[1]);
   const auto validity = training::ParseValidity(*validity_text, argv[2]);
   if (!rules.ok() || !validity.ok()) return std::printf("the files are not what they should be\n"), 1;
 
-  const auto path = scene::FindTask("instrument_navigation");
-  auto read = path.ok() ? scene::ReadTask(*path) : path.error();
+  const auto path = files::FindTask("instrument_navigation");
+  auto read = path.ok() ? files::ReadTask(*path) : path.error();
   if (!read.ok()) return std::printf("%s\n", read.error().Text().c_str()), 1;
   const auto task = std::make_shared<const scene::Scene>(std::move(*read));
   const agent::SurgeonSkill skill =

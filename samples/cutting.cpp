@@ -11,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/anatomy/patient.h"
+#include "trocar/files/patient_file.h"
+#include "trocar/patient/patient.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/openings.h"
 #include "trocar/render/figure_picture.h"
@@ -61,7 +62,7 @@ struct Theatre {
 };
 constexpr const char* kStages[] = {"cut", "change", "model", "solver", "solve"};
 
-core::Status AddOrgan(const anatomy::Organ& organ, const Wall& wall, Theatre& theatre) {
+base::Status AddOrgan(const patient::Organ& organ, const Wall& wall, Theatre& theatre) {
   auto& definition = theatre.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   surgery::CuttableOrganSettings settings;
@@ -182,7 +183,7 @@ std::vector<render::FigureSurface> MakeFigure(const Theatre& theatre, std::size_
   return {outside, inside};
 }
 
-core::Status DrawSites(const Theatre& theatre, const std::array<Site, 2>& sites, const std::string& file) {
+base::Status DrawSites(const Theatre& theatre, const std::array<Site, 2>& sites, const std::string& file) {
   std::vector<render::Image> pictures;
   for (const bool has_edges : {false, true}) {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -209,11 +210,11 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "usage: %s assets/patients/visible-human-male/patient [cuts.png]\n", arguments[0]);
     return 2;
   }
-  const auto fail = [](const core::Error& error) {
+  const auto fail = [](const base::Error& error) {
     std::fprintf(stderr, "%s\n", error.Text().c_str());
     return 1;
   };
-  const auto patient = anatomy::ReadPatient(arguments[1]);
+  const auto patient = files::ReadPatient(arguments[1]);
   if (!patient.ok()) return fail(patient.error());
   Theatre theatre;
   std::array<Site, 2> sites;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "trocar/files/scene_file.h"
 #include "trocar/simulation/simulation.h"
 
 int main(int count, char** arguments) {
@@ -14,7 +15,7 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "usage: %s scenes/demonstration.json\n", arguments[0]);
     return 2;
   }
-  auto read = scene::ReadScene(arguments[1]);
+  auto read = files::ReadScene(arguments[1]);
   if (!read.ok()) {
     std::fprintf(stderr, "%s\n", read.error().Text().c_str());
     return 1;

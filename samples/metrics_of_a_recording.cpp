@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "trocar/files/scene_file.h"
 #include "trocar/record/recorder.h"
 #include "trocar/record/trace.h"
 #include "trocar/training/attempt_metrics.h"
@@ -18,9 +19,9 @@ namespace {
 using namespace trocar;
 
 /// A script plays, and a file keeps it.
-core::Result<training::AttemptTrace> PlayAndRecord(const std::string& scene_file,
+base::Result<training::AttemptTrace> PlayAndRecord(const std::string& scene_file,
                                                    const std::filesystem::path& file) {
-  auto read = scene::ReadScene(scene_file);
+  auto read = files::ReadScene(scene_file);
   if (!read.ok()) return read.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
   auto simulation = simulation::Simulation::Make(scene, 1);
@@ -45,7 +46,7 @@ core::Result<training::AttemptTrace> PlayAndRecord(const std::string& scene_file
   return live.Calc();
 }
 
-core::Status Measure(const std::string& scene_file, const std::filesystem::path& file) {
+base::Status Measure(const std::string& scene_file, const std::filesystem::path& file) {
   const auto live = PlayAndRecord(scene_file, file);
   if (!live.ok()) return live.error();
   auto recording = record::ReadRecording(file);
@@ -78,7 +79,7 @@ int main(int count, char** arguments) {
   }
   const auto file =
       std::filesystem::temp_directory_path() / ("sample_metrics_" + std::to_string(::getpid()) + ".trocar");
-  const core::Status measured = Measure(arguments[1], file);
+  const base::Status measured = Measure(arguments[1], file);
   std::filesystem::remove(file);
   if (measured.ok()) return 0;
   std::fprintf(stderr, "%s\n", measured.error().Text().c_str());

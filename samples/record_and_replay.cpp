@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "trocar/files/scene_file.h"
 #include "trocar/record/recorder.h"
 #include "trocar/record/replay.h"
 
@@ -16,14 +17,14 @@ namespace {
 
 using namespace trocar;
 
-int Complain(const core::Error& error) {
+int Complain(const base::Error& error) {
   std::fprintf(stderr, "%s\n", error.Text().c_str());
   return 1;
 }
 
 /// A script plays, and a file keeps it.
-core::Status Record(const std::string& scene_file, const std::filesystem::path& file) {
-  auto read = scene::ReadScene(scene_file);
+base::Status Record(const std::string& scene_file, const std::filesystem::path& file) {
+  auto read = files::ReadScene(scene_file);
   if (!read.ok()) return read.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
   auto simulation = simulation::Simulation::Make(scene, 1);
@@ -74,7 +75,7 @@ int main(int count, char** arguments) {
   }
   const auto file =
       std::filesystem::temp_directory_path() / ("sample_" + std::to_string(::getpid()) + ".trocar");
-  const core::Status recorded = Record(arguments[1], file);
+  const base::Status recorded = Record(arguments[1], file);
   const int status = recorded.ok() ? Replay(file) : Complain(recorded.error());
   std::filesystem::remove(file);
   return status;

@@ -8,7 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "trocar/core/safe_file.h"
+#include "trocar/files/scene_file.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/record/trace.h"
 #include "trocar/report/attempt_report.h"
 #include "trocar/training/attempt_metrics.h"
@@ -17,8 +18,8 @@ namespace {
 
 using namespace trocar;
 
-core::Status Report(const std::string& scene_file, const std::filesystem::path& folder) {
-  auto read = scene::ReadScene(scene_file);
+base::Status Report(const std::string& scene_file, const std::filesystem::path& folder) {
+  auto read = files::ReadScene(scene_file);
   if (!read.ok()) return read.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
   auto simulation = simulation::Simulation::Make(scene, 1);
@@ -40,9 +41,9 @@ core::Status Report(const std::string& scene_file, const std::filesystem::path& 
   const report::Document document =
       report::MakeDocument(report::MakeAttemptReport(attempt, *metrics, {facts, {}, {}}));
   for (const report::Section& section : document.sections) std::printf("  %s\n", section.title.c_str());
-  if (auto written = core::WriteFile(folder / "report.html", report::FormatHtml(document)); !written.ok())
+  if (auto written = host::WriteFile(folder / "report.html", report::FormatHtml(document)); !written.ok())
     return written;
-  if (auto written = core::WriteFile(folder / "report.pdf", report::FormatPdf(document)); !written.ok())
+  if (auto written = host::WriteFile(folder / "report.pdf", report::FormatPdf(document)); !written.ok())
     return written;
   std::printf("one page and one PDF in %s\n", folder.c_str());
   return {};
@@ -59,7 +60,7 @@ int main(int count, char** arguments) {
   const std::filesystem::path folder =
       is_kept ? std::filesystem::path(arguments[2])
               : std::filesystem::temp_directory_path() / ("sample_report_" + std::to_string(::getpid()));
-  const core::Status reported = Report(arguments[1], folder);
+  const base::Status reported = Report(arguments[1], folder);
   if (!is_kept) std::filesystem::remove_all(folder);
   if (reported.ok()) return 0;
   std::fprintf(stderr, "%s\n", reported.error().Text().c_str());

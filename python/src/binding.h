@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "guard.h"
-#include "trocar/core/printable_output.h"
-#include "trocar/core/result.h"
+#include "trocar/host/printable_output.h"
+#include "trocar/base/result.h"
 #include "trocar/math/pose.h"
 
 namespace trocar::python {
@@ -24,22 +24,22 @@ namespace py = pybind11;
 class Failure : public std::exception {
  public:
   /// Names of files and fields in its message are printable within their line: a traceback goes to a terminal.
-  explicit Failure(core::Error error)
-      : error_{error.code, core::PrintableLine(error.message)}, text_(error_.Text()) {}
+  explicit Failure(base::Error error)
+      : error_{error.code, host::PrintableLine(error.message)}, text_(error_.Text()) {}
   const char* what() const noexcept override { return text_.c_str(); }
-  const core::Error& Get() const { return error_; }
+  const base::Error& Get() const { return error_; }
 
  private:
-  core::Error error_;
+  base::Error error_;
   std::string text_;
 };
 
 template <typename T>
-T Take(core::Result<T> result) {
+T Take(base::Result<T> result) {
   if (!result.ok()) throw Failure(result.error());
   return std::move(result).value();
 }
-inline void Check(const core::Status& status) {
+inline void Check(const base::Status& status) {
   if (!status.ok()) throw Failure(status.error());
 }
 

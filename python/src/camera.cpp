@@ -9,9 +9,9 @@
 
 namespace trocar::python {
 
-core::Result<std::unique_ptr<Camera>> Camera::Make(int width, int height) {
+base::Result<std::unique_ptr<Camera>> Camera::Make(int width, int height) {
   if (width < 8 || width > 4096 || height < 8 || height > 4096)
-    return core::Error{core::ErrorCode::kUsage, "a picture has 8 to 4096 pixels a side"};
+    return base::Error{base::ErrorCode::kUsage, "a picture has 8 to 4096 pixels a side"};
   ExpectThreadsOfLibraries();
   auto context = render::OffscreenContext::Make();
   if (!context) return context.error();
@@ -28,14 +28,14 @@ Camera::~Camera() {
 }
 
 template <typename Work>
-core::Status Camera::InContext(const Work& work) {
+base::Status Camera::InContext(const Work& work) {
   if (const auto current = graphics_->context.MakeCurrent(); !current) return current;
-  const core::Status done = work();
+  const base::Status done = work();
   graphics_->context.Release();
   return done;
 }
 
-core::Status Camera::Show(const simulation::Simulation& simulation) {
+base::Status Camera::Show(const simulation::Simulation& simulation) {
   std::optional<view::LaparoscopeView>& view = graphics_->view;
   if (!view || scene_ != &simulation.GetScene() || model_ != simulation.ModelFingerprint()) {
     view.reset();
@@ -53,8 +53,8 @@ core::Status Camera::Show(const simulation::Simulation& simulation) {
   return {};
 }
 
-core::Status Camera::Draw(const simulation::Simulation& simulation, render::Image& image) {
-  return InContext([&]() -> core::Status {
+base::Status Camera::Draw(const simulation::Simulation& simulation, render::Image& image) {
+  return InContext([&]() -> base::Status {
     if (const auto shown = Show(simulation); !shown) return shown;
     render::OffscreenTarget& target = graphics_->target;
     target.Bind();
@@ -64,9 +64,9 @@ core::Status Camera::Draw(const simulation::Simulation& simulation, render::Imag
   });
 }
 
-core::Status Camera::LookAt(const simulation::Simulation& simulation, bool has_flow,
+base::Status Camera::LookAt(const simulation::Simulation& simulation, bool has_flow,
                             render::GeometryPicture& picture) {
-  return InContext([&]() -> core::Status {
+  return InContext([&]() -> base::Status {
     if (const auto shown = Show(simulation); !shown) return shown;
     const int width = graphics_->target.Width(), height = graphics_->target.Height();
     return has_flow ? graphics_->view->DrawGeometryAndFlow(width, height, picture)
@@ -86,7 +86,7 @@ PoolPictures::PoolPictures(int count, int width, int height, const Parts& parts)
   }
 }
 
-core::Status PoolPictures::Observe(std::int32_t id, const environment::Environment& environment,
+base::Status PoolPictures::Observe(std::int32_t id, const environment::Environment& environment,
                                    bool is_final) {
   Eye& eye = eyes_[static_cast<std::size_t>(id)];
   if (eye.camera == nullptr) {

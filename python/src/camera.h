@@ -22,14 +22,14 @@ namespace trocar::python {
 class Camera {
  public:
   /// \return kUsage for a size out of range, or the graphics' error
-  static core::Result<std::unique_ptr<Camera>> Make(int width, int height);
+  static base::Result<std::unique_ptr<Camera>> Make(int width, int height);
   ~Camera();
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
 
-  core::Status Draw(const simulation::Simulation& simulation, render::Image& image);
+  base::Status Draw(const simulation::Simulation& simulation, render::Image& image);
   /// \param has_flow  also the flow since this was asked for last
-  core::Status LookAt(const simulation::Simulation& simulation, bool has_flow,
+  base::Status LookAt(const simulation::Simulation& simulation, bool has_flow,
                       render::GeometryPicture& picture);
   double FocalLength() const { return focal_length_; }  ///< of the last picture [pixels]
 
@@ -42,8 +42,8 @@ class Camera {
   };
   explicit Camera(std::unique_ptr<Graphics> graphics) : graphics_(std::move(graphics)) {}
   template <typename Work>
-  core::Status InContext(const Work& work);
-  core::Status Show(const simulation::Simulation& simulation);
+  base::Status InContext(const Work& work);
+  base::Status Show(const simulation::Simulation& simulation);
 
   std::unique_ptr<Graphics> graphics_;
   const scene::Scene* scene_ = nullptr;  // that the view is of
@@ -69,7 +69,7 @@ class PoolPictures {
 
   PoolPictures(int count, int width, int height, const Parts& parts);
   /// \param is_final  of an episode that is over, while the next one begins at once
-  core::Status Observe(std::int32_t id, const environment::Environment& environment, bool is_final);
+  base::Status Observe(std::int32_t id, const environment::Environment& environment, bool is_final);
   const Rows& Now() const { return now_; }
   const Rows& Final() const { return final_; }
   int Width() const { return width_; }

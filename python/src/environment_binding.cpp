@@ -13,7 +13,7 @@
 #include "running.h"
 #include "scene_source.h"
 #include "trocar/agent/taking_over.h"
-#include "trocar/core/state_hash.h"
+#include "trocar/base/state_hash.h"
 #include "trocar/environment/pool.h"
 
 namespace trocar::python {
@@ -49,10 +49,10 @@ environment::Features ReadWeights(const py::dict& named) {
       for (std::size_t k = 0; k < kFeatureCount; ++k)
         known += (k == 0 ? "" : ", ") + std::string(environment::NameOf(static_cast<Feature>(k)));
       throw Failure(
-          {core::ErrorCode::kUnknownName, "a reward has no feature \"" + name + "\"; there are " + known});
+          {base::ErrorCode::kUnknownName, "a reward has no feature \"" + name + "\"; there are " + known});
     }
     if (!py::isinstance<py::float_>(weight) && !py::isinstance<py::int_>(weight)) {
-      throw Failure({core::ErrorCode::kUsage,
+      throw Failure({base::ErrorCode::kUsage,
                      "weights." + name + " is " + std::string(py::repr(weight)) + "; a weight is a number"});
     }
     weights[i] = weight.cast<double>();
@@ -67,7 +67,7 @@ std::shared_ptr<EnvironmentModel> MakeModel(const py::object& task, const std::s
                                             const std::filesystem::path& folder) {
   const auto kind = environment::FindActionKind(actions);
   if (!kind) {
-    throw Failure({core::ErrorCode::kUnknownName,
+    throw Failure({base::ErrorCode::kUnknownName,
                    "there is no kind of actions \"" + actions + "\"; choose joints, tip or discrete"});
   }
   const SceneSource source = ReadSceneSource(task, folder);
@@ -129,7 +129,7 @@ environment::Autoreset FindAutoreset(const std::string& name) {
   if (name == "NextStep") return environment::Autoreset::kNextStep;
   if (name == "SameStep") return environment::Autoreset::kSameStep;
   if (name == "Disabled") return environment::Autoreset::kDisabled;
-  throw Failure({core::ErrorCode::kUnknownName,
+  throw Failure({base::ErrorCode::kUnknownName,
                  "there is no autoreset mode \"" + name + "\"; choose NextStep, SameStep or Disabled"});
 }
 
@@ -145,7 +145,7 @@ PoolPictures::Parts FindParts(const std::vector<std::string>& names) {
     } else if (name == "normals") {
       parts.has_normals = true;
     } else {
-      throw Failure({core::ErrorCode::kUnknownName,
+      throw Failure({base::ErrorCode::kUnknownName,
                      "a pool draws no \"" + name + "\"; choose picture, depth, masks or normals"});
     }
   }
@@ -164,7 +164,7 @@ std::unique_ptr<DrawnPool> MakePool(std::shared_ptr<EnvironmentModel> model, int
     // before all memory is taken: the size may be wrong, and there may be no graphics
     (void)Take(Camera::Make(width, height));
     if (count < 1 || count > environment::kMostEnvironments)
-      throw Failure({core::ErrorCode::kUsage, "a pool has 1 to 4096 environments"});
+      throw Failure({base::ErrorCode::kUsage, "a pool has 1 to 4096 environments"});
     made->pictures = std::make_shared<PoolPictures>(count, width, height, parts);
     settings.observe = [pictures = made->pictures](std::int32_t id, const Environment& environment,
                                                    bool is_final) {
@@ -286,7 +286,7 @@ void BindRunningEnvironment(py::module_& module) {
             Environment& e = r.environment;
             if (static_cast<std::size_t>(action.size()) != e.ActionSize())
               throw Failure(
-                  {core::ErrorCode::kUsage, "an action has " + std::to_string(e.ActionSize()) + " numbers"});
+                  {base::ErrorCode::kUsage, "an action has " + std::to_string(e.ActionSize()) + " numbers"});
             std::vector<double> written(e.ActionSize());
             Outcome outcome;
             {
@@ -304,14 +304,14 @@ void BindRunningEnvironment(py::module_& module) {
             const Environment& e = r.environment;
             if (static_cast<std::size_t>(state.size()) != e.StateSize())
               throw Failure(
-                  {core::ErrorCode::kUsage, "a state has " + std::to_string(e.StateSize()) + " numbers"});
+                  {base::ErrorCode::kUsage, "a state has " + std::to_string(e.StateSize()) + " numbers"});
             e.Observe({state.mutable_data(), static_cast<std::size_t>(state.size())});
           },
           py::arg("state").noconvert())
       .def("metrics",
            [](const RunningEnvironment& r) {
              if (r.attempt == nullptr) {
-               throw Failure({core::ErrorCode::kEnvironmentState,
+               throw Failure({base::ErrorCode::kEnvironmentState,
                               "the metrics are not collected; make the environment with metrics=True"});
              }
              return r.attempt->Describe();
@@ -319,7 +319,7 @@ void BindRunningEnvironment(py::module_& module) {
       .def_property_readonly("layout", [](const RunningEnvironment& r) { return r.environment.Layout(); })
       .def_property_readonly("tick",
                              [](const RunningEnvironment& r) { return r.Simulation().GetSnapshot().tick; })
-      .def("hash", [](const RunningEnvironment& r) { return core::HashText(r.Simulation().Hash()); });
+      .def("hash", [](const RunningEnvironment& r) { return base::HashText(r.Simulation().Hash()); });
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "binding.h"
-#include "trocar/core/assert.h"
+#include "trocar/base/assert.h"
 
 namespace trocar::python {
 namespace {
@@ -28,7 +28,7 @@ class Hold {
     const py::type type = py::type::of(object_);
     const auto* known = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(type.ptr()));
     if (known == nullptr)
-      throw Failure({core::ErrorCode::kUsage, "only objects of this module's classes can be held"});
+      throw Failure({base::ErrorCode::kUsage, "only objects of this module's classes can be held"});
     auto* instance = reinterpret_cast<py::detail::instance*>(object_.ptr());
     use_.emplace().Begin(instance->get_value_and_holder(known).value_ptr(), true, type);
   }
@@ -45,7 +45,7 @@ void Use::Begin(const void* object, bool changes, py::handle type) {
   TROCAR_ASSERT(PyGILState_Check() == 1 && object_ == nullptr);
   int& uses = Uses()[object];
   if (uses == kChanging || (changes && uses > 0)) {
-    throw Failure({core::ErrorCode::kEnvironmentState,
+    throw Failure({base::ErrorCode::kEnvironmentState,
                    "this " + std::string(py::str(type.attr("__name__"))) +
                        " is in the middle of another call; give each thread its own, or let threads take "
                        "turns with a threading.Lock"});

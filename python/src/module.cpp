@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "binding.h"
-#include "trocar/core/simd_choice.h"
-#include "trocar/core/version.h"
+#include "trocar/base/simd_choice.h"
+#include "trocar/host/version.h"
 
 namespace trocar::python {
 
@@ -37,12 +37,12 @@ void BindErrors(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Failure& failure) {
-      const core::Error& error = failure.Get();
-      const auto table = core::ErrorTable();
+      const base::Error& error = failure.Get();
+      const auto table = base::ErrorTable();
       const auto entry =
           std::find_if(table.begin(), table.end(), [&](const auto& e) { return e.code == error.code; });
       const py::object type = py::module_::import("trocar.errors").attr("Error");
-      const py::object made = type(py::str(std::string(core::CodeText(error.code))), py::str(error.message),
+      const py::object made = type(py::str(std::string(base::CodeText(error.code))), py::str(error.message),
                                    py::str(std::string(entry->meaning)));
       PyErr_SetObject(type.ptr(), made.ptr());
     }
@@ -51,7 +51,7 @@ void BindErrors(py::module_& module) {
       "error_table",
       [] {
         py::dict table;
-        for (const core::ErrorEntry& entry : core::ErrorTable())
+        for (const base::ErrorEntry& entry : base::ErrorTable())
           table[py::str(std::string(entry.text))] = std::string(entry.meaning);
         return table;
       },
@@ -62,9 +62,9 @@ void BindErrors(py::module_& module) {
 
 PYBIND11_MODULE(_trocar, module) {
   module.doc() = "The compiled part of the package trocar.";
-  module.attr("__version__") = trocar::core::VersionText();
+  module.attr("__version__") = trocar::host::VersionText();
   trocar::python::BindErrors(module);
-  trocar::python::Check(trocar::core::CheckSimdLevel());
+  trocar::python::Check(trocar::base::CheckSimdLevel());
   trocar::python::BindGuard(module);
   trocar::python::BindSimulation(module);
   trocar::python::BindEnvironment(module);

@@ -12,16 +12,19 @@
 
 #include "forks.h"
 #include "trocar/anatomy/generate_patient.h"
-#include "trocar/anatomy/patient.h"
-#include "trocar/core/safe_file.h"
+#include "trocar/files/find_scene.h"
+#include "trocar/files/patient_file.h"
+#include "trocar/files/task_file.h"
+#include "trocar/patient/patient.h"
+#include "trocar/host/safe_file.h"
 
 namespace trocar::python {
 namespace {
 
 namespace fs = std::filesystem;
 
-core::Error Unusable(const std::string& what) {
-  return core::Error{core::ErrorCode::kUsage, what};
+base::Error Unusable(const std::string& what) {
+  return base::Error{base::ErrorCode::kUsage, what};
 }
 
 /// A text or what os.fspath makes one of; nothing for anything else.
@@ -44,7 +47,7 @@ std::string FormatSetting(const std::string& where, const py::handle& value) {
 std::shared_ptr<const fs::path> MakeFolder() {
   std::string name = (fs::temp_directory_path() / "trocar-patient-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr)
-    throw Failure({core::ErrorCode::kFileUnwritable, name + ": a folder for the patient cannot be made"});
+    throw Failure({base::ErrorCode::kFileUnwritable, name + ": a folder for the patient cannot be made"});
   // not by children of fork: it is still the parent's
   return {new fs::path(name), [process = ::getpid()](const fs::path* folder) {
             std::error_code ignored;
@@ -68,12 +71,12 @@ SceneSource ReadSceneSource(const py::object& scene, const std::filesystem::path
   return {(folder / "the dictionary").string(), py::str(text)};
 }
 
-core::Result<scene::Scene> FindScene(const SceneSource& source, const scene::TaskChoice& choice) {
-  if (!source.document.empty()) return scene::ParseScene(source.document, source.name, choice);
+base::Result<scene::Scene> FindScene(const SceneSource& source, const files::TaskChoice& choice) {
+  if (!source.document.empty()) return files::ParseScene(source.document, source.name, choice);
   std::error_code ignored;
-  if (!fs::is_regular_file(source.name, ignored)) return scene::FindScene(source.name, choice);
-  const auto text = core::ReadFile(source.name);
-  return text.ok() ? scene::ParseScene(*text, source.name, choice) : text.error();
+  if (!fs::is_regular_file(source.name, ignored)) return files::FindScene(source.name, choice);
+  const auto text = host::ReadFile(source.name);
+  return text.ok() ? files::ParseScene(*text, source.name, choice) : text.error();
 }
 
 PatientSource::PatientSource(const py::object& patient) {
@@ -109,7 +112,7 @@ PatientSource::PatientSource(const py::object& patient) {
   made_ = MakeFolder();
   folder_ = *made_;
   const py::gil_scoped_release release;
-  Check(anatomy::WritePatient(folder_, Take(anatomy::GeneratePatient(seed, settings))));
+  Check(files::WritePatient(folder_, Take(anatomy::GeneratePatient(seed, settings))));
 }
 
 }  // namespace trocar::python

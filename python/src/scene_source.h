@@ -7,7 +7,8 @@
 #include <string>
 
 #include "binding.h"
-#include "trocar/scene/find_scene.h"
+#include "trocar/files/find_scene.h"
+#include "trocar/files/task_file.h"
 
 namespace trocar::python {
 
@@ -27,7 +28,7 @@ struct SceneSource {
 SceneSource ReadSceneSource(const py::object& scene, const std::filesystem::path& folder);
 
 /// An operation, a task, or a scene to look at.
-core::Result<scene::Scene> FindScene(const SceneSource& source, const scene::TaskChoice& choice);
+base::Result<scene::Scene> FindScene(const SceneSource& source, const files::TaskChoice& choice);
 
 /// A folder with a patient. One that was made of a dictionary is removed with the last copy of this.
 class PatientSource {

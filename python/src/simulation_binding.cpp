@@ -14,10 +14,12 @@
 #include "forks.h"
 #include "running.h"
 #include "trocar/agent/surgeon.h"
-#include "trocar/core/state_hash.h"
+#include "trocar/base/state_hash.h"
+#include "trocar/files/task_file.h"
+#include "trocar/host/data_folder.h"
 #include "trocar/record/input_codec.h"
 #include "trocar/scene/task.h"
-#include "trocar/simulation/state_file.h"
+#include "trocar/files/state_file.h"
 
 namespace trocar::python {
 namespace {
@@ -35,7 +37,7 @@ std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& 
                                      const py::object& patient, int threads, bool has_metrics,
                                      const std::filesystem::path& folder) {
   if (threads < 1 || threads > 256)
-    throw Failure({core::ErrorCode::kUsage, "a simulation has 1 to 256 threads"});
+    throw Failure({base::ErrorCode::kUsage, "a simulation has 1 to 256 threads"});
   if (threads > 1) ExpectThreadsOfLibraries();
   const SceneSource source = ReadSceneSource(task, folder);
   PatientSource given(patient);
@@ -61,13 +63,13 @@ void FromJoints(const instrument::TrocarJoints& joints, double* at) {
 
 void CheckNumbers(const Row& row, py::ssize_t count, const char* what) {
   if (row.size() != count) {
-    throw Failure({core::ErrorCode::kActionInvalid, std::string(what) + " are " + std::to_string(count) +
+    throw Failure({base::ErrorCode::kActionInvalid, std::string(what) + " are " + std::to_string(count) +
                                                         " numbers, not " + std::to_string(row.size())});
   }
   for (py::ssize_t i = 0; i < count; ++i) {
     if (!std::isfinite(row.data()[i]))
       throw Failure(
-          {core::ErrorCode::kActionInvalid, std::string(what) + " hold a number that is NaN or infinite"});
+          {base::ErrorCode::kActionInvalid, std::string(what) + " hold a number that is NaN or infinite"});
   }
 }
 
@@ -131,7 +133,7 @@ void BindInput(py::module_& module) {
               input.assistant = static_cast<scene::AssistantCommand>(i);
               return;
             }
-            throw Failure({core::ErrorCode::kUnknownName, "the assistant knows no \"" + command +
+            throw Failure({base::ErrorCode::kUnknownName, "the assistant knows no \"" + command +
                                                               "\"; say wait, retract, relax or release"});
           },
           "\"wait\", \"retract\", \"relax\" or \"release\".")
@@ -154,7 +156,7 @@ void BindInput(py::module_& module) {
             Input input;
             if (!record::InputDecoder().Decode(bytes, input) || !bytes.empty())
               throw Failure(
-                  {core::ErrorCode::kRecordingInvalid, "these bytes are no Input; pickle it again"});
+                  {base::ErrorCode::kRecordingInvalid, "these bytes are no Input; pickle it again"});
             return input;
           }));
   BindPedal<&scene::HandControls::cut>(type, "cut", "(2) yellow pedal of each hand.");
@@ -218,7 +220,7 @@ py::dict DescribeOperation(const Running& running) {
   const simulation::OperationSnapshot& now = running.simulation.GetSnapshot().operation;
   const auto& fluids = now.flow.ledger.fluids;
   py::dict out;
-  out["phase"] = std::string(training::NameOf(now.phase));
+  out["phase"] = std::string(cholecystectomy::NameOf(now.phase));
   out["cleared"] = now.facts.cleared_share;
   out["detached"] = now.facts.detached_share;
   out["structures_entering"] = now.facts.structures_entering;
@@ -288,7 +290,7 @@ py::list DescribeEvents(const Running& running, std::uint64_t since) {
     entry["error"] =
         event.error < 0
             ? py::object(py::none())
-            : py::str(std::string(training::NameOf(static_cast<training::OperationError>(event.error))));
+            : py::str(std::string(cholecystectomy::NameOf(static_cast<cholecystectomy::OperationError>(event.error))));
     out.append(entry);
   }
   return out;
@@ -304,18 +306,18 @@ py::object DescribeCriticalView(const Running& running) {
   out["was_achieved"] = result->was_critical_view_achieved;
   out["is_seen_from_front"] = result->critical_view.is_seen_from_front;
   out["is_seen_from_behind"] = result->critical_view.is_seen_from_behind;
-  out["missing"] = training::ExplainCriticalView(result->facts, result->critical_view);
+  out["missing"] = cholecystectomy::ExplainCriticalView(result->facts, result->critical_view);
   return out;
 }
 
 py::list DescribeErrors(const Running& running) {
   py::list out;
   if (const auto result = running.simulation.GetOperationResult()) {
-    for (const training::ErrorEntry& error : result->errors.Entries()) {
+    for (const cholecystectomy::ErrorEntry& error : result->errors.Entries()) {
       py::dict entry;
-      entry["error"] = std::string(training::NameOf(error.error));
-      entry["about"] = std::string(training::ExplanationOf(error.error));
-      entry["severity"] = std::string(training::NameOf(training::SeverityOf(error.error)));
+      entry["error"] = std::string(cholecystectomy::NameOf(error.error));
+      entry["about"] = std::string(cholecystectomy::ExplanationOf(error.error));
+      entry["severity"] = std::string(cholecystectomy::NameOf(cholecystectomy::SeverityOf(error.error)));
       entry["time"] = error.time;
       entry["place"] = ToArray(error.place);
       entry["hand"] = error.hand < 0
@@ -330,7 +332,7 @@ py::list DescribeErrors(const Running& running) {
 
 py::object DescribeMetrics(const Running& running) {
   if (!running.attempt) {
-    throw Failure({core::ErrorCode::kEnvironmentState,
+    throw Failure({base::ErrorCode::kEnvironmentState,
                    "the metrics are not collected; make the simulation with metrics=True"});
   }
   return running.attempt->Describe();
@@ -408,7 +410,7 @@ void BindRunning(py::module_& module) {
       .def(
           "step",
           [](Running& r, const Input& input, int ticks) {
-            if (ticks < 0) throw Failure({core::ErrorCode::kUsage, "a number of ticks is not negative"});
+            if (ticks < 0) throw Failure({base::ErrorCode::kUsage, "a number of ticks is not negative"});
             RunTicks(ticks, [&] {
               r.Step(input);
               return true;
@@ -469,18 +471,18 @@ void BindRunning(py::module_& module) {
       .def(
           "save_file",
           [](const Running& r, const std::filesystem::path& path) {
-            Check(simulation::WriteStateFile(path, r.simulation));
+            Check(files::WriteStateFile(path, r.simulation));
           },
           py::arg("path"), "As `trocar simulate --save`.")
       .def(
           "restore_file",
           [](Running& r, const std::filesystem::path& path) {
-            (void)Take(simulation::ReadStateFile(path, r.simulation));
+            (void)Take(files::ReadStateFile(path, r.simulation));
             r.BeginAttempt();
           },
           py::arg("path"), "As `trocar simulate --restore`.")
       .def(
-          "hash", [](const Running& r) { return core::HashText(r.simulation.Hash()); },
+          "hash", [](const Running& r) { return base::HashText(r.simulation.Hash()); },
           "Fingerprint of the state, as the commands print it.")
       .def(
           "play",
@@ -518,7 +520,7 @@ void BindSimulation(py::module_& module) {
       "tasks",
       [] {
         py::dict out;
-        for (const scene::TaskEntry& task : Take(scene::ListTasks())) {
+        for (const files::TaskEntry& task : Take(files::ListTasks())) {
           py::dict entry;
           entry["name"] = task.name;
           entry["about"] = task.about;
@@ -531,10 +533,10 @@ void BindSimulation(py::module_& module) {
   module.def(
       "find",
       [](const std::string& name) {
-        const auto data = Take(scene::FindDataFolder());
+        const auto data = Take(host::FindDataFolder());
         const auto path = data / "scenes" / (name + ".json");
         std::error_code ignored;
-        return std::filesystem::is_regular_file(path, ignored) ? path : Take(scene::FindTask(name));
+        return std::filesystem::is_regular_file(path, ignored) ? path : Take(files::FindTask(name));
       },
       py::arg("name"), "File of a delivered task, operation or scene: a dictionary to begin with.");
   module.def(

@@ -7,17 +7,17 @@ import pathlib
 import re
 import sys
 
-TABLE = "src/roles/include/trocar/roles/roles.h"
+TABLE = "src/engine/roles/include/trocar/roles/roles.h"
 
 # Tables of other people's words that contain the same ones. Nothing is compared with an organ's name there.
 OTHER_TABLES = {
-    "src/scene/src/operation_parameters.cpp": "fields of an operation's parameters: what liver and gallbladder give and take",
-    "src/dataset/src/class_tables.cpp": "classes of public data sets as those write them",
-    "src/view/src/labels.cpp": "classes of segmentation as files and Python write them",
-    "src/training/src/triplet.cpp": "targets as CholecT50 writes them",
-    "src/presenter/src/patient_list.cpp": "parameters of a generated patient whose findings a list shows",
-    "src/anatomy/src/patient_parameters.cpp": "parameters of a generated patient, one of which asks for a subvesical duct",
-    "src/anatomy/src/structure_names.cpp": "what segmentations of others call their segments, in many languages",
+    "src/platform/files/src/operation_parameters.cpp": "fields of an operation's parameters: what liver and gallbladder give and take",
+    "src/learn/dataset/src/class_tables.cpp": "classes of public data sets as those write them",
+    "src/picture/view/src/labels.cpp": "classes of segmentation as files and Python write them",
+    "src/procedure/cholecystectomy/src/triplet.cpp": "targets as CholecT50 writes them",
+    "src/program/presenter/src/patient_list.cpp": "parameters of a generated patient whose findings a list shows",
+    "src/imaging/anatomy/src/patient_parameters.cpp": "parameters of a generated patient, one of which asks for a subvesical duct",
+    "src/imaging/anatomy/src/structure_names.cpp": "what segmentations of others call their segments, in many languages",
 }
 
 # In the table, and words of other things as well: "held" of a grasp, "other" of anything.

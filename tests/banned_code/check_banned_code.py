@@ -198,11 +198,20 @@ def compare(found, allowed, kinds):
     return complaints
 
 
+def folder_of(source, module):
+    """src/WING/MODULE"""
+    folders = list((source / "src").glob(f"*/{module}"))
+    if len(folders) != 1:
+        raise SystemExit(f"{source}: there are {len(folders)} folders of the module {module} in the wings of src/")
+    return folders[0].relative_to(source)
+
+
 def check_imports(source, build):
     modules = find_modules((source / "tools/layers.txt").read_text())
-    libraries = [(module, build / "src" / module / f"libtrocar_{module}.a") for module in modules]
+    folders = {module: folder_of(source, module) for module in modules}
+    libraries = [(module, build / folders[module] / f"libtrocar_{module}.a") for module in modules]
     missing = [module for module, library in libraries if not library.exists()
-               and "SOURCES" in (source / "src" / module / "CMakeLists.txt").read_text()]
+               and "SOURCES" in (source / folders[module] / "CMakeLists.txt").read_text()]
     if missing:
         return [f"{build}: the libraries of {', '.join(missing)} are not built"]
     libraries = [(module, library) for module, library in libraries if library.exists()]
@@ -226,7 +235,7 @@ def check_imports(source, build):
 def check_sources(source):
     modules, found, looked_at = find_modules((source / "tools/layers.txt").read_text()), {}, 0
     for module in modules:
-        for path in sorted((source / "src" / module).rglob("*")):
+        for path in sorted((source / folder_of(source, module)).rglob("*")):
             name = path.relative_to(source).as_posix()
             # a program of its own that hands over pictures and volumes is an engine's part as well
             if path.suffix not in (".cpp", ".h", ".cu") or "/test/" in name or "/bench/" in name:

@@ -19,7 +19,7 @@ architecture=$(uname -m)
 # elementary_bits COMPILER FLAG...: what the program prints
 elementary_bits() {
   "$1" -std=c++20 -fno-math-errno -fno-trapping-math -w "-I$source_folder"/src/{math/include,math/src,math/test,core/include} \
-    "${@:2}" "$source_folder"/tests/bits/elementary_bits.cpp "$source_folder"/src/math/src/elementary_*.cpp -o "$scratch/elementary_bits"
+    "${@:2}" "$source_folder"/tests/bits/elementary_bits.cpp "$source_folder"/src/engine/math/src/elementary_*.cpp -o "$scratch/elementary_bits"
   "$scratch/elementary_bits"
 }
 mkdir -p "$scratch"
@@ -48,8 +48,8 @@ fi
 # what CMakeLists.txt gives them, but for the optimisation
 flags=(-std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w)
 solver_sources() {
-  printf '%s\n' "$1"/tests/bits/solve_bits.cpp "$1"/src/tissue/src/*.cpp "$1"/src/core/src/{assert,simd_level,state_archive}.cpp \
-    "$1"/src/math/src/{pose,elementary_*}.cpp "$1"/src/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp
+  printf '%s\n' "$1"/tests/bits/solve_bits.cpp "$1"/src/engine/tissue/src/*.cpp "$1"/src/platform/host/src/{assert,simd_level,state_archive}.cpp \
+    "$1"/src/engine/math/src/{pose,elementary_*}.cpp "$1"/src/engine/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp
 }
 # solve_bits SOURCES FOLDER COMPILER FLAG...: compiles as many files at a time as there are processors, and prints what the program does
 solve_bits() {

@@ -11,10 +11,10 @@ shift 2
 processors=("${@:-wasm}")
 [ $# -gt 0 ] || processors=(wasm aarch64)
 
-tissue=$source_folder/src/tissue
-elementary=("$source_folder"/tests/bits/elementary_bits.cpp "$source_folder"/src/math/src/elementary_*.cpp)
-solvers=("$source_folder"/tests/bits/solve_bits.cpp "$tissue"/src/*.cpp "$source_folder"/src/core/src/{assert,simd_level,state_archive}.cpp
-  "$source_folder"/src/math/src/{pose,elementary_*}.cpp "$source_folder"/src/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp)
+tissue=$source_folder/src/engine/tissue
+elementary=("$source_folder"/tests/bits/elementary_bits.cpp "$source_folder"/src/engine/math/src/elementary_*.cpp)
+solvers=("$source_folder"/tests/bits/solve_bits.cpp "$tissue"/src/*.cpp "$source_folder"/src/platform/host/src/{assert,simd_level,state_archive}.cpp
+  "$source_folder"/src/engine/math/src/{pose,elementary_*}.cpp "$source_folder"/src/engine/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp)
 flags=(-std=c++20 -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w)
 for module in tissue geometry math core; do flags+=(-I"$source_folder/src/$module/include"); done
 for folder in tissue/src math/src math/test; do flags+=(-I"$source_folder/src/$folder"); done

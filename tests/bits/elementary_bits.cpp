@@ -8,6 +8,6 @@ int main() {
   using namespace trocar;
   for (const math::ElementaryFunction& function : math::kElementaryFunctions)
     std::printf("%s %s\n", function.name,
-                core::HashText(math::HashValues(function, math::kHashedArguments)).c_str());
+                base::HashText(math::HashValues(function, math::kHashedArguments)).c_str());
   return 0;
 }

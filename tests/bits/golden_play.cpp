@@ -7,7 +7,10 @@
 #include <utility>
 
 #include "trocar/anatomy/generate_patient.h"
-#include "trocar/anatomy/patient.h"
+#include "trocar/files/patient_file.h"
+#include "trocar/files/scene_file.h"
+#include "trocar/files/task_file.h"
+#include "trocar/patient/patient.h"
 #include "trocar/scene/task.h"
 
 namespace trocar::bits {
@@ -21,42 +24,42 @@ std::string OptionOf(const std::vector<std::string>& arguments, const std::strin
   return {};
 }
 
-core::Error NotUnderstood(const std::string& golden) {
-  return {core::ErrorCode::kUsage,
+base::Error NotUnderstood(const std::string& golden) {
+  return {base::ErrorCode::kUsage,
           "golden " + golden + ": scene_bits plays neither such a command nor such a name"};
 }
 
 /// The folder of a patient that is generated, written as `trocar anatomy generate` writes it.
-core::Result<fs::path> WriteGeneratedPatient(std::uint64_t seed, const fs::path& scratch) {
+base::Result<fs::path> WriteGeneratedPatient(std::uint64_t seed, const fs::path& scratch) {
   const auto patient = anatomy::GeneratePatient(seed);
   if (!patient.ok()) return patient.error();
   const fs::path folder = scratch / ("patient_" + std::to_string(seed));
   fs::remove_all(folder);
   fs::create_directories(scratch);
-  if (const auto written = anatomy::WritePatient(folder, *patient); !written.ok()) return written.error();
+  if (const auto written = files::WritePatient(folder, *patient); !written.ok()) return written.error();
   return folder;
 }
 
-core::Result<scene::Scene> ReadGoldenScene(const Golden& golden, const fs::path& repository,
+base::Result<scene::Scene> ReadGoldenScene(const Golden& golden, const fs::path& repository,
                                            const fs::path& patient_folder) {
-  if (!golden.scene.empty()) return scene::ReadScene(repository / golden.scene, patient_folder);
+  if (!golden.scene.empty()) return files::ReadScene(repository / golden.scene, patient_folder);
   constexpr std::uint64_t kSeed = 1;  // of `trocar play`
-  auto operation = scene::FindOperation(golden.task, patient_folder, kSeed);
+  auto operation = files::FindOperation(golden.task, patient_folder, kSeed);
   if (!operation.ok()) return operation.error();
   if (*operation) return std::move(**operation);
-  const auto path = scene::FindTask(golden.task);
+  const auto path = files::FindTask(golden.task);
   if (!path.ok()) return path.error();
-  return scene::ReadTask(*path, {.seed = kSeed, .patient_folder = patient_folder});
+  return files::ReadTask(*path, {.seed = kSeed, .patient_folder = patient_folder});
 }
 
 }  // namespace
 
-core::Result<std::vector<Golden>> ReadGoldens(const fs::path& repository) {
+base::Result<std::vector<Golden>> ReadGoldens(const fs::path& repository) {
   const fs::path file = repository / "tests" / "golden" / "goldens.json";
   std::ifstream stream(file);
   const auto document = nlohmann::json::parse(stream, nullptr, false);
   if (document.is_discarded() || !document.contains("goldens"))
-    return core::Error{core::ErrorCode::kFileMissing, "no goldens can be read from " + file.string()};
+    return base::Error{base::ErrorCode::kFileMissing, "no goldens can be read from " + file.string()};
   std::vector<Golden> goldens;
   for (const auto& entry : document.at("goldens")) {
     Golden golden;
@@ -82,7 +85,7 @@ core::Result<std::vector<Golden>> ReadGoldens(const fs::path& repository) {
   return goldens;
 }
 
-core::Result<GoldenPlay> GoldenPlay::Make(const Golden& golden, const fs::path& repository,
+base::Result<GoldenPlay> GoldenPlay::Make(const Golden& golden, const fs::path& repository,
                                           const fs::path& scratch, int threads) {
   fs::path patient_folder;
   if (golden.has_generated_patient) {

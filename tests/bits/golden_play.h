@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "trocar/agent/surgeon.h"
-#include "trocar/core/result.h"
+#include "trocar/base/result.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/simulation.h"
 
@@ -33,14 +33,14 @@ inline std::ostream& operator<<(std::ostream& stream, const Golden& golden) {
 }
 
 /// \param repository  that holds tests/golden/goldens.json
-core::Result<std::vector<Golden>> ReadGoldens(const std::filesystem::path& repository);
+base::Result<std::vector<Golden>> ReadGoldens(const std::filesystem::path& repository);
 
 /// A golden while it is played.
 class GoldenPlay {
  public:
   /// \param scratch  folder for a patient that is generated
   /// \param threads  of the solver
-  static core::Result<GoldenPlay> Make(const Golden& golden, const std::filesystem::path& repository,
+  static base::Result<GoldenPlay> Make(const Golden& golden, const std::filesystem::path& repository,
                                        const std::filesystem::path& scratch, int threads);
 
   bool IsOver() const;

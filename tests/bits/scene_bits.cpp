@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "golden_play.h"
-#include "trocar/core/state_hash.h"
+#include "trocar/base/state_hash.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/replay.h"
 
@@ -57,7 +57,7 @@ int Fail(const std::string& message) {
   return 2;
 }
 
-core::Status Play(const bits::Golden& golden, const std::filesystem::path& repository,
+base::Status Play(const bits::Golden& golden, const std::filesystem::path& repository,
                   const Options& options) {
   const auto scratch = std::filesystem::temp_directory_path() / ("scene_bits_" + std::to_string(getpid()));
   auto play = bits::GoldenPlay::Make(golden, repository, scratch, options.threads);
@@ -66,7 +66,7 @@ core::Status Play(const bits::Golden& golden, const std::filesystem::path& repos
   const simulation::Simulation& simulation = play->GetSimulation();
   const auto print = [&](std::uint64_t tick) {
     std::printf("%s %llu %s\n", golden.name.c_str(), static_cast<unsigned long long>(tick),
-                core::HashText(simulation.Hash()).c_str());
+                base::HashText(simulation.Hash()).c_str());
     std::fflush(stdout);
   };
   print(0);
@@ -87,7 +87,7 @@ int PlayAll(const std::filesystem::path& repository, const Options& options) {
   for (const bits::Golden& golden : *goldens) {
     if (!IsChosen(golden, options)) continue;
     has_played = true;
-    if (const core::Status played = Play(golden, repository, options); !played.ok())
+    if (const base::Status played = Play(golden, repository, options); !played.ok())
       return Fail(golden.name + ": " + played.error().Text());
   }
   return has_played ? 0 : Fail("no golden has such a name or lane");
@@ -113,7 +113,7 @@ int VerifyAll(const std::vector<std::string>& files) {
     } else {
       std::printf("%s verified, %llu ticks, %s\n", name.c_str(),
                   static_cast<unsigned long long>(verified->ticks),
-                  core::HashText(replay->GetSimulation().Hash()).c_str());
+                  base::HashText(replay->GetSimulation().Hash()).c_str());
     }
     std::fflush(stdout);
   }

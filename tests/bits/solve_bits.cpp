@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <string>
 
-#include "trocar/core/state_hash.h"
+#include "trocar/base/state_hash.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/tissue/conservation.h"
@@ -74,7 +74,7 @@ std::uint64_t CalcFingerprint(Sheet sheet, SolverKind kind, SimdLevel level) {
   settings.max_iterations = 60;
   const ContactSpring contact{{70, 71, 91}, {0.25, 0.25, 0.5}, {0, 0, 1}, 0.02, 300.0};
   TissueLoad load{.gravity = {0.3, -0.5, -9.81}};
-  trocar::core::StateHash hash;
+  trocar::base::StateHash hash;
   for (int solve = 0; solve < 3; ++solve) {
     if (solve == 1) {
       sheet.state.condition[150] = NodeCondition::kPrescribed;
@@ -114,7 +114,7 @@ std::uint64_t CalcSacFingerprint(SimdLevel level) {
   EquilibriumSolver solver(model, {.threads = 2, .simd = level});
   SolverSettings settings;
   settings.kind = SolverKind::kNewtonMultigrid;
-  trocar::core::StateHash hash;
+  trocar::base::StateHash hash;
   for (int tick = 0; tick < 8; ++tick) {
     for (std::uint32_t i = 0; i < n; ++i) {
       const double height = mesh.positions[i].y / kRadius;

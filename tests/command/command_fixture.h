@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "trocar/core/safe_file.h"
+#include "trocar/host/safe_file.h"
 #include "trocar_test/process.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -26,10 +26,10 @@ class Command : public testing::Test {
   static std::string Source(const std::string& path) { return std::string(TROCAR_SOURCE_DIR) + "/" + path; }
   std::string Path(const std::string& name) const { return folder_.Path() / name; }
   void Write(const std::string& name, const std::string& text) const {
-    ASSERT_TRUE(core::WriteFile(folder_.Path() / name, text).ok());
+    ASSERT_TRUE(host::WriteFile(folder_.Path() / name, text).ok());
   }
   std::string Read(const std::string& path) const {
-    auto text = core::ReadFile(path);
+    auto text = host::ReadFile(path);
     EXPECT_TRUE(text.ok()) << text.error().Text();
     return text.ok() ? *text : std::string();
   }

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command_fixture.h"
-#include "trocar/core/error_codes.h"
-#include "trocar/core/simd_choice.h"
+#include "trocar/base/error_codes.h"
+#include "trocar/base/simd_choice.h"
 
 namespace trocar {
 namespace {
@@ -64,7 +64,7 @@ TEST_F(CommandLine, ErrorsAreThoseOfTheTableAndOfThePage) {
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.out, Read(Source("docs/errors.md"))) << "run: trocar errors --markdown > docs/errors.md";
   const std::string table = Run({"errors"}).out;
-  for (const core::ErrorEntry& entry : core::ErrorTable().subspan(1)) {
+  for (const base::ErrorEntry& entry : base::ErrorTable().subspan(1)) {
     EXPECT_THAT(table, HasSubstr(std::string(entry.text)));
   }
 }
@@ -104,7 +104,7 @@ TEST_F(CommandLine, DoctorSaysWhichVectorInstructionsRun) {
     return std::string();
   };
   EXPECT_THAT(ask({"TROCAR_SIMD=baseline"}), testing::StartsWith("baseline; "));
-  EXPECT_THAT(ask({}), testing::EndsWith(std::string(core::SimdLevelName(core::FindWidestSimdLevel()))));
+  EXPECT_THAT(ask({}), testing::EndsWith(std::string(base::SimdLevelName(base::FindWidestSimdLevel()))));
   const auto refused = Run({"doctor"}, {"TROCAR_SIMD=avx9"});
   ExpectError(refused, "E-CLI-001", 2);
   EXPECT_THAT(refused.err, HasSubstr("baseline"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file gpu_test.cpp  The command on computers without a GPU, with one, and with one that fails. The GPU is
-/// the stand-in driver of src/tissue_cuda/test.
+/// the stand-in driver of src/platform/tissue_cuda/test.
 #include <nlohmann/json.hpp>
 
 #include "command_fixture.h"

@@ -20,7 +20,12 @@
 #include "scene/src/script.h"
 #include "store/src/database.h"
 #include "study/src/study_folder.h"
-#include "trocar/anatomy/patient.h"
+#include "trocar/files/operation_level_file.h"
+#include "trocar/files/operation_parameters_file.h"
+#include "trocar/files/patient_file.h"
+#include "trocar/files/scene_file.h"
+#include "trocar/files/task_file.h"
+#include "trocar/patient/patient.h"
 #include "trocar/assessment/attempt.h"
 #include "trocar/assessment/certificate.h"
 #include "trocar/assessment/course.h"
@@ -30,8 +35,8 @@
 #include "trocar/centre/judged_attempt.h"
 #include "trocar/cli/run_command.h"
 #include "trocar/contours/control_points.h"
-#include "trocar/core/json.h"
-#include "trocar/core/safe_file.h"
+#include "trocar/host/json.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/device/device_store.h"
 #include "trocar/presenter/task_page.h"
 #include "trocar/presenter/window_settings.h"
@@ -41,7 +46,7 @@
 #include "trocar/render/looks.h"
 #include "trocar/report/rating.h"
 #include "trocar/report/xapi.h"
-#include "trocar/scene/find_scene.h"
+#include "trocar/files/find_scene.h"
 #include "trocar/scene/operation_level.h"
 #include "trocar/scene/operation_parameters.h"
 #include "trocar/store/attempts.h"
@@ -70,11 +75,11 @@ void Write(const fs::path& path, const std::string& text) {
 }
 
 template <typename T>
-std::string MessageOf(const core::Result<T>& result) {
+std::string MessageOf(const base::Result<T>& result) {
   return result.ok() ? std::string() : result.error().Text();
 }
 
-std::string MessageOf(const std::optional<core::Error>& complaint) {
+std::string MessageOf(const std::optional<base::Error>& complaint) {
   return complaint ? complaint->Text() : std::string();
 }
 
@@ -189,8 +194,8 @@ std::string PrintInfo(const fs::path& path) {
   ::close(before), ::close(file);
   if (status != 0) return "exit status " + std::to_string(status);
   if (fs::file_size(printed) > 40 * fs::file_size(path) + 10'000) ::abort();
-  const auto text = core::ReadFile(printed);
-  auto json = core::ParseJson<nlohmann::json>(*text, "what was printed", core::kLargeJson);
+  const auto text = host::ReadFile(printed);
+  auto json = host::ParseJson<nlohmann::json>(*text, "what was printed", host::kLargeJson);
   if (!json.ok()) ::abort();
   return json->value("outcome_unreadable", "");
 }
@@ -234,7 +239,7 @@ store::Place MakePlace(const fs::path& folder) {
 
 /// An attempt in the store whose outcome gets past every check, as one of an older version did: the export holds it.
 Feed OpenExport(const fs::path& folder) {
-  auto store = std::make_shared<core::Result<store::Store>>(store::Store::Open(MakePlace(folder)));
+  auto store = std::make_shared<base::Result<store::Store>>(store::Store::Open(MakePlace(folder)));
   if (!store->ok()) return [](const std::string&) -> std::string { ::abort(); };
   const auto person = store::AddPerson(**store, store::Viewer::Owner(), store::Role::kTrainee);
   store::Attempt attempt = MakeAttempt();
@@ -245,14 +250,14 @@ Feed OpenExport(const fs::path& folder) {
     fs::remove_all(out);
     const auto exported = store::ExportPerson(**store, store::Viewer::Owner(), trainee, out);
     if (!exported.ok()) return exported.error().Text();
-    const auto json = core::ReadFile(out / "person.json", std::size_t{1} << 30);
+    const auto json = host::ReadFile(out / "person.json", std::size_t{1} << 30);
     if (!json.ok() || json->size() > 40 * text.size() + 10'000) ::abort();
     return {};
   };
 }
 
 Feed OpenAdding(const fs::path& folder) {
-  auto store = std::make_shared<core::Result<store::Store>>(store::Store::Open(MakePlace(folder)));
+  auto store = std::make_shared<base::Result<store::Store>>(store::Store::Open(MakePlace(folder)));
   return [store, number = std::make_shared<int>(0)](const std::string& text) {
     store::Attempt attempt = MakeAttempt();
     attempt.recording_id = std::to_string(++*number);
@@ -262,7 +267,7 @@ Feed OpenAdding(const fs::path& folder) {
 }
 
 Feed OpenImport(const fs::path& folder) {
-  auto store = std::make_shared<core::Result<store::Store>>(store::Store::Open(MakePlace(folder)));
+  auto store = std::make_shared<base::Result<store::Store>>(store::Store::Open(MakePlace(folder)));
   return [store, path = folder / "given.json"](const std::string& text) {
     Write(path, text);
     return MessageOf(store::Import(**store, store::Viewer::Owner(), path));
@@ -270,7 +275,7 @@ Feed OpenImport(const fs::path& folder) {
 }
 
 Feed OpenSpool(const fs::path& folder) {
-  auto store = std::make_shared<core::Result<store::Store>>(store::Store::Open(MakePlace(folder)));
+  auto store = std::make_shared<base::Result<store::Store>>(store::Store::Open(MakePlace(folder)));
   return [store, place = MakePlace(folder)](const std::string& text) -> std::string {
     fs::create_directories(place.SpoolFolder());
     Write(place.SpoolFolder() / "given.json", text);
@@ -305,7 +310,7 @@ Feed OpenPatient(const fs::path& folder) {
   }
   return [folder](const std::string& text) {
     Write(folder / "patient.json", text);
-    return MessageOf(anatomy::ReadPatient(folder));
+    return MessageOf(files::ReadPatient(folder));
   };
 }
 
@@ -339,10 +344,10 @@ Feed OpenValidityStudy(const fs::path& folder) {
   };
 }
 
-core::Status ReadMaterialOf(const fs::path& path) {
-  const auto scene = core::JsonDocument::Parse(
+base::Status ReadMaterialOf(const fs::path& path) {
+  const auto scene = host::JsonDocument::Parse(
       R"({"materials": [{"organ": "liver", "file": ")" + path.filename().string() + "\"}]}", "scene");
-  const auto read = scene::ReadMaterials(scene->Root(), path.parent_path());
+  const auto read = files::ReadMaterials(scene->Root(), path.parent_path());
   if (!read.ok()) return read.error();
   return scene->Check();
 }
@@ -353,48 +358,48 @@ std::vector<Door> MakeDoors() {
   using std::string;
   return {
       {"outlines",
-       {"src/contours/src/control_points.cpp ParseControlPoints"},
+       {"src/imaging/contours/src/control_points.cpp ParseControlPoints"},
        OfText([](const string& text) {
          return contours::ParseControlPoints(text, "given", contours::Completeness::kDraft);
        }),
        "assets/patients/visible-human-male/control_points.json"},
       {"names of labels",
-       {"src/anatomy/src/label_names.cpp ReadJsonTable"},
+       {"src/imaging/anatomy/src/label_names.cpp ReadJsonTable"},
        OfFile(anatomy::ReadLabelNames),
        R"({"labels": {"background": 0, "liver": 1, "gallbladder": [1, 2]}, "regions": {}})"},
       {"patient",
-       {"src/anatomy/src/patient.cpp ReadPatientUnchecked"},
+       {"src/platform/files/src/patient.cpp ReadPatientUnchecked"},
        OpenPatient,
        "assets/patients/visible-human-male/patient/patient.json",
        false,
        20},
       {"attempts of experts",
-       {"src/assessment/src/attempt.cpp ReadAttempts"},
+       {"src/judge/assessment/src/attempt.cpp ReadAttempts"},
        OfFile(assessment::ReadAttempts),
        assessment::FormatAttempts({MakeExpertsAttempt()})},
-      {"certificate", {"src/assessment/src/certificate.cpp ReadCertificate"}, OfText([](const string& text) {
+      {"certificate", {"src/judge/assessment/src/certificate.cpp ReadCertificate"}, OfText([](const string& text) {
          return assessment::ReadCertificate(text, "given", "");
        })},
       {"course",
-       {"src/assessment/src/course_file.cpp ReadCourse"},
+       {"src/judge/assessment/src/course_file.cpp ReadCourse"},
        OfFile([](const fs::path& path) { return assessment::ReadCourse(path); }),
        "assets/courses/cholecystectomy.json",
        false,
        60},
       {"operation of a course",
-       {"src/assessment/src/course_file.cpp ReadOperationOf"},
+       {"src/judge/assessment/src/course_file.cpp ReadOperationOf"},
        OfData("scenes/cholecystectomy.json",
               [] { return assessment::ReadCourse(kRoot / "assets/courses/cholecystectomy.json"); })},
-      {"exam", {"src/assessment/src/exam.cpp ReadExam"}, OfFile(assessment::ReadExam)},
-      {"published exam", {"src/assessment/src/exam.cpp CheckPublished"}, OfFile([](const fs::path& path) {
+      {"exam", {"src/judge/assessment/src/exam.cpp ReadExam"}, OfFile(assessment::ReadExam)},
+      {"published exam", {"src/judge/assessment/src/exam.cpp CheckPublished"}, OfFile([](const fs::path& path) {
          return assessment::CheckPublished(path, {});
        })},
       {"thresholds",
-       {"src/assessment/src/proficiency_file.cpp ReadProficiency"},
+       {"src/judge/assessment/src/proficiency_file.cpp ReadProficiency"},
        OfFile(assessment::ReadProficiency),
        "assets/proficiency/cholecystectomy.json"},
       {"outcome of a recording, judged",
-       {"src/record/src/outcome.cpp ReadObject"},
+       {"src/judge/record/src/outcome.cpp ReadObject"},
        [](const fs::path& folder) -> Feed {
          return [path = folder / "given.trocar"](const string& text) {
            Write(path, WithOutcome(text));
@@ -404,7 +409,7 @@ std::vector<Door> MakeDoors() {
        R"({"seconds": 12.5, "task": {"phase": "completed", "score": 80.5}, "operation": {"completed": true}})",
        true},
       {"outcome of a recording, printed",
-       {"src/cli/src/record_command.cpp InfoJson"},
+       {"src/program/cli/src/record_command.cpp InfoJson"},
        [](const fs::path& folder) -> Feed {
          return [path = folder / "given.trocar"](const string& text) {
            Write(path, WithOutcome(text));
@@ -414,18 +419,18 @@ std::vector<Door> MakeDoors() {
        R"({"seconds": 12.5, "task": {"phase": "completed", "score": 80.5, "errors": [1, 2]}})",
        true},
       {"outcome of a recording, in a list",
-       {"src/record/src/recording_list.cpp DescribeOutcome"},
+       {"src/judge/record/src/recording_list.cpp DescribeOutcome"},
        OfTaking([](const string& text) { return !record::DescribeOutcome(text).empty(); }),
        R"({"seconds": 12.5, "task": {"phase": "completed", "score": 80.5}, "operation": {"completed": true}})"},
       {"description of a recording",
-       {"src/record/src/recording_json.cpp Parse"},
+       {"src/judge/record/src/recording_json.cpp Parse"},
        [](const fs::path&) -> Feed {
          return
              [](const string& text) { return ReadBytes(MakeRecording(text, "[]", record::WriteEnding({}))); };
        },
        record::WriteDescription(MakeDescription())},
       {"events of a recording",
-       {"src/record/src/recording_json.cpp Parse"},
+       {"src/judge/record/src/recording_json.cpp Parse"},
        [](const fs::path&) -> Feed {
          return [](const string& text) {
            return ReadBytes(
@@ -434,7 +439,7 @@ std::vector<Door> MakeDoors() {
        },
        R"([{"tick": 1, "kind": "grasped", "about": "", "hand": 1, "error": true}])"},
       {"ending of a recording",
-       {"src/record/src/recording_json.cpp Parse"},
+       {"src/judge/record/src/recording_json.cpp Parse"},
        [](const fs::path&) -> Feed {
          return [](const string& text) {
            return ReadBytes(MakeRecording(record::WriteDescription(MakeDescription()), "[]", text));
@@ -442,7 +447,7 @@ std::vector<Door> MakeDoors() {
        },
        record::WriteEnding({})},
       {"poses of a haptic service",
-       {"src/device/src/haply/haply_messages.cpp Parse"},
+       {"src/hands/device/src/haply/haply_messages.cpp Parse"},
        OfTaking([](const string& text) {
          device::haply::State state;
          return device::haply::ParseState(text, state) && !state.devices.empty();
@@ -450,7 +455,7 @@ std::vector<Door> MakeDoors() {
        R"({"inverse3": [{"device_id": "a", "state": {"cursor_position": {"x": 0, "y": 0, "z": 0}}}],
            "wireless_verse_grip": [{"state": {"orientation": {"w": 1, "x": 0, "y": 0, "z": 0}, "buttons": {"a": true}}}]})"},
       {"forces for a haptic service",
-       {"src/device/src/haply/haply_messages.cpp Parse"},
+       {"src/hands/device/src/haply/haply_messages.cpp Parse"},
        OfTaking([](const string& text) {
          std::vector<string> ids;
          std::array<math::Vec3, device::haply::kMaxDevices> forces;
@@ -458,121 +463,121 @@ std::vector<Door> MakeDoors() {
        }),
        R"({"inverse3": [{"device_id": "a", "commands": {"set_cursor_force": {"values": {"x": 0, "y": 0, "z": 0}}}}]})"},
       {"settings of devices",
-       {"src/device/src/calibration/device_store.cpp LoadDeviceStore"},
+       {"src/hands/device/src/calibration/device_store.cpp LoadDeviceStore"},
        OfFile([](const fs::path& path) { return device::LoadDeviceStore(path).complaint; })},
       {"demonstration",
-       {"src/presenter/src/task_page.cpp AddDemonstration"},
+       {"src/program/presenter/src/task_page.cpp AddDemonstration"},
        OfData("scenes/demonstration.json",
               [] { return presenter::LoadTaskPage(presenter::TaskSection::kAll, {}); })},
       {"settings of the window",
-       {"src/presenter/src/window_settings.cpp LoadWindowSettings"},
+       {"src/program/presenter/src/window_settings.cpp LoadWindowSettings"},
        OfFile([](const fs::path& path) { return presenter::LoadWindowSettings(path).complaint; })},
       {"settings of the sound",
-       {"src/presenter/src/window_sound.cpp LoadSoundSettings"},
+       {"src/program/presenter/src/window_sound.cpp LoadSoundSettings"},
        OfFile([](const fs::path& path) { return presenter::LoadSoundSettings(path).complaint; })},
       {"rehearsal",
-       {"src/rehearsal/src/rehearsal_state.cpp LoadRehearsal"},
+       {"src/program/rehearsal/src/rehearsal_state.cpp LoadRehearsal"},
        OfFile(rehearsal::LoadRehearsal)},
       {"looks",
-       {"src/render/src/looks.cpp ReadLooks"},
+       {"src/picture/render/src/looks.cpp ReadLooks"},
        OfFile(render::ReadLooks),
        "assets/looks/laparoscope.json"},
       {"colours of a patient",
-       {"src/view/src/patient_colours.cpp ReadPatientColours"},
+       {"src/picture/view/src/patient_colours.cpp ReadPatientColours"},
        OfFile(view::ReadPatientColours),
        "assets/looks/patient.json"},
       {"form of a rating",
-       {"src/report/src/rating.cpp ReadRatingForm"},
+       {"src/judge/report/src/rating.cpp ReadRatingForm"},
        OfFile(report::ReadRatingForm),
        "assets/rating/osats.json"},
-      {"rating", {"src/report/src/rating.cpp ReadRating"}, OfFile(report::ReadRating)},
+      {"rating", {"src/judge/report/src/rating.cpp ReadRating"}, OfFile(report::ReadRating)},
       {"statements of learning that wait",
-       {"src/report/src/xapi.cpp ReadStatement", "src/report/src/xapi.cpp FindAccountName"},
+       {"src/judge/report/src/xapi.cpp ReadStatement", "src/judge/report/src/xapi.cpp FindAccountName"},
        OpenQueue,
        R"({"id": "given", "actor": {"account": {"name": "nobody"}}})"},
-      {"scene of a text", {"src/scene/src/find_scene.cpp ParseScene"}, OfText([](const string& text) {
-         return scene::ParseScene(text, kRoot / "scenes/given.json");
+      {"scene of a text", {"src/platform/files/src/find_scene.cpp ParseScene"}, OfText([](const string& text) {
+         return files::ParseScene(text, kRoot / "scenes/given.json");
        })},
       {"scene of a file",
-       {"src/scene/src/operation_level.cpp ParsePatched"},
-       OfFile([](const fs::path& path) { return scene::ReadScene(path); })},
+       {"src/platform/files/src/operation_level.cpp ParsePatched"},
+       OfFile([](const fs::path& path) { return files::ReadScene(path); })},
       {"operation of a file",
-       {"src/scene/src/scene.cpp FindOperation"},
-       OfFile([](const fs::path& path) -> core::Status {
-         const auto found = scene::FindOperation(path.string(), {}, 1, "normal");
+       {"src/platform/files/src/scene.cpp FindOperation"},
+       OfFile([](const fs::path& path) -> base::Status {
+         const auto found = files::FindOperation(path.string(), {}, 1, "normal");
          if (!found.ok()) return found.error();
-         return *found ? core::Status() : core::Error{core::ErrorCode::kUnknownName, kNothing};
+         return *found ? base::Status() : base::Error{base::ErrorCode::kUnknownName, kNothing};
        })},
       {"material",
-       {"src/scene/src/material_file.cpp ReadMaterialFile"},
+       {"src/platform/files/src/material_file.cpp ReadMaterialFile"},
        OfFile(ReadMaterialOf),
        "assets/materials/liver.json"},
       {"levels of operations",
-       {"src/scene/src/operation_level.cpp ReadOperationLevels"},
-       OfFile(scene::ReadOperationLevels),
+       {"src/platform/files/src/operation_level.cpp ReadOperationLevels"},
+       OfFile(files::ReadOperationLevels),
        "assets/operation/levels.json"},
       {"parameters of operations",
-       {"src/scene/src/operation_level.cpp ParsePatched"},
-       OfFile([](const fs::path& path) { return scene::ReadOperationParameters(path, "{}"); }),
+       {"src/platform/files/src/operation_level.cpp ParsePatched"},
+       OfFile([](const fs::path& path) { return files::ReadOperationParameters(path, "{}"); }),
        "assets/operation/parameters.json"},
       {"what a level changes",
-       {"src/scene/src/operation_level.cpp ParsePatched"},
+       {"src/platform/files/src/operation_level.cpp ParsePatched"},
        OfText([](const string& text) {
-         return scene::ReadOperationParameters(kRoot / "assets/operation/parameters.json",
+         return files::ReadOperationParameters(kRoot / "assets/operation/parameters.json",
                                                text.empty() ? " " : text);
        }),
        kPatch},
       {"script",
-       {"src/scene/src/script.cpp ReadScript"},
-       OfFile([](const fs::path& path) -> core::Status {
-         const auto patient = anatomy::ReadPatient(kRoot / "assets/patients/visible-human-male/patient");
+       {"src/platform/files/src/script.cpp ReadScript"},
+       OfFile([](const fs::path& path) -> base::Status {
+         const auto patient = files::ReadPatient(kRoot / "assets/patients/visible-human-male/patient");
          if (!patient.ok()) return patient.error();
-         const auto script = scene::ReadScript(path, *patient);
-         return script.ok() ? core::Status() : script.error();
+         const auto script = files::ReadScript(path, *patient);
+         return script.ok() ? base::Status() : script.error();
        }),
        "scenes/demonstration.script.json"},
       {"task",
-       {"src/scene/src/task_file.cpp ParseTask"},
-       OfFile([](const fs::path& path) { return scene::ReadTask(path); }),
+       {"src/platform/files/src/task_file.cpp ParseTask"},
+       OfFile([](const fs::path& path) { return files::ReadTask(path); }),
        "scenes/tasks/peg_transfer.json",
        false,
        60},
       {"list of tasks",
-       {"src/scene/src/task_file.cpp ListTasks"},
-       OfData("scenes/tasks/given.json", [] { return scene::ListTasks(); }),
+       {"src/platform/files/src/task_file.cpp ListTasks"},
+       OfData("scenes/tasks/given.json", [] { return files::ListTasks(); }),
        "scenes/tasks/peg_transfer.json",
        false,
        60},
       {"outcome for the store",
-       {"src/store/src/attempts.cpp CheckOutcome"},
+       {"src/judge/store/src/attempts.cpp CheckOutcome"},
        OpenAdding,
        "{\"task\": {\"phase\": \"x\"}}",
        true},
       {"outcome in the store",
-       {"src/store/src/privacy.cpp DescribeOne"},
+       {"src/judge/store/src/privacy.cpp DescribeOne"},
        OpenExport,
        "{\"task\": {\"phase\": \"x\"}}",
        true},
       {"names of people",
-       {"src/store/src/names.cpp ReadNames"},
+       {"src/judge/store/src/names.cpp ReadNames"},
        OpenNames,
        R"({"format": "trocar-names", "version": 1, "names": {"T-1": "Ada"}})"},
       {"spool",
-       {"src/store/src/spool.cpp ReadAttemptJson"},
+       {"src/judge/store/src/spool.cpp ReadAttemptJson"},
        OpenSpool,
        store::WriteAttemptJson(MakeAttempt())},
       {"export of a store",
-       {"src/store/src/transfer.cpp Import"},
+       {"src/judge/store/src/transfer.cpp Import"},
        OpenImport,
        R"({"format": "trocar-store", "version": 1, "tables": {"person": [{"id": 1, "pseudonym": "T-1", "role": "trainee", "added_ms": 0}]}})"},
       {"plan of a study",
-       {"src/study/src/plan.cpp ReadPlan"},
+       {"src/program/study/src/plan.cpp ReadPlan"},
        OfFile(study::ReadPlan),
        "samples/studies/stiffness.json"},
       {"folder of a study",
-       {"src/study/src/study_folder.cpp StudyFolder::Begin",
-        "src/study/src/study_folder.cpp StudyFolder::FindResult",
-        "src/study/src/study_folder.cpp StudyFolder::FindFailure"},
+       {"src/program/study/src/study_folder.cpp StudyFolder::Begin",
+        "src/program/study/src/study_folder.cpp StudyFolder::FindResult",
+        "src/program/study/src/study_folder.cpp StudyFolder::FindFailure"},
        OpenStudyFolder,
        R"({"key": "ab0123456789", "outcome": "completed", "state_hash": "0", "numbers": {"a": 1},
                             "plan_sha256": "0", "why": "none"})",
@@ -582,22 +587,22 @@ std::vector<Door> MakeDoors() {
        false,
        10},
       {"rules of the coach",
-       {"src/training/src/coach.cpp ParseCoachRules"},
+       {"src/judge/training/src/coach.cpp ParseCoachRules"},
        OfText([](const string& text) { return training::ParseCoachRules(text, "given"); }),
        "assets/coach/rules.json"},
       {"trace",
-       {"src/training/src/trace_file.cpp ParseTraceJson"},
+       {"src/judge/training/src/trace_file.cpp ParseTraceJson"},
        OfText([](const string& text) { return training::ParseTraceJson(text, "given"); }),
        training::FormatTraceJson(MakeTrace()),
        false,
        150,
        std::size_t{640} << 20},
       {"validity of metrics",
-       {"src/training/src/validity.cpp ParseValidity"},
+       {"src/judge/training/src/validity.cpp ParseValidity"},
        OfText([](const string& text) { return training::ParseValidity(text, "given"); }),
        "assets/validity.json"},
       {"attempts of a validity study",
-       {"bench/src/validity_study.cpp FromJson"},
+       {"src/program/bench/src/validity_study.cpp FromJson"},
        OpenValidityStudy,
        R"({"task": "a", "group": "b", "person": 1, "repeat": 0, "seed": 1, "patient": 0, "phase": "completed",
            "completed": true, "caught": false, "seconds": 1.5, "values": [["m", "left", 0.5]]})",

@@ -6,7 +6,7 @@
 #include <regex>
 #include <sstream>
 
-#include "trocar/core/safe_file.h"
+#include "trocar/host/safe_file.h"
 
 namespace trocar::json_doors {
 namespace {
@@ -78,7 +78,7 @@ std::vector<std::pair<std::string, std::string>> ReadSources(const fs::path& roo
     const fs::path extension = entry.path().extension();
     const std::string name = fs::relative(entry.path(), root).generic_string();
     if ((extension != ".h" && extension != ".cpp") || name.find("/test/") != std::string::npos) continue;
-    const auto text = core::ReadFile(entry.path());
+    const auto text = host::ReadFile(entry.path());
     sources.emplace_back(name, text.ok() ? *text : std::string());
   }
   std::sort(sources.begin(), sources.end());

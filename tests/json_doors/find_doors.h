@@ -10,7 +10,7 @@
 
 namespace trocar::json_doors {
 
-/// Functions of a source that call core's reader: "src/report/src/rating.cpp ReadRating".
+/// Functions of a source that call core's reader: "src/judge/report/src/rating.cpp ReadRating".
 std::set<std::string> FindDoors(const std::string& name, std::string_view source);
 
 /// Lines of a source that parse JSON with the library itself: "src/a.cpp:12: json::parse(text)".

@@ -10,8 +10,8 @@
 #include "doors.h"
 #include "find_doors.h"
 #include "hostile_documents.h"
-#include "trocar/core/printable.h"
-#include "trocar/core/safe_file.h"
+#include "trocar/host/printable.h"
+#include "trocar/host/safe_file.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::json_doors {
@@ -28,12 +28,12 @@ constexpr double kMostSecondsPerMegabyte = 1.0;
 
 /// The reader itself, and what reads back only what this program has just written.
 const std::map<std::string, std::string> kNoDoors = {
-    {"src/core/src/json.cpp JsonDocument::Parse", "the reader"},
-    {"src/core/src/json.cpp JsonDocument::Read", "the reader"},
-    {"src/core/src/json.cpp ParseJson", "the reader"},
-    {"src/core/src/json.cpp ParseJsonEvents", "the reader"},
-    {"src/cli/src/own_json.h ParseOwnJson", "text of another module of this run"},
-    {"src/training/src/metric_definition.cpp DefinitionsDocument", "text that is compiled in"}};
+    {"src/platform/host/src/json.cpp JsonDocument::Parse", "the reader"},
+    {"src/platform/host/src/json.cpp JsonDocument::Read", "the reader"},
+    {"src/platform/host/src/json.cpp ParseJson", "the reader"},
+    {"src/platform/host/src/json.cpp ParseJsonEvents", "the reader"},
+    {"src/program/cli/src/own_json.h ParseOwnJson", "text of another module of this run"},
+    {"src/judge/training/src/metric_definition.cpp DefinitionsDocument", "text that is compiled in"}};
 
 std::set<std::string> FindAllDoors() {
   std::set<std::string> doors;
@@ -46,9 +46,9 @@ std::set<std::string> FindAllDoors() {
 TEST(JsonDoors, NothingButTheReaderParsesJson) {
   for (const char* folder : {"src", "bench", "python", "samples", "fuzz"}) {
     for (const auto& [name, text] : ReadSources(kRepository, folder)) {
-      if (name == "src/core/src/json.cpp") continue;
+      if (name == "src/platform/host/src/json.cpp") continue;
       for (const std::string& parser : FindOwnParsers(name, text))
-        ADD_FAILURE() << parser << "\n  core::ParseJson and core::JsonDocument read within limits";
+        ADD_FAILURE() << parser << "\n  host::ParseJson and host::JsonDocument read within limits";
     }
   }
 }
@@ -60,7 +60,7 @@ TEST(JsonDoors, WhoParsesAloneIsNoticed) {
         "const auto v = json::from_cbor(bytes);", "stream >> json;", "in >> (a_json);", "\"{}\"_json",
         "return basic_json::parse(x);"})
     EXPECT_THAT(FindOwnParsers("f", line), ElementsAre("f:1: " + std::string(line)));
-  for (const char* line : {"core::ParseJson<json>(text)", "// as json::parse does", "std::cout << json;",
+  for (const char* line : {"host::ParseJson<json>(text)", "// as json::parse does", "std::cout << json;",
                            "json::parse_error", "json::exception"})
     EXPECT_THAT(FindOwnParsers("f", line), IsEmpty()) << "the control: " << line;
 }
@@ -80,8 +80,8 @@ TEST(JsonDoors, EachOfTheSourcesIsFed) {
 TEST(JsonDoors, ANewOneIsFound) {
   const std::string source =
       "/// Reads.\ncore::Result<A> ReadA(const fs::path& path) {\n  const auto a =\n      "
-      "core::JsonDocument::Read(path);\n"
-      "}\n\nstd::optional<B> Folder::FindB(int b) const {\n  auto json = core::ParseJson<ordered_json>(text, "
+      "host::JsonDocument::Read(path);\n"
+      "}\n\nstd::optional<B> Folder::FindB(int b) const {\n  auto json = host::ParseJson<ordered_json>(text, "
       "name);\n}\n"
       "int C() {\n  return 1;  // not JsonDocument::Parse(a)\n}\n";
   EXPECT_THAT(FindDoors("f", source), ElementsAre("f Folder::FindB", "f ReadA"));
@@ -89,7 +89,7 @@ TEST(JsonDoors, ANewOneIsFound) {
 
 std::string ReadSample(const Door& door) {
   if (door.sample.empty() || door.sample[0] == '{' || door.sample[0] == '[') return door.sample;
-  const auto text = core::ReadFile(kRepository / door.sample);
+  const auto text = host::ReadFile(kRepository / door.sample);
   EXPECT_TRUE(text.ok()) << text.error().Text();
   return text.ok() ? *text : std::string();
 }
@@ -122,8 +122,8 @@ std::string FindFault(const Door& door, const std::vector<HostileDocument>& docu
         door.most_seconds + kMostSecondsPerMegabyte * 1e-6 * static_cast<double>(documents[i].text.size());
     if (piece.cpu_seconds > most_seconds) faults += at + std::to_string(piece.cpu_seconds) + " s\n";
     if (!documents[i].is_json && !piece.is_refused && !door.takes_any_text) faults += at + "was taken\n";
-    if (core::Printable(piece.message, 1000) != piece.message)
-      faults += at + "its message is not fit to print: " + core::Printable(piece.message) + "\n";
+    if (host::Printable(piece.message, 1000) != piece.message)
+      faults += at + "its message is not fit to print: " + host::Printable(piece.message) + "\n";
   }
   return faults;
 }

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <sstream>
+#include <utility>
 
-#include "trocar/core/safe_file.h"
+#include "trocar/host/safe_file.h"
 
 namespace trocar::layers {
 namespace {
@@ -16,8 +17,6 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 18> kPrivateLibraries = {
     "GL/",  "epoxy/", "EGL/",   "gtk",  "glib",   "gst/", "nlohmann/",     "CLI/",     "itk",
     "gdcm", "png.h",  "spdlog", "tbb/", "oneapi", "cuda", "meshoptimizer", "iostream", "Eigen/"};
-
-constexpr std::string_view kOnly = "only";
 
 /// Where an include in quotes leads: beside the file, or below a folder above it, as with a module's private headers.
 fs::path FindOwnHeader(const fs::path& source, const fs::path& file, std::string_view include) {
@@ -47,42 +46,11 @@ std::string_view FindInclude(std::string_view line) {
 std::vector<std::string> ReadLines(const fs::path& file, const std::string& name,
                                    std::vector<Breach>& breaches) {
   std::vector<std::string> lines;
-  const core::Result<std::string> text = core::ReadFile(file);
+  const base::Result<std::string> text = host::ReadFile(file);
   if (!text) breaches.push_back({name, 0, text.error().Text()});
   std::istringstream stream(text ? *text : std::string());
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
-}
-
-void CheckFile(const Layers& layers, const fs::path& source, const fs::path& path,
-               std::vector<Breach>& breaches) {
-  const std::string name = fs::relative(path, source).generic_string();
-  const std::string module = name.substr(0, name.find('/'));
-  const auto seen = layers.find(module);
-  if (seen == layers.end()) {
-    breaches.push_back({name, 0, "\"" + module + "\" is no module of the layers"});
-    return;
-  }
-  const bool is_public = name.find("/include/") != std::string::npos;
-  int number = 0;
-  for (const std::string& line : ReadLines(path, name, breaches)) {
-    ++number;
-    const std::string_view include = FindInclude(line);
-    if (include.empty()) continue;
-    if (include.starts_with("trocar/")) {
-      const std::string other(include.substr(7, include.find('/', 7) - 7));
-      if (!seen->second.contains(other))
-        breaches.push_back({name, number, module + " must not see " + other});
-    } else if (include.find("../") != std::string_view::npos) {
-      breaches.push_back({name, number, "an include that climbs out of its folder"});
-    } else if (is_public) {
-      const bool is_private =
-          std::any_of(kPrivateLibraries.begin(), kPrivateLibraries.end(),
-                      [&](std::string_view prefix) { return include.starts_with(prefix); });
-      if (is_private)
-        breaches.push_back({name, number, "a public header must not show " + std::string(include)});
-    }
-  }
 }
 
 std::vector<fs::path> FindSources(const fs::path& folder) {
@@ -95,63 +63,155 @@ std::vector<fs::path> FindSources(const fs::path& folder) {
   return files;
 }
 
+/// Wing of each module: the folder of `source` in which it stands.
+std::map<std::string, std::string> FindWings(const fs::path& source) {
+  std::map<std::string, std::string> wings;
+  if (!fs::exists(source)) return wings;
+  for (const fs::directory_entry& wing : fs::directory_iterator(source)) {
+    if (!wing.is_directory()) continue;
+    for (const fs::directory_entry& module : fs::directory_iterator(wing.path())) {
+      if (module.is_directory()) wings[module.path().filename().string()] = wing.path().filename().string();
+    }
+  }
+  return wings;
+}
+
+/// Includes of one file, held against the rules of its module and wing.
+class FileCheck {
+ public:
+  FileCheck(const Rules& rules, std::map<std::string, std::string> wings)
+      : rules_(rules), wings_(std::move(wings)) {}
+
+  /// \param name  of the file in complaints and debts
+  void Check(const fs::path& path, const std::string& name, const std::string& wing, const std::string& module,
+             std::vector<Breach>& breaches) {
+    const auto seen = rules_.modules.find(module);
+    const auto seen_wings = rules_.wings.find(wing);
+    if (seen == rules_.modules.end())
+      return breaches.push_back({name, 0, "\"" + module + "\" is no module of the layers"});
+    if (seen_wings == rules_.wings.end())
+      return breaches.push_back({name, 0, "\"" + wing + "\" is no wing of the layers"});
+    const bool is_public = name.find("/include/") != std::string::npos;
+    const bool is_test = name.find("/test/") != std::string::npos;
+    int number = 0;
+    for (const std::string& line : ReadLines(path, name, breaches)) {
+      ++number;
+      const std::string_view include = FindInclude(line);
+      if (include.starts_with("trocar/")) {
+        const std::string header(include.substr(7));
+        const std::string other = header.substr(0, header.find('/'));
+        const bool is_tested = is_test && Sees(rules_.tests, module, other);
+        if (!seen->second.contains(other) && !is_tested) {
+          breaches.push_back({name, number, module + " must not see " + other});
+          continue;
+        }
+        const auto other_wing = wings_.find(other);
+        if (is_tested || other_wing == wings_.end() || seen_wings->second.contains(other_wing->second)) continue;
+        if (rules_.debts.contains({name, header})) {
+          paid_.insert({name, header});
+        } else {
+          breaches.push_back({name, number, "the wing " + wing + " must not see " + other_wing->second + " (" +
+                                                header + ")"});
+        }
+      } else if (include.find("../") != std::string_view::npos) {
+        breaches.push_back({name, number, "an include that climbs out of its folder"});
+      } else if (is_public) {
+        const bool is_private =
+            std::any_of(kPrivateLibraries.begin(), kPrivateLibraries.end(),
+                        [&](std::string_view prefix) { return include.starts_with(prefix); });
+        if (is_private)
+          breaches.push_back({name, number, "a public header must not show " + std::string(include)});
+      }
+    }
+  }
+
+  /// Debts that were met, so that those that are not are found.
+  const std::set<Debt>& Paid() const { return paid_; }
+
+ private:
+  /// Tests see what is named for them, and what that sees.
+  bool Sees(const std::map<std::string, std::set<std::string>>& tests, const std::string& module,
+            const std::string& other) const {
+    const auto named = tests.find(module);
+    if (named == tests.end()) return false;
+    return std::any_of(named->second.begin(), named->second.end(), [&](const std::string& one) {
+      return rules_.modules.at(one).contains(other);
+    });
+  }
+
+  const Rules& rules_;
+  std::map<std::string, std::string> wings_;
+  std::set<Debt> paid_;
+};
+
 }  // namespace
 
-core::Result<Layers> ParseLayers(std::string_view text) {
-  Layers layers;
+base::Result<Rules> ParseRules(std::string_view text) {
+  Rules rules;
   std::istringstream lines{std::string(text)};
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
     std::istringstream words(line.substr(0, line.find('#')));
-    std::string module, arrow, other;
-    if (!(words >> module) || module == kOnly) continue;
     const auto complain = [&](const std::string& what) {
-      return core::Error{core::ErrorCode::kJsonField, "layers, line " + std::to_string(number) + ": " + what};
+      return base::Error{base::ErrorCode::kJsonField, "layers, line " + std::to_string(number) + ": " + what};
     };
-    if (!(words >> arrow) || arrow != "->") return complain("expected MODULE -> MODULES");
-    if (layers.contains(module)) return complain(module + " has a line already");
-    std::set<std::string> seen = {module};
-    while (words >> other) {
-      const auto found = layers.find(other);
-      if (found == layers.end()) return complain(other + " has no line above this one");
-      seen.insert(found->second.begin(), found->second.end());
+    std::string kind, name, arrow;
+    if (!(words >> kind)) continue;
+    const bool has_kind = kind == "wing" || kind == "tests" || kind == "only" || kind == "owes";
+    if (!has_kind) name = std::exchange(kind, "module");
+    const bool is_layer = kind == "wing" || kind == "module";
+    if ((has_kind && !(words >> name)) || !(words >> arrow) || arrow != (is_layer ? "->" : ":"))
+      return complain(is_layer ? "expected NAME -> NAMES" : "expected " + kind + " NAME : NAMES");
+    std::vector<std::string> others;
+    for (std::string other; words >> other;) others.push_back(other);
+    if (is_layer) {
+      Layers& layers = kind == "wing" ? rules.wings : rules.modules;
+      if (layers.contains(name)) return complain(name + " has a line already");
+      std::set<std::string> seen = {name};
+      for (const std::string& other : others) {
+        const auto found = layers.find(other);
+        if (found == layers.end()) return complain(other + " has no line above this one");
+        seen.insert(found->second.begin(), found->second.end());
+      }
+      layers[name] = std::move(seen);
+    } else if (kind == "tests") {
+      for (const std::string& other : others) {
+        if (!rules.modules.contains(other)) return complain(other + " is no module");
+        rules.tests[name].insert(other);
+      }
+    } else if (kind == "only") {
+      rules.restrictions.push_back({name, {others.begin(), others.end()}});
+    } else {
+      for (const std::string& other : others) rules.debts.insert({name, other});
     }
-    layers[module] = std::move(seen);
   }
-  return layers;
+  return rules;
 }
 
-core::Result<std::vector<Restriction>> ParseRestrictions(std::string_view text) {
-  std::vector<Restriction> restrictions;
-  std::istringstream lines{std::string(text)};
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number) {
-    std::istringstream words(line.substr(0, line.find('#')));
-    std::string only, colon, name;
-    Restriction restriction;
-    if (!(words >> only) || only != kOnly) continue;
-    if (!(words >> restriction.folder >> colon) || colon != ":") {
-      return core::Error{core::ErrorCode::kJsonField,
-                         "layers, line " + std::to_string(number) + ": expected only FOLDER : NAMES"};
-    }
-    while (words >> name) restriction.seen.insert(name);
-    restrictions.push_back(std::move(restriction));
-  }
-  return restrictions;
-}
-
-std::vector<Breach> FindBreaches(const Layers& layers, const fs::path& source) {
+std::vector<Breach> FindBreaches(const Rules& rules, const fs::path& source) {
   std::vector<Breach> breaches;
-  for (const fs::path& file : FindSources(source)) CheckFile(layers, source, file, breaches);
+  FileCheck check(rules, FindWings(source));
+  for (const fs::path& file : FindSources(source)) {
+    const fs::path name = fs::relative(file, source);
+    auto part = name.begin();
+    const std::string wing = (part++)->string(), module = part->string();
+    check.Check(file, name.generic_string(), wing, module, breaches);
+  }
+  for (const Debt& debt : rules.debts) {
+    if (!check.Paid().contains(debt))
+      breaches.push_back({debt.first, 0, "owes " + debt.second + " no more; take it off the list"});
+  }
   return breaches;
 }
 
-std::vector<Breach> FindBreachesOfModule(const Layers& layers, const fs::path& root,
-                                         const std::string& module, int* looked_at) {
+std::vector<Breach> FindBreachesOfModule(const Rules& rules, const fs::path& source, const fs::path& root,
+                                         const std::string& module, const std::string& wing, int* looked_at) {
   const std::vector<fs::path> files = FindSources(root / module);
   if (looked_at != nullptr) *looked_at = static_cast<int>(files.size());
   std::vector<Breach> breaches;
-  for (const fs::path& file : files) CheckFile(layers, root, file, breaches);
+  FileCheck check(rules, FindWings(source));
+  for (const fs::path& file : files)
+    check.Check(file, fs::relative(file, root).generic_string(), wing, module, breaches);
   return breaches;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "trocar/files/scene_file.h"
 #include "trocar/simulation/simulation.h"
 
 int main(int count, char** arguments) {
@@ -13,7 +14,7 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "usage: %s SCENE TICKS\n", arguments[0]);
     return 2;
   }
-  auto read = scene::ReadScene(arguments[1]);
+  auto read = files::ReadScene(arguments[1]);
   if (!read.ok()) {
     std::fprintf(stderr, "%s\n", read.error().Text().c_str());
     return 1;

@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "trocar/cli/run_command.h"
-#include "trocar/core/printable_output.h"
-#include "trocar/core/safe_file.h"
+#include "trocar/host/printable_output.h"
+#include "trocar/host/safe_file.h"
 
 namespace trocar::printed_texts {
 namespace {
@@ -21,12 +21,12 @@ namespace {
 constexpr std::size_t kMostPrinted = std::size_t{64} << 20;
 
 std::string FindFaultIn(const std::string& text, const char* what) {
-  if (core::PrintableText(text) != text) {
+  if (host::PrintableText(text) != text) {
     std::size_t at = 0;
-    while (at < text.size() && core::PrintableText(text.substr(0, at + 1)) == text.substr(0, at + 1)) ++at;
+    while (at < text.size() && host::PrintableText(text.substr(0, at + 1)) == text.substr(0, at + 1)) ++at;
     const std::size_t begin = at > 60 ? at - 60 : 0;
     return std::string(what) + " holds what steers a terminal, behind: " +
-           core::PrintableLine(text.substr(begin, at + 4 - begin));
+           host::PrintableLine(text.substr(begin, at + 4 - begin));
   }
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = text.find('\n', at);
@@ -36,7 +36,7 @@ std::string FindFaultIn(const std::string& text, const char* what) {
     if (line.starts_with(kForgedLine)) {
       const std::size_t begin = at > 80 ? at - 80 : 0;
       return std::string(what) +
-             " has a forged line, behind: " + core::PrintableLine(text.substr(begin, at - begin));
+             " has a forged line, behind: " + host::PrintableLine(text.substr(begin, at - begin));
     }
     at = end + 1;
   }
@@ -94,7 +94,7 @@ CommandRun RunInChild(const std::vector<std::string>& given, const std::filesyst
   run.is_late = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM;
   run.status = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
   const auto read = [](const std::filesystem::path& path) {
-    auto text = core::ReadFile(path, kMostPrinted);
+    auto text = host::ReadFile(path, kMostPrinted);
     return text.ok() ? std::move(*text) : std::string();
   };
   run.out = read(out), run.err = read(err);
@@ -105,12 +105,12 @@ std::string FindFault(const CommandRun& run, bool is_json) {
   if (run.is_late) return "it has not ended";
   if (run.status >= 128) return "a signal ended it: " + std::to_string(run.status - 128);
   if (run.err.find("unexpected exception") != std::string::npos)
-    return "an exception: " + core::PrintableLine(run.err.substr(0, 500));
+    return "an exception: " + host::PrintableLine(run.err.substr(0, 500));
   for (const auto& [text, what] : {std::pair{&run.out, "stdout"}, std::pair{&run.err, "stderr"}}) {
     if (auto fault = FindFaultIn(*text, what); !fault.empty()) return fault;
   }
   if (is_json && !run.out.empty() && !nlohmann::json::accept(run.out))
-    return "its output is no JSON: " + core::PrintableLine(run.out.substr(0, 200));
+    return "its output is no JSON: " + host::PrintableLine(run.out.substr(0, 200));
   return {};
 }
 

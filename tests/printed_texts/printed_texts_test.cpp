@@ -22,7 +22,7 @@
 #include "record/src/recording_json.h"
 #include "store/src/database.h"
 #include "trocar/cli/run_command.h"
-#include "trocar/core/safe_file.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/store/attempts.h"
 #include "trocar/store/maintenance.h"
 #include "trocar/store/people.h"
@@ -50,7 +50,7 @@ void Write(const fs::path& path, const std::string& text) {
 }
 
 Json ReadJson(const fs::path& path) {
-  const auto text = core::ReadFile(path, std::size_t{1} << 28);
+  const auto text = host::ReadFile(path, std::size_t{1} << 28);
   return text.ok() ? Json::parse(*text) : Json();
 }
 
@@ -182,7 +182,7 @@ std::string Record(Stage& stage) {
   const std::string scene = stage.Path(MakeHostileText() + ".json");
   Write(scene, MakeScene().dump());
   stage.Prepare({"simulate", scene, "--ticks", "60", "--record", stage.Path("whole.trocar")});
-  const auto bytes = core::ReadFile(stage.Path("whole.trocar"), std::size_t{1} << 28);
+  const auto bytes = host::ReadFile(stage.Path("whole.trocar"), std::size_t{1} << 28);
   return bytes.ok() ? *bytes : std::string();
 }
 

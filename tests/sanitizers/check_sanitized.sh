@@ -8,7 +8,7 @@
 set -euo pipefail
 kind=$1 root=$2 folder=$3
 command -v clang++ >/dev/null || { echo "there is no clang++ here" >&2; exit 77; }
-modules="core;roles;math;geometry;collision;tissue;tissue_cuda;instrument;rigid;surgery;training;device;haptics"
+modules="base;roles;math;geometry;collision;tissue;instrument;rigid;surgery;patient;cholecystectomy;scene;simulation;host;tissue_cuda;files;training;device;haptics"
 
 case $kind in
   memory)
@@ -18,9 +18,9 @@ case $kind in
     ;;
   threads)
     cmake -S "$root" -B "$folder" --preset tsan \
-      -DTROCAR_MODULES="$modules;images;meshing;contours;anatomy;scene;simulation;record;agent;session"
-    ninja -C "$folder" core_tests session_tests
-    "$folder/core_tests" --gtest_filter='NewestSlot.*'
+      -DTROCAR_MODULES="$modules;images;meshing;contours;anatomy;record;agent;session"
+    ninja -C "$folder" host_tests session_tests
+    "$folder/host_tests" --gtest_filter='NewestSlot.*'
     "$folder/session_tests" --gtest_filter='RunnerTest.*'
     ;;
   *) echo "check_sanitized.sh: memory or threads, not $kind" >&2; exit 2 ;;

@@ -24,13 +24,9 @@ mapfile -t sources < <(find src -path '*/test' -prune -o \( -name '*.cpp' -o -na
 xgettext -L C++ --from-code=UTF-8 -k -kTranslate -kTranslateIn:1c,2 -kTranslateWith:1 -kTranslateCount:1,2 -kMark -kCard:1 -kAddLine:1 \
   -o "$work/calls.pot" "${sources[@]}" 2>/dev/null
 xgettext -L C++ --from-code=UTF-8 -k -kAddLine:2 -o "$work/tips.pot" "${sources[@]}" 2>/dev/null
-# of all modules but the package for Python
-modules=(core math geometry collision tissue tissue_cuda instrument surgery training haptics device anatomy meshing images contours roles
-  rigid scene simulation record store assessment report session render view net sound gui app centre editor rehearsal agent environment dataset
-  doctor bench study cli)
-python3 -B tests/texts/list_console.py src/cli src/doctor src/anatomy src/contours src/images src/view src/dataset src/study bench/src >"$work/console.pot"
+python3 -B tests/texts/list_console.py src/program/cli src/program/doctor src/imaging/anatomy src/imaging/contours src/imaging/images src/picture/view src/learn/dataset src/program/study src/program/bench/src >"$work/console.pot"
 msgcat --use-first "$work/tables.pot" "$work/calls.pot" "$work/tips.pot" "$work/console.pot" -o "$work/all.pot"
-python3 -B tests/texts/list_messages.py "${modules[@]/#/src/}" >"$work/messages.pot"
+python3 -B tests/texts/list_messages.py src/*/* >"$work/messages.pot"
 cp po/es.po "$work/es.po"
 if [ "${3:-}" = --missing ]; then
   msgcat --use-first "$work/all.pot" "$work/messages.pot" -o "$work/both.pot"

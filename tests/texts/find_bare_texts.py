@@ -14,12 +14,12 @@ import sys
 from list_console import console_texts_of
 from list_messages import MAKERS, closing_places, tokens_of
 
-FOLDERS = ["src/app", "src/gui", "src/centre", "src/editor", "src/rehearsal", "src/report"]
+FOLDERS = ["src/program/app", "src/program/gui", "src/program/centre", "src/program/editor", "src/program/rehearsal", "src/judge/report"]
 TRANSLATES = {"Translate", "TranslateIn", "TranslateWith", "TranslateCount", "Mark", "Card", "AddLine"}
 UNSEEN = {"Log", "printf", "fprintf", "puts", "fputs", "snprintf", "sscanf", "strftime", "TROCAR_ASSERT", "static_assert", "add_css_class",
           "set_css_classes", "SetStyle", "SetClass", "getenv", "select_font_face", "set_markup", "g_setenv", "Raw", "Text", "TextOr", "Has",
           "find_first_of", "find_first_not_of", "find_last_not_of", "BeginGroup", "Edit", "set_name"}
-COMMANDS = ["src/cli"]
+COMMANDS = ["src/program/cli"]
 # list_console.py lists these; VisitHelpTexts translates the help
 SAYS = {"Say", "FormatFields", "ProgressBar"}
 HELPS = {"add_subcommand", "add_option", "add_flag", "add_option_function", "add_flag_function", "add_option_group", "footer", "type_name", "group",
@@ -76,7 +76,7 @@ def main():
             if path.suffix in (".cpp", ".h") and "test" not in path.parts and path.name not in TABLES:
                 sources[path] = path.read_text(encoding="utf-8")
     if "--control" in sys.argv:
-        found = list(bare_texts_of('void F() { label.set_text("Nobody said this in Spanish"); Say(core::Translate("Said")); }'))
+        found = list(bare_texts_of('void F() { label.set_text("Nobody said this in Spanish"); Say(host::Translate("Said")); }'))
         printed = list(bare_texts_of('void F() { std::printf("%zu clips lie here\\n", n); Say("{1} clips lie there\\n", n); Print("Nobody " + x); '
                                      'command->add_option("--n", n, "How many lie here"); }', True))
         sys.exit(0 if found == ["Nobody said this in Spanish"] and printed == ["  clips lie here ", "Nobody "] else 1)
@@ -86,7 +86,7 @@ def main():
     for path, text in bare:
         print(f"{path.relative_to(repository)}: \"{text}\"")
     if bare:
-        print("wrap what a person sees in core::Translate and add it to po/es.po; name what nobody sees in tests/texts/bare_texts.txt")
+        print("wrap what a person sees in host::Translate and add it to po/es.po; name what nobody sees in tests/texts/bare_texts.txt")
     sys.exit(1 if bare else 0)
 
 

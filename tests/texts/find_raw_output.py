@@ -3,7 +3,7 @@
 """find_raw_output.py REPOSITORY [--control]: names places where a stranger's text could leave the program in another form than the printable one.
 
 Three kinds. A text of the JSON library that is written without saying what becomes of bytes that are no UTF-8 (it throws):
-core::FormatJson does. What is printed with printf and its like and is not the literal itself: Print, PrintLine, Say and PrintJson make
+host::FormatJson does. What is printed with printf and its like and is not the literal itself: Print, PrintLine, Say and PrintJson make
 values printable within their line. Markup of GTK, in which a name could be a tag.
 """
 import pathlib
@@ -12,15 +12,15 @@ import sys
 
 FOLDERS = ["src", "bench", "python"]
 # numbers, for which there is nothing to say; and who must not throw or allocate
-DUMPS = {"src/core/include/trocar/core/json_text.h", "src/training/src/trace_file.cpp", "src/training/src/metric_definition.cpp",
-         "src/training/src/attempt_metrics.cpp"}
-PRINTS = {"src/core/src/assert.cpp", "src/core/src/console.cpp", "src/core/src/progress_bar.cpp", "src/core/src/secret_prompt.cpp",
-          "src/core/src/printable_output.cpp", "src/cli/src/run_command.cpp", "src/editor/widgets/contour_run.cpp",
-          "src/editor/widgets/patient_editor_run.cpp", "src/app/widgets/play_screenshot.cpp", "src/app/widgets/main.cpp"}
-MARKUP = {"src/editor/widgets/contour_cards.cpp"}  # of a colour
+DUMPS = {"src/platform/host/include/trocar/host/json_text.h", "src/judge/training/src/trace_file.cpp", "src/judge/training/src/metric_definition.cpp",
+         "src/judge/training/src/attempt_metrics.cpp"}
+PRINTS = {"src/engine/base/src/assert.cpp", "src/platform/host/src/console.cpp", "src/platform/host/src/progress_bar.cpp", "src/platform/host/src/secret_prompt.cpp",
+          "src/platform/host/src/printable_output.cpp", "src/program/cli/src/run_command.cpp", "src/program/editor/widgets/contour_run.cpp",
+          "src/program/editor/widgets/patient_editor_run.cpp", "src/program/app/widgets/play_screenshot.cpp", "src/program/app/widgets/main.cpp"}
+MARKUP = {"src/program/editor/widgets/contour_cards.cpp"}  # of a colour
 
 KINDS = [
-    ("JSON that throws at bytes that are no UTF-8; core::FormatJson writes it", DUMPS, re.compile(r"\.dump\(")),
+    ("JSON that throws at bytes that are no UTF-8; host::FormatJson writes it", DUMPS, re.compile(r"\.dump\(")),
     ("printed as it is; Print, PrintLine, PrintErrorLine, Say or PrintJson print it", PRINTS,
      re.compile(r"\b(?:printf|fputs|puts)\((?!\s*(?:\"(?:[^\"\\]|\\.)*\"\s*)+[,)])|\bprintf\([^;]*%s|\bfprintf\(\s*(?:stdout|stderr)\b|\bstd::(?:cout|cerr)\s*<<")),
     ("markup of GTK; set_text shows a name as it is", MARKUP, re.compile(r"\b(?:set_markup|set_tooltip_markup|set_use_markup|use_markup)\b")),

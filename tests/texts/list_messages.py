@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """list_messages.py FOLDER...: prints, as a template for gettext, the messages of errors that the sources in the folders make.
 
-A message is put together with +; each part that is no literal becomes a place, {1} to {9}, as core::TranslateComposed finds it again in
+A message is put together with +; each part that is no literal becomes a place, {1} to {9}, as host::TranslateComposed finds it again in
 the finished message. Messages are what stands in Error{code, ...} and in calls of the functions below, which make errors of a text.
 """
 import pathlib
@@ -11,7 +11,7 @@ import sys
 
 MAKERS = {"Invalid", "Refuse", "Refused", "Fail", "fail", "refuse", "Failed", "Complain", "Failure", "Away", "Unusable",
           "Usage", "WrongUse", "AtLine", "Note", "Throw", "Unwritable", "Undecodable", "Changed", "Unknown", "Mismatch"}
-LEAST_SIGNS = 3  # as kLeastLetters of src/core/src/catalogue.h
+LEAST_SIGNS = 3  # as kLeastLetters of src/platform/host/src/catalogue.h
 TOKEN = re.compile(
     r'(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<raw>R"(?P<end>[^(]*)\(.*?\)(?P=end)")|(?P<text>"(?:[^"\\\n]|\\.)*")'
     r"|(?P<letter>'(?:[^'\\]|\\.)+')|(?P<name>[A-Za-z_]\w*)|(?P<number>\d[\w.']*)|(?P<sign>::|->|<<|>>|<=|>=|==|!=|&&|\|\||\+=|.)"

@@ -22,7 +22,7 @@
 #include "trocar/centre/centre_commands.h"
 #include "trocar/cli/run_command.h"
 #include "trocar/contours/contour_fit.h"
-#include "trocar/core/error_codes.h"
+#include "trocar/base/error_codes.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/doctor/doctor_checks.h"
 #include "trocar/editor/contour_commands.h"
@@ -42,7 +42,7 @@
 #include "trocar/scene/task.h"
 #include "trocar/simulation/snapshot.h"
 #include "trocar/training/metric_definition.h"
-#include "trocar/training/operation_error.h"
+#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/view/picture_series.h"
 
 namespace {
@@ -185,14 +185,14 @@ void PrintMedicine() {
     Print(metric.about);
   }
   Print(training::MetricsDisclaimer());
-  for (int error = 0; error < static_cast<int>(training::OperationError::kCount); ++error) {
-    const auto one = static_cast<training::OperationError>(error);
-    Print(training::ExplanationOf(one));
-    PrintWords(std::string(training::NameOf(one)));
+  for (int error = 0; error < static_cast<int>(cholecystectomy::OperationError::kCount); ++error) {
+    const auto one = static_cast<cholecystectomy::OperationError>(error);
+    Print(cholecystectomy::ExplanationOf(one));
+    PrintWords(std::string(cholecystectomy::NameOf(one)));
   }
-  for (const training::Severity severity :
-       {training::Severity::kMinor, training::Severity::kMajor, training::Severity::kCritical})
-    Print(training::NameOf(severity));
+  for (const cholecystectomy::Severity severity :
+       {cholecystectomy::Severity::kMinor, cholecystectomy::Severity::kMajor, cholecystectomy::Severity::kCritical})
+    Print(cholecystectomy::NameOf(severity));
   for (const char* tool :
        {"grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag"}) {
     if (instrument::FindTool(tool) == nullptr) std::exit(1);
@@ -286,7 +286,7 @@ int main(int count, char** arguments) {
   if (count != 2) return 2;
   const fs::path repository = arguments[1];
   std::puts("msgid \"\"\nmsgstr \"\"\n\"Content-Type: text/plain; charset=UTF-8\\n\"");
-  for (const core::ErrorEntry& entry : core::ErrorTable()) Print(entry.meaning);
+  for (const base::ErrorEntry& entry : base::ErrorTable()) Print(entry.meaning);
   PrintCommands(presenter::SimulatorCommands());
   for (const presenter::SimulatorCommand& command : presenter::SimulatorCommands()) {
     if (presenter::KeyBindings::CanChange(command) && *command.help.meaning == '\0') PrintWords(command.id);

@@ -1,0 +1,527 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "operation/operation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "operation/gallbladder_anatomy.h"
+#include "trocar/instrument/state_fields.h"
+#include "trocar/math/state_fields.h"
+#include "trocar/patient/patient.h"
+#include "trocar/scene/pathology.h"
+#include "trocar/scene/patient_vessels.h"
+
+namespace trocar::simulation {
+
+using scene::CalcPathology;
+using scene::kLeft;
+using scene::kRight;
+namespace {
+
+/// A tool that is exchanged is out of the way at this depth [m], for this long [s].
+constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
+/// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
+constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
+constexpr double kBelowAll = -0.03;  // under the lowest organ: what falls beside everything stops there [m]
+
+cholecystectomy::PatternCutMonitor MakePatternCutMonitor(const scene::ModelSheet& sheet,
+                                                  const geometry::EditableMesh& mesh) {
+  return {{sheet.centre, sheet.half, sheet.circle}, mesh};
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene,
+                                                         std::shared_ptr<const PatientTissue> tissue) {
+  std::unique_ptr<Operation> made(new Operation(scene, tissue->strands));
+  auto stones = MakeGallstones(scene, tissue->surfaces, tissue->definition.rest);
+  made->made_ = std::move(tissue);
+  if (!stones.ok()) return stones.error();
+  made->stones_ = std::move(*stones);
+  made->loose_clips_.reserve(surgery::VesselActs::kMostClips);
+  if (const auto status = made->MakeAll(); !status.ok()) return status.error();
+  return made;
+}
+
+base::Status Operation::MakeAll() {
+  const PatientTissue& tissue = *made_;
+  facts_.liver = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
+  facts_.gallbladder = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
+  if (const auto status = MakeOrgans(); !status.ok()) return status;
+  if (const auto status = MakeTubes(); !status.ok()) return status;
+  FindBandStrands();
+  heat_ = surgery::Electrosurgery(tissue.definition, tissue.heat_mass, scene_->operation->parameters.heat);
+  attachment_ = MakeAttachment(scene_->patient, tissue.surfaces, strands_);
+  MakeAssistant();
+  const patient::Landmark* neck = scene_->patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
+  facts_.p_pool = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
+  facts_.deepest = kBelowAll;
+  for (const Vec3& p : tissue.definition.rest) facts_.deepest = std::min(facts_.deepest, p.z + kBelowAll);
+  stones_.Reset();
+  MakeOoze();
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    HandState& state = hands_[static_cast<std::size_t>(hand)];
+    state.fronts.resize(organs_.size());
+    state.blade.jaw = state.spread_upper.jaw = scene_->instruments[hand].home.jaw;
+    state.clips = Tool(hand).clips;
+  }
+  return {};
+}
+
+base::Status Operation::MakeOrgans() {
+  const patient::Patient& patient = scene_->patient;
+  for (std::size_t i = 0; i < patient.organs.size(); ++i) {
+    surgery::CuttableOrganSettings settings;
+    settings.wall = made_->walls[i];
+    settings.cut.has_walls = static_cast<std::int32_t>(i) != facts_.gallbladder && !scene_->model;
+    settings.first_node = made_->surfaces[i].first_node;
+    settings.first_spare = made_->first_spare[i];
+    settings.spare_count = kSpare.by_organ;
+    auto organ = surgery::CuttableOrgan::Make(patient.organs[i].mesh, settings);
+    if (!organ.ok()) return organ.error();
+    organ->ReserveFor(change_);
+    organs_.push_back(std::move(*organ));
+  }
+  for (std::size_t i = 0; scene_->model && i < scene_->model->sheets.size(); ++i)
+    sheets_.push_back(MakePatternCutMonitor(scene_->model->sheets[i], organs_[i].Mesh()));
+  return {};
+}
+
+/// Ducts and vessels, which of them must stay, and where they enter the gallbladder.
+base::Status Operation::MakeTubes() {
+  const patient::Patient& patient = scene_->patient;
+  const scene::OperationParameters& parameters = scene_->operation->parameters;
+  auto vessels = scene::MakePatientVessels(patient, parameters.supplies, parameters.fluids);
+  if (!vessels.ok()) return vessels.error();
+  facts_.biliary = std::move(vessels->anatomy);
+  vessels_ = MakeVessels(std::move(vessels->map), patient, *made_, kSpare.tubes, parameters.vessels);
+  vessels_->ReserveFor(change_);
+  change_.Clear();
+  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
+    const SurfaceInfo& surface = made_->surfaces[patient.organs.size() + t];
+    for (std::uint32_t k = 0; k < surface.node_count; ++k) {
+      const surgery::VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
+      if (cholecystectomy::MayBeDivided(facts_.biliary.roles[place.vessel])) continue;
+      const bool is_duct = patient.tubes[t].kind == patient::TubeKind::kDuct;
+      (is_duct ? facts_.main_ducts : facts_.main_arteries).push_back(surface.first_node + k);
+    }
+  }
+  for (surgery::EnteringTube& tube : FindEnteringTubes(patient, made_->surfaces, strands_)) {
+    const SurfaceInfo& surface = made_->surfaces[patient.organs.size() + tube.tube];
+    const double radius = surface.radii[tube.nodes.front() - surface.first_node];
+    TubeEnd end{tube.nodes.front(), std::move(tube.end_strands), M_PI * radius * radius};
+    if (!end.strands.empty()) tube_ends_.push_back(std::move(end));
+  }
+  return {};
+}
+
+/// Bands of a model are parted one by one.
+void Operation::FindBandStrands() {
+  facts_.band_starts.assign(1, 0);
+  for (std::size_t band = 0; scene_->model && band < scene_->model->bands.size(); ++band) {
+    for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+      if (strands_[i].band == static_cast<std::int32_t>(band)) facts_.band_strands.push_back(i);
+    }
+    facts_.band_starts.push_back(static_cast<std::uint32_t>(facts_.band_strands.size()));
+  }
+}
+
+void Operation::MakeAssistant() {
+  if (!scene_->operation->assistant) return;
+  const AssistantSetup& setup = *scene_->operation->assistant;
+  const Vec3& target = setup.p_world_target;
+  assistant_.emplace(setup, target);
+  // the landmark moves with the organ: the nearest vertex at rest carries it
+  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(std::max(0, facts_.gallbladder))];
+  const auto& rest = made_->definition.rest;
+  facts_.assistant_node = surface.first_node;
+  for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
+    if (math::SquaredDistance(rest[node], target) <
+        math::SquaredDistance(rest[facts_.assistant_node], target))
+      facts_.assistant_node = node;
+  }
+}
+
+/// What bleeds where the gallbladder comes off the liver.
+void Operation::MakeOoze() {
+  std::vector<surgery::LiverFibre> fibres;
+  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+    const StrandInfo& strand = strands_[i];
+    const bool is_bed = strand.kind == StrandInfo::Kind::kBed;
+    if (!is_bed && strand.kind != StrandInfo::Kind::kAdhesion) continue;
+    const bool is_b = IsOf(strand.b, facts_.liver);
+    if (is_b || IsOf(strand.a, facts_.liver)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
+  }
+  ooze_ = surgery::BedOoze(fibres, CalcPathology(scene_->patient).bed_bleeding,
+                           scene_->operation->parameters.bed);
+}
+
+void Operation::Emit(const OperationEvent& event) noexcept {
+  if (emitted_.count < emitted_.events.size()) emitted_.events[emitted_.count++] = event;
+}
+
+bool Operation::IsOf(std::uint32_t node, std::int32_t organ) const noexcept {
+  if (organ < 0) return false;
+  const auto i = static_cast<std::size_t>(organ);
+  const std::uint32_t first = made_->surfaces[i].first_node;
+  return node >= first && node < made_->first_spare[i] + kSpare.by_organ;
+}
+
+// --- tools
+
+bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
+                         instrument::TrocarJoints& wanted) noexcept {
+  HandState& state = hands_[static_cast<std::size_t>(hand)];
+  std::size_t& active = active_[static_cast<std::size_t>(hand)];
+  const bool wants_other = controls.tool != active && controls.tool < scene_->instruments[hand].tray.size();
+  // a stone goes out with the tool that holds it, where the trocar is wide enough
+  const bool is_stuck = HoldsStone(hand) && stones_.HeldDiameter(hand) > WidestTool(hand);
+  const bool may = (!is_holding && !is_stuck) || retrieval_.bag_hand == hand;
+  if (!wants_other || !may) {
+    const bool is_refused = wants_other && !state.was_refused;
+    state.was_refused = wants_other;
+    state.exchange_seconds = 0;
+    return !is_refused;
+  }
+  state.was_refused = false;
+  wanted.depth = kOutside;
+  wanted.jaw = 0;
+  state.exchange_seconds += seconds;
+  if (state.exchange_seconds < kExchangeSeconds) return true;
+  if (retrieval_.bag_hand == hand) {
+    retrieval_.is_completed = retrieval_.is_in_bag;
+    return true;
+  }
+  EmitRetrieved(hand, stones_.TakeOut(hand));
+  active = controls.tool;
+  state.exchange_seconds = 0;
+  state.blade = {};
+  state.spread_upper = state.spread_lower = {};
+  state.clips = Tool(hand).clips;
+  state.has_clip_open = state.was_open = false;
+  acts_.SetExchanged(hand);
+  return true;
+}
+
+/// Diameter of what passes a hand's trocar: of its widest tool [m].
+double Operation::WidestTool(int hand) const noexcept {
+  double widest = 0;
+  for (const instrument::Tool& tool : scene_->instruments[hand].tray)
+    widest = std::max(widest, 2.0 * tool.shaft_radius);
+  return widest;
+}
+
+void Operation::BeginTick() noexcept {
+  emitted_.count = 0;
+  acts_.Clear();
+}
+
+void Operation::Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+  change_.Clear();
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    HandState& state = hands_[static_cast<std::size_t>(hand)];
+    state.has_current = state.is_rinsing = state.is_aspirating = false;
+    RefuseImpossible(hand, hands);
+    switch (Tool(hand).kind) {
+      case instrument::ToolKind::kScissors:
+        UseBlade(hand, hands, tissue, operated);
+        break;
+      case instrument::ToolKind::kHook:
+        UseElectrode(hand, hands, tissue);
+        UseBlade(hand, hands, tissue, operated);
+        break;
+      case instrument::ToolKind::kDissector:
+        Spread(hand, hands, tissue, operated);
+        UseElectrode(hand, hands, tissue);
+        break;
+      case instrument::ToolKind::kClipApplier:
+        UseClips(hand, hands, tissue);
+        break;
+      case instrument::ToolKind::kSuctionIrrigator:
+        UseFluids(hand, hands);
+        break;
+      case instrument::ToolKind::kBag:
+        UseBag(hand, hands, tissue, operated);
+        break;
+      case instrument::ToolKind::kGrasper:
+        break;
+    }
+  }
+}
+
+void Operation::Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+  if (!assistant_) return;
+  const AssistantCommand command = retrieval_.is_in_bag ? AssistantCommand::kRelease : hands.input->assistant;
+  (void)assistant_->Step(command, tissue.state->position[facts_.assistant_node], hands.seconds, tissue.organs,
+                         *tissue.model, {}, operated.state);
+}
+
+bool Operation::EndCuts() noexcept {
+  if (change_.nodes.empty() && change_.springs.empty()) return false;
+  for (const surgery::NodeChange& node : change_.nodes) {
+    if (node.is_new && node.from[0] != geometry::kNone) heat_.CopyNode(node.from[0], node.node);
+  }
+  for (std::size_t i = 0; i < sheets_.size(); ++i) sheets_[i].Update(organs_[i].Mesh());
+  ++topology_version_;
+  stones_.ForgetSupports();
+  return true;
+}
+
+cholecystectomy::Target Operation::TargetOfSurface(std::int32_t surface) const noexcept {
+  using cholecystectomy::Target;
+  if (surface < 0) return Target::kNullTarget;
+  if (surface == facts_.liver) return Target::kLiver;
+  if (surface == facts_.gallbladder) return Target::kGallbladder;
+  const roles::TubeRole tube = made_->surfaces[static_cast<std::size_t>(surface)].tube;
+  if (tube == roles::TubeRole::kCysticDuct) return Target::kCysticDuct;
+  return tube == roles::TubeRole::kCysticArtery ? Target::kCysticArtery : Target::kBloodVessel;
+}
+
+cholecystectomy::Target Operation::TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept {
+  using cholecystectomy::Target;
+  const std::size_t nodes = tissue.definition->rest.size();
+  if (part >= nodes) {
+    switch (strands_[part - nodes].kind) {
+      case StrandInfo::Kind::kBed:
+        return Target::kCysticPlate;
+      case StrandInfo::Kind::kAdhesion:
+        return Target::kAdhesion;
+      case StrandInfo::Kind::kPeritoneum:
+        return Target::kPeritoneum;
+      case StrandInfo::Kind::kTriangle:
+      case StrandInfo::Kind::kEnd:
+      case StrandInfo::Kind::kBand:
+        return Target::kCysticPedicle;
+    }
+  }
+  for (std::size_t i = 0; i < made_->surfaces.size(); ++i) {
+    const SurfaceInfo& surface = made_->surfaces[i];
+    if (part >= surface.first_node && part < surface.first_node + surface.node_count)
+      return TargetOfSurface(static_cast<std::int32_t>(i));
+  }
+  return Target::kNullTarget;
+}
+
+// --- what others see
+
+std::vector<collision::TubePiece> Operation::TubePieces() const {
+  std::vector<collision::TubePiece> pieces;
+  const auto& graph = vessels_->Tubes().Graph();
+  for (const geometry::Edge& edge : graph.edges)
+    pieces.push_back({vessels_->Tubes().Node(edge[0]), vessels_->Tubes().Node(edge[1]),
+                      std::max(graph.radii[edge[0]], graph.radii[edge[1]])});
+  return pieces;
+}
+
+std::vector<std::uint32_t> Operation::TubesOfPieces() const {
+  std::vector<std::uint32_t> tubes;
+  for (const geometry::Edge& edge : vessels_->Tubes().Graph().edges)
+    tubes.push_back(vessels_->TubeOf(edge[0]));
+  return tubes;
+}
+
+void Operation::Size(OperationSnapshot& snapshot) const {
+  const std::size_t nodes = made_->definition.rest.size();
+  snapshot.strand_is_intact.assign(strands_.size(), 1);
+  snapshot.blanching.assign(nodes, 0.0F);
+  snapshot.charring.assign(nodes, 0.0F);
+  snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
+  snapshot.band_is_whole.assign(facts_.band_starts.size() - 1, 1);
+  snapshot.sheets.assign(sheets_.size(), {});
+  snapshot.stones.assign(stones_.Size(), {});
+  snapshot.topology.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
+  std::size_t triangles = 0;
+  snapshot.topology.first_triangle.clear();
+  for (const surgery::CuttableOrgan& organ : organs_) {
+    snapshot.topology.first_triangle.push_back(static_cast<std::uint32_t>(triangles));
+    triangles += organ.Mesh().TriangleCapacity();
+  }
+  snapshot.topology.triangles.assign(triangles, {});
+  snapshot.topology.triangle_count.assign(organs_.size(), 0);
+  snapshot.topology.version = std::numeric_limits<std::uint32_t>::max();
+}
+
+void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept {
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const auto h = static_cast<std::size_t>(hand);
+    snapshot.tools[h] = static_cast<std::uint8_t>(active_[h]);
+    snapshot.has_current[h] = hands_[h].has_current;
+    snapshot.is_rinsing[h] = hands_[h].is_rinsing;
+    snapshot.is_aspirating[h] = hands_[h].is_aspirating;
+    snapshot.clips_left[h] = hands_[h].clips;
+  }
+  std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(),
+            snapshot.strand_is_intact.begin());
+  for (std::size_t i = 0; i < sheets_.size(); ++i) snapshot.sheets[i] = sheets_[i].Now();
+  for (std::size_t band = 0; band < snapshot.band_is_whole.size(); ++band) {
+    const auto own =
+        std::span(facts_.band_strands)
+            .subspan(facts_.band_starts[band], facts_.band_starts[band + 1] - facts_.band_starts[band]);
+    snapshot.band_is_whole[band] =
+        std::all_of(own.begin(), own.end(), [&](std::uint32_t i) { return tissue.strand_is_intact[i] != 0; });
+  }
+  heat_.Publish(snapshot.blanching, snapshot.charring);
+  if (snapshot.topology.version != topology_version_) {
+    for (std::size_t i = 0; i < organs_.size(); ++i) {
+      const surgery::CuttableOrgan& organ = organs_[i];
+      const auto triangles = organ.Mesh().Triangles();
+      snapshot.topology.triangle_count[i] = static_cast<std::uint32_t>(triangles.size());
+      for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k)
+          snapshot.topology.triangles[snapshot.topology.first_triangle[i] + t][k] =
+              organ.Node(triangles[t][k]);
+      }
+    }
+    snapshot.topology.version = topology_version_;
+  }
+  snapshot.topology.tube_piece_count = vessels_->PublishPieces(organs_.size(), snapshot.topology.tube_pieces);
+  snapshot.clip_count = vessels_->PublishClips(tissue.position, snapshot.clips);
+  snapshot.tube_cut_count = vessels_->PublishCuts(snapshot.tube_cuts);
+  snapshot.flow.leak_count = vessels_->PublishLeaks(tissue.position, snapshot.flow.leaks);
+  snapshot.flow.ooze_count = ooze_.Publish(tissue.position, snapshot.flow.oozes);
+  stones_.Publish(snapshot.stones);
+  snapshot.flow.ledger = fluids_;
+  snapshot.flow.p_world_pool = facts_.p_pool;
+  snapshot.smoke = smoke_;
+  snapshot.assistant.is_there = assistant_.has_value();
+  if (assistant_) {
+    snapshot.assistant.X_world_tool = assistant_->CalcPose();
+    snapshot.assistant.jaw = assistant_->Joints().jaw;
+    snapshot.assistant.is_holding = assistant_->Held().IsHolding();
+  }
+  snapshot.is_gallbladder_free = retrieval_.is_gallbladder_free;
+  snapshot.is_in_bag = retrieval_.is_in_bag;
+  snapshot.is_completed = retrieval_.is_completed;
+}
+
+void Operation::AddTo(OperationResult& result) const {
+  surgery::FlowNetwork network = vessels_->Map().network;
+  result.injuries = cholecystectomy::JudgeInjuries(facts_.biliary, vessels_->Acts(), network);
+  result.fluids = fluids_;
+  result.bed_blood = ooze_.Lost();
+  result.stones = stones_.Count();
+  result.injuries.spilled_stones = result.stones.spilled;
+  result.is_gallbladder_free = retrieval_.is_gallbladder_free;
+  result.is_in_bag = retrieval_.is_in_bag;
+  result.is_completed = retrieval_.is_completed;
+}
+
+// --- what a judge sees
+
+cholecystectomy::OperationJudge Operation::MakeJudge() const {
+  const PatientTissue& tissue = *made_;
+  const cholecystectomy::JudgementSettings& settings = Judgement();
+  cholecystectomy::DissectedAnatomy anatomy =
+      MakeDissectedAnatomy(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest);
+  anatomy.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest, facts_.main_ducts,
+                                        facts_.main_arteries, settings);
+  anatomy.exposable = CalcExposable(anatomy.entering, tissue.definition.rest, facts_.main_ducts,
+                                    facts_.main_arteries, settings);
+  anatomy.sight = MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest,
+                                    anatomy.exposable, settings);
+  return {cholecystectomy::DissectionMonitor(std::move(anatomy), tissue.definition.rest), facts_.gallbladder >= 0,
+          settings};
+}
+
+cholecystectomy::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,
+                                                  const Camera& camera) const noexcept {
+  cholecystectomy::OperationObservation now{
+      hands.time,
+      hands.seconds,
+      acts_,
+      {},
+      *tissue.state,
+      *vessels_,
+      tissue.organs,
+      camera,
+      {retrieval_.is_gallbladder_free, retrieval_.is_in_bag, retrieval_.is_completed},
+      fluids_.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
+      stones_.Count().spilled,
+      facts_.p_pool};
+  for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
+    cholecystectomy::ObservedHand& seen = now.hands[hand];
+    const surgery::Grasp& grasp = (*hands.grasps)[hand];
+    seen.p_world_tip = hands.X_proxy[hand].translation;
+    seen.depth = hands.joints[hand].depth;
+    seen.is_retracting = grasp.IsHolding() && Tool(static_cast<int>(hand)).kind != instrument::ToolKind::kBag;
+    seen.is_holding_liver = grasp.surface == facts_.liver;
+    if (seen.is_retracting) seen.held = TargetOfSurface(grasp.surface);
+    seen.change = hands.changes[hand];
+  }
+  return now;
+}
+
+void Publish(const cholecystectomy::OperationJudge& judge, OperationSnapshot& snapshot) noexcept {
+  const cholecystectomy::DissectionFacts& facts = judge.Facts();
+  snapshot.facts = {facts.cleared_share, facts.detached_share, facts.structures_entering};
+  snapshot.critical_view = judge.View();
+  snapshot.phase = judge.CurrentPhase();
+  snapshot.errors = judge.Errors().Count();
+  snapshot.critical_errors = judge.Errors().Count(cholecystectomy::Severity::kCritical);
+}
+
+void AddTo(const cholecystectomy::OperationJudge& judge, OperationResult& result) {
+  result.errors = judge.Errors();
+  result.facts = judge.Facts();
+  result.critical_view = judge.View();
+  result.was_critical_view_achieved = judge.WasViewAchieved();
+  result.phase = judge.CurrentPhase();
+}
+
+// --- state
+
+void Operation::HandState::VisitState(base::StateArchive& archive) {
+  if (archive.IsRestoring()) is_rinsing = is_aspirating = false;
+  archive.Field("blade", blade);
+  archive.Field("spread_upper", spread_upper);
+  archive.Field("spread_lower", spread_lower);
+  archive.FixedField("fronts", fronts);
+  archive.Field("has_clip_open", has_clip_open);
+  archive.Field("opened", opened);
+  archive.Field("caught", caught);
+  archive.Field("clips", clips);
+  archive.Field("has_current", has_current);
+  archive.Field("idle_seconds", idle_seconds);
+  archive.Field("was_refused", was_refused);
+  archive.Field("was_open", was_open);
+  archive.Field("was_outside_emitted", was_outside_emitted);
+  archive.Field("exchange_seconds", exchange_seconds);
+}
+
+void Operation::VisitTopology(base::StateArchive& archive) {
+  archive.FixedField("organs", organs_);
+  vessels_->VisitTopology(archive);
+}
+
+void Operation::VisitState(base::StateArchive& archive) {
+  archive.FixedField("sheets", sheets_);
+  archive.Field("vessels", *vessels_);
+  archive.Field("heat", heat_);
+  if (assistant_) archive.Field("assistant", *assistant_);
+  archive.Field("fluids", fluids_);
+  archive.Field("holes", wall_.holes);
+  archive.Field("stones", stones_);
+  archive.Field("ooze", ooze_);
+  archive.Field("active_tools", active_);
+  archive.Field("left_hand", hands_[kLeft]);
+  archive.Field("right_hand", hands_[kRight]);
+  archive.Field("X_world_tools", X_world_tools_);
+  for (TubeEnd& end : tube_ends_) archive.Field("is_tube_end_off", end.is_off);
+  archive.Field("leaked_seen", wall_.leaked_seen);
+  archive.Field("open_area", wall_.open_area);
+  archive.Field("smoke", smoke_);
+  archive.Field("topology_version", topology_version_);
+  archive.Field("is_in_bag", retrieval_.is_in_bag);
+  archive.Field("is_completed", retrieval_.is_completed);
+  archive.Field("is_gallbladder_free", retrieval_.is_gallbladder_free);
+  archive.Field("bag_hand", retrieval_.bag_hand);
+  if (!archive.IsRestoring() || !archive.ok()) return;
+  BeginTick();
+  for (std::size_t hand = 0; hand < active_.size(); ++hand) {
+    if (active_[hand] < scene_->instruments[hand].tray.size()) continue;
+    active_[hand] = 0;
+    archive.Fail("names a tool that is not in the tray");
+  }
+}
+
+}  // namespace trocar::simulation

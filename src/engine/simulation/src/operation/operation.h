@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file operation.h  Surgery in the tick: tools that cut, burn, clip, rinse and carry away, and what comes of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "operation/assistant.h"
+#include "trocar/instrument/camera.h"
+#include "trocar/scene/patient_tissue.h"
+#include "trocar/simulation/operation_result.h"
+#include "trocar/simulation/simulation.h"
+#include "trocar/surgery/bed_ooze.h"
+#include "trocar/surgery/cuttable_organ.h"
+#include "trocar/surgery/electrosurgery.h"
+#include "trocar/surgery/gallbladder_attachment.h"
+#include "trocar/surgery/gallstone_spill.h"
+#include "trocar/surgery/vessels.h"
+#include "trocar/cholecystectomy/operation_judge.h"
+#include "trocar/cholecystectomy/pattern_cut_monitor.h"
+
+namespace trocar::simulation {
+
+using instrument::Camera;
+using scene::EventKind;
+using scene::HandControls;
+using scene::PatientTissue;
+using scene::Scene;
+using scene::SpareNodes;
+using scene::StrandInfo;
+using scene::SurfaceInfo;
+using surgery::WallHoles;
+using cholecystectomy::EmittedAct;
+using cholecystectomy::EmittedActs;
+
+/// What a tick knows of the hands.
+struct HandsNow {
+  const Input* input = nullptr;
+  std::array<instrument::TrocarJoints, kHandCount> joints;
+  std::array<Pose, kHandCount> X_proxy, X_device;
+  std::array<surgery::GraspChange, kHandCount> changes{};
+  const std::array<surgery::Grasp, kHandCount>* grasps = nullptr;
+  std::array<Vec3, kHandCount> forces;  ///< on the tools in the tick before, world frame [N]
+  Vec3 gravity;                         ///< [m/s^2]
+  Camera camera;                        ///< as the trainee saw when the hands moved
+  double time = 0;                      ///< [s]
+  double seconds = 0;                   ///< of the tick
+};
+
+/// The tissue that is operated on, as it is.
+struct TissueNow {
+  const tissue::TissueModel* model = nullptr;
+  const tissue::TissueDefinition* definition = nullptr;
+  const tissue::TissueState* state = nullptr;
+  const tissue::Conservation* conservation = nullptr;
+  const tissue::ConservationState* conserved = nullptr;
+  std::span<const surgery::OrganSurface> organs;
+  const surgery::TubeSet* tubes = nullptr;
+  std::span<const std::uint32_t> torn_springs;  ///< of walls, in this tick
+};
+
+/// What the stages of an operation change beside the operation itself: the same tissue, and what hands hold of it.
+struct OperatedTissue {
+  tissue::TissueState& state;
+  tissue::ConservationState& conserved;
+  std::array<surgery::Grasp, kHandCount>& grasps;
+};
+
+/// Something that an operation emits: it becomes an event of the tick.
+struct OperationEvent {
+  EventKind kind = EventKind::kClipClosed;
+  std::int32_t hand = -1;
+  std::int32_t surface = -1;  ///< as in Event::organ
+  Vec3 p_rest;                ///< of a clip or a cut: where on its vessel at rest, world frame [m]
+};
+
+class Operation {
+ public:
+  /// Nodes that cuts may use.
+  static constexpr SpareNodes kSpare{500, 32};
+
+  /// \return kPatientInvalid or kMeshInvalid
+  static base::Result<std::unique_ptr<Operation>> Make(const Scene& scene,
+                                                       std::shared_ptr<const PatientTissue> tissue);
+
+  /// First of all in a tick: what the one before emitted is forgotten.
+  void BeginTick() noexcept;
+
+  // --- tools
+
+  const instrument::Tool& Tool(int hand) const {
+    return scene_->instruments[hand].tray[active_[static_cast<std::size_t>(hand)]];
+  }
+  /// What the hand's joints become: a tool that is exchanged is drawn out.
+  /// \param is_holding  then there is no exchange, unless it is the bag that holds
+  /// \return false where an exchange was asked for and refused
+  /// \note Real-time safe.
+  bool MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
+                instrument::TrocarJoints& wanted) noexcept;
+
+  /// What stones between the jaws leave of their movement; stones are taken and let go here.
+  /// \param is_holding  tissue
+  /// \note Real-time safe.
+  double StopJaw(int hand, double jaw_before, double jaw, bool is_holding) noexcept;
+  bool HoldsStone(int hand) const { return stones_.HeldBy(hand) >= 0; }
+
+  // --- the stages of a tick
+
+  /// Tools cut, clip, rinse, and let current flow.
+  /// \note Real-time safe, as are all stages.
+  void Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What current has heated gives way.
+  void Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// The third hand.
+  void Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What Act has cut. \return whether nodes or springs changed: then Change() says which
+  bool EndCuts() noexcept;
+  const surgery::TopologyChange& Change() const { return change_; }
+  /// After the solve: blood and bile run, stones leave with the bile, clips slip.
+  void Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What lies loose falls, is pushed and carried.
+  void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
+
+  /// What a judge sees of this tick, which has to outlive it.
+  /// \param camera  through which the trainee looks
+  cholecystectomy::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
+                                         const Camera& camera) const noexcept;
+  /// What happened in this tick.
+  std::span<const OperationEvent> Events() const { return std::span(emitted_.events).first(emitted_.count); }
+
+  /// A judge who knows this operation's anatomy.
+  cholecystectomy::OperationJudge MakeJudge() const;
+
+  const surgery::CuttableOrgan& Organ(std::size_t i) const { return organs_[i]; }
+  /// Ducts and vessels as they are now, for contacts.
+  std::vector<collision::TubePiece> TubePieces() const;
+  std::vector<std::uint32_t> TubesOfPieces() const;
+  std::span<const StrandInfo> Strands() const { return strands_; }
+
+  void Size(OperationSnapshot& snapshot) const;
+  void Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept;
+  /// Adds what this one knows.
+  void AddTo(OperationResult& result) const;
+
+  /// Meshes and lines with their cuts. Before VisitState.
+  void VisitTopology(base::StateArchive& archive);
+  void VisitState(base::StateArchive& archive);
+
+ private:
+  struct HandState {
+    surgery::BladeState blade, spread_upper, spread_lower;
+    std::vector<geometry::CutFront> fronts;          // (organs)
+    bool has_clip_open = false;                      // the applier has been opened since its last clip
+    double opened = 0;                               // the applier's jaws, at the most [rad]
+    std::optional<surgery::Vessels::Caught> caught;  // between them then
+    int clips = 0;
+    bool has_current = false;
+    bool is_rinsing = false, is_aspirating = false;  // in this tick; decides nothing, so that no state has it
+    double idle_seconds = 0;                         // pedal down, nothing touched
+    bool was_refused = false;
+    bool was_open = false;  // jaws, since they closed last
+    bool was_outside_emitted = false;
+    double exchange_seconds = 0;
+    void VisitState(base::StateArchive& archive);
+  };
+
+  Operation(const Scene& scene, std::vector<StrandInfo> strands)
+      : scene_(&scene), strands_(std::move(strands)) {}
+  base::Status MakeAll();
+  base::Status MakeOrgans();
+  base::Status MakeTubes();
+  void FindBandStrands();
+  void MakeAssistant();
+  void MakeOoze();
+  double WidestTool(int hand) const noexcept;
+  void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands, const TissueNow& tissue,
+               OperatedTissue& operated, bool cuts_strands) noexcept;
+  void CutStrands(const surgery::BladeMove& move, int hand, cholecystectomy::InstrumentKind kind,
+                  const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void CutOrgans(const surgery::BladeMove& move, int hand, cholecystectomy::InstrumentKind kind,
+                 const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void Spread(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseFluids(int hand, const HandsNow& hands) noexcept;
+  void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void OpenTubeEnds(const TissueNow& tissue) noexcept;
+  void KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept;
+  void SpillStones(double leaked, const TissueNow& tissue) noexcept;
+  void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void EmitRetrieved(int hand, int count) noexcept;
+  void RefuseImpossible(int hand, const HandsNow& hands) noexcept;
+  cholecystectomy::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
+  cholecystectomy::Target TargetOfSurface(std::int32_t surface) const noexcept;
+  bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
+  void Emit(const OperationEvent& event) noexcept;
+  const scene::ElectrodeParameters& Electrode() const noexcept {
+    return scene_->operation->parameters.electrode;
+  }
+  const scene::SuctionParameters& Suction() const noexcept { return scene_->operation->parameters.suction; }
+  const cholecystectomy::JudgementSettings& Judgement() const noexcept {
+    return scene_->operation->parameters.judgement;
+  }
+
+  const Scene* scene_;  // outlives this
+  std::vector<StrandInfo> strands_;
+  std::shared_ptr<const PatientTissue> made_;
+  /// What is asked of the patient again and again; constant.
+  struct AnatomyFacts {
+    std::int32_t liver = -1, gallbladder = -1;
+    std::vector<std::uint32_t> main_ducts, main_arteries;  // nodes of those that must stay
+    cholecystectomy::BiliaryAnatomy biliary;                      // of the vessels
+    Vec3 p_pool;                                           // where blood and bile gather
+    double deepest = 0;                                    // z below which nothing falls [m]
+    std::uint32_t assistant_node = 0;                      // of what the assistant takes
+    std::vector<std::uint32_t> band_strands, band_starts;  // (bands) the strands of each, by band_starts
+  };
+  AnatomyFacts facts_;
+  /// Where a duct or artery enters the gallbladder.
+  struct TubeEnd {
+    std::uint32_t node = 0;              // of the tube
+    std::vector<std::uint32_t> strands;  // that tie it
+    double section = 0;                  // [m^2]
+    bool is_off = false;
+  };
+  std::vector<TubeEnd> tube_ends_;
+
+  std::vector<surgery::CuttableOrgan> organs_;
+  std::vector<cholecystectomy::PatternCutMonitor> sheets_;  // (ModelSetup::sheets), which are the organs
+  std::optional<surgery::Vessels> vessels_;
+  surgery::Electrosurgery heat_;
+  surgery::GallbladderAttachment attachment_;
+  EmittedActs acts_;
+  std::optional<Assistant> assistant_;
+  surgery::TopologyChange change_;
+  surgery::FluidLedger fluids_;
+  /// What has become of the gallbladder's wall.
+  struct Wall {
+    WallHoles holes;
+    double open_area = 0;    // that cuts have made [m^2]
+    double leaked_seen = 0;  // that has been booked [m^3]
+  };
+  Wall wall_;
+  surgery::GallstoneSpill stones_;
+  surgery::BedOoze ooze_;
+  std::vector<surgery::LooseStone*> loose_clips_;  // scratch
+
+  std::array<std::size_t, kHandCount> active_{};
+  std::array<HandState, kHandCount> hands_;
+  std::array<Pose, kHandCount> X_world_tools_;  // that are seen, in the tick before
+  double smoke_ = 0;
+  std::uint32_t topology_version_ = 0;
+  /// How far the gallbladder is on its way out.
+  struct Retrieval {
+    bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
+    std::int32_t bag_hand = -1;
+  };
+  Retrieval retrieval_;
+  /// Of this tick.
+  struct Emitted {
+    std::array<OperationEvent, 8> events{};
+    std::size_t count = 0;
+  };
+  Emitted emitted_;
+};
+
+/// Adds what a judge knows.
+void Publish(const cholecystectomy::OperationJudge& judge, OperationSnapshot& snapshot) noexcept;
+void AddTo(const cholecystectomy::OperationJudge& judge, OperationResult& result);
+
+}  // namespace trocar::simulation

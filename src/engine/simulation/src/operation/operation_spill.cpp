@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// What comes out, comes off and comes to lie: stones, slipped clips, blood of the bed.
+#include <algorithm>
+#include <cmath>
+
+#include "operation/operation.h"
+
+namespace trocar::simulation {
+namespace {
+
+using cholecystectomy::OperationError;
+
+constexpr double kTornHole = 1e-6;     // of the wall that a torn spring leaves open at each end [m^2]
+constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m]
+
+}  // namespace
+
+void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+  tissue::OrganVolume* const gallbladder =
+      facts_.gallbladder >= 0 ? &operated.conserved.organs[static_cast<std::size_t>(facts_.gallbladder)]
+                              : nullptr;
+  if (gallbladder != nullptr) {
+    KeepLeaked(*gallbladder);
+    const double now = gallbladder->leaked - wall_.leaked_seen;
+    if (now > 0.0) fluids_.Leak(surgery::Fluid::kBile, now);
+    SpillStones(now, tissue);
+  }
+  vessels_->Flow(hands.seconds, facts_.gallbladder, operated.conserved, fluids_);
+  SlipClips(hands, tissue);
+  fluids_.Leak(surgery::Fluid::kBlood,
+               ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
+  if (gallbladder != nullptr) wall_.leaked_seen = gallbladder->leaked;
+  smoke_ = std::clamp(smoke_ * (1.0 - Suction().smoke_fade * hands.seconds), 0.0, 1.0);
+  retrieval_.is_gallbladder_free = attachment_.IsFree(*tissue.state, *vessels_);
+}
+
+/// A bad tick takes the organ back to the last good solve, and with it the bile that ran out after that solve. It is in the
+/// ledger already: it stays out, or it would be counted again when it runs out again.
+void Operation::KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept {
+  const double back = wall_.leaked_seen - gallbladder.leaked;
+  if (!(back > 0.0)) return;
+  gallbladder.target -= back;
+  gallbladder.leaked = wall_.leaked_seen;
+}
+
+void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
+  if (facts_.gallbladder < 0) return;
+  for (const std::uint32_t i : tissue.torn_springs) {
+    const tissue::Spring& spring = tissue.definition->springs[i];
+    for (const std::uint32_t node : {spring.a, spring.b}) {
+      if (IsOf(node, facts_.gallbladder)) wall_.holes.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
+    }
+  }
+  if (!(leaked > 0.0) || retrieval_.is_in_bag || !stones_.HasInside()) return;
+  const auto organ = static_cast<std::size_t>(facts_.gallbladder);
+  const surgery::WallHole hole =
+      wall_.holes.FindLargest(tissue.organs[organ], tissue.state->position, organs_[organ].Mesh());
+  if (!(hole.rim > 0.0)) return;
+  const int spilled = stones_.Spill(leaked, leaked + tissue.conserved->organs[organ].target, hole);
+  for (int i = 0; i < spilled; ++i) Emit({EventKind::kStoneSpilled, -1, facts_.gallbladder, {}});
+}
+
+void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept {
+  X_world_tools_ = hands.X_proxy;
+  surgery::StoneGround ground;
+  ground.organs = tissue.organs;
+  ground.positions = tissue.state->position;
+  ground.gravity = hands.gravity;
+  ground.deepest = facts_.deepest;
+  std::array<surgery::StonePusher, 2 * kHandCount> pushers;
+  std::size_t count = 0;
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const Pose& X = hands.X_proxy[static_cast<std::size_t>(hand)];
+    const auto parts = instrument::CalcCapsules(Tool(hand), 0.0, kPushLength);
+    pushers[count++] = {X * parts.shaft.a, X * parts.shaft.b, parts.shaft.radius};
+    // jaws take stones between them; what has none pushes with its tip
+    if (Tool(hand).max_jaw == 0.0 && Tool(hand).kind != instrument::ToolKind::kBag)
+      pushers[count++] = {X * parts.upper_jaw.a, X * parts.upper_jaw.b, parts.upper_jaw.radius};
+  }
+  ground.pushers = std::span(pushers).first(count);
+  loose_clips_.clear();
+  vessels_->FindLooseClips(loose_clips_);
+  stones_.Move(ground, hands.X_proxy, loose_clips_, hands.seconds);
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    if (stones_.HasTaken(hand)) Emit({EventKind::kStoneTaken, hand, -1, {}});
+  }
+}
+
+void Operation::SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept {
+  std::array<surgery::ClipPull, kHandCount> pulls;
+  for (std::size_t hand = 0; hand < pulls.size(); ++hand)
+    pulls[hand] = {(*hands.grasps)[hand].Nodes(), -hands.forces[hand]};
+  std::array<surgery::SlippedClip, 4> slipped;
+  const std::size_t count = vessels_->Slip(hands.seconds, pulls, tissue.state->position, slipped);
+  for (const surgery::SlippedClip& clip : std::span(slipped).first(count)) {
+    acts_.Report(OperationError::kClipSlipped, clip.position, -1);
+    Emit({EventKind::kClipSlipped, -1, static_cast<std::int32_t>(organs_.size() + clip.place.tube),
+          vessels_->RestPoint(clip.place)});
+  }
+}
+
+double Operation::StopJaw(int hand, double jaw_before, double jaw, bool is_holding) noexcept {
+  const instrument::Tool& tool = Tool(hand);
+  const bool can_take = !is_holding && (tool.kind == instrument::ToolKind::kGrasper ||
+                                        tool.kind == instrument::ToolKind::kDissector);
+  return stones_.StopJaw(hand, tool, X_world_tools_[static_cast<std::size_t>(hand)], jaw_before, jaw,
+                         can_take);
+}
+
+void Operation::EmitRetrieved(int hand, int count) noexcept {
+  for (int i = 0; i < count; ++i) Emit({EventKind::kStoneRetrieved, hand, -1, {}});
+}
+
+}  // namespace trocar::simulation

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file task_monitor.h  Judges a task tick by tick, from what the snapshot shows.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "trocar/base/state_archive.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/snapshot.h"
+
+namespace trocar::simulation {
+
+using scene::Condition;
+using scene::Scene;
+using scene::Task;
+using scene::VisitState;
+
+/// Whether a condition is true in a tick, and of what.
+struct Finding {
+  bool is_true = false;
+  Vec3 position;  ///< of the object or the tip, world frame [m]
+  std::int32_t hand = -1;
+};
+
+/// Nothing is done in a scene without a task.
+class TaskMonitor {
+ public:
+  void Reset(const Scene& scene, TaskSnapshot& task);
+  /// After everything else of a tick has been published.
+  /// \note Real-time safe.
+  void Update(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
+  void VisitState(base::StateArchive& archive);
+
+ private:
+  /// How an object went from hand to hand, and whether it falls.
+  struct Track {
+    double start_height = 0;    ///< [m]
+    std::uint8_t held_by = 0;   ///< in the tick before
+    double both_seconds = 0;    ///< for which both hands have held it in the air [s]
+    int from = -1, to = -1;     ///< hands of the hand-over that ended in this tick
+    double handed_seconds = 0;  ///< for which both had held it then [s]
+    bool is_falling = false;    ///< let go in the air
+    double let_go_height = 0;   ///< [m]
+  };
+  /// A condition of an error: how long it has been true, and whether that has been counted.
+  struct ConditionMonitor {
+    double seconds = 0;
+    bool is_counted = false;
+  };
+
+  void Follow(const Snapshot& snapshot, double dt) noexcept;
+  bool HasMoved(const Snapshot& snapshot) const noexcept;
+  Finding Find(const Scene& scene, const Snapshot& snapshot, const Condition& condition) const noexcept;
+  Finding FindOfObject(const Scene& scene, const Snapshot& snapshot,
+                       const Condition& condition) const noexcept;
+  Finding FindOfTool(const Scene& scene, const Snapshot& snapshot, const Condition& condition) const noexcept;
+  Finding FindOfEvents(const Scene& scene, const Snapshot& snapshot,
+                       const Condition& condition) const noexcept;
+  void UpdateGoals(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
+  void UpdateErrors(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
+  void Judge(const Task& task, TaskSnapshot& now) const noexcept;
+
+  std::vector<Track> tracks_;                                      // (objects)
+  std::vector<std::vector<ConditionMonitor>> condition_monitors_;  // (errors) of (conditions)
+  std::array<Vec3, kHandCount> start_tips_;
+  Pose X_world_start_view_;
+  std::uint64_t events_before_ = 0;  // of the ticks before
+};
+
+}  // namespace trocar::simulation

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file operation_harness.h  The operation on the built-in patient without contacts and solver: tissue lies where the test
+/// puts it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "operation/operation.h"
+#include "trocar/files/scene_file.h"
+#include "trocar/patient/patient.h"
+#include "trocar/simulation/simulation.h"
+
+namespace trocar::simulation {
+
+using scene::CalcScriptInput;
+using scene::kRight;
+using scene::MakePatientTissue;
+using files::ReadScene;
+
+inline std::shared_ptr<const Scene> OperationScene() {
+  static const std::shared_ptr<const Scene> scene = [] {
+    auto read = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
+    EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().Text());
+    return std::make_shared<const Scene>(std::move(*read));
+  }();
+  return scene;
+}
+
+class OperationHarness : public testing::Test {
+ protected:
+  static constexpr double kTick = 1.0 / 120;
+  static constexpr Vec3 kGravity{1.3, -2.0, -9.5};
+
+  OperationHarness() {
+    model_ = tissue::MakeTissueModel(Tissue().definition);
+    state_ = tissue::MakeRestState(model_);
+    conservation_.emplace(model_, Tissue().conservation);
+    conserved_ = conservation_->MakeState(state_);
+    const patient::Patient& patient = OperationScene()->patient;
+    gallbladder_ = patient.FindOrgan("gallbladder"), liver_ = patient.FindOrgan("liver");
+    for (std::size_t i = 0; i < patient.organs.size(); ++i) {
+      auto surface =
+          surgery::MakeOrganSurface(state_.position, Tissue().surfaces[i].first_node, patient.organs[i].mesh);
+      EXPECT_TRUE(surface.ok());
+      organs_.push_back(std::move(*surface));
+    }
+    std::vector<surgery::TubeSurface> tubes;
+    for (const SurfaceInfo& surface : Tissue().surfaces) {
+      if (surface.triangles.empty()) tubes.push_back({surface.first_node, surface.node_count, surface.radii});
+    }
+    tubes_ = std::move(*surgery::MakeTubeSet(state_.position, std::move(tubes)));
+  }
+
+  static const std::shared_ptr<const PatientTissue>& SharedTissue() {
+    static const auto tissue = std::make_shared<const PatientTissue>(
+        std::move(*MakePatientTissue(*OperationScene(), Operation::kSpare)));
+    return tissue;
+  }
+  static const PatientTissue& Tissue() { return *SharedTissue(); }
+  std::span<const surgery::OrganSurface> Organs() const { return organs_; }
+  std::span<const Vec3> Position() const { return state_.position; }
+  const SurfaceInfo& Gallbladder() const { return Tissue().surfaces[static_cast<std::size_t>(gallbladder_)]; }
+
+  void MakeOperation() {
+    state_ = tissue::MakeRestState(model_);
+    conserved_ = conservation_->MakeState(state_);
+    auto made = Operation::Make(*OperationScene(), SharedTissue());
+    ASSERT_TRUE(made.ok()) << made.error().Text();
+    operation_ = std::move(*made);
+    judge_.emplace(operation_->MakeJudge());
+    input_ = CalcScriptInput(*OperationScene(), 0.0);
+    grasps_ = {};
+    hands_ = {};
+    hands_.input = &input_;
+    hands_.joints = input_.hands;
+    hands_.grasps = &grasps_;
+    hands_.gravity = kGravity;
+    hands_.seconds = kTick;
+    // far from everything
+    for (Pose& X : hands_.X_proxy) X.translation = {0, 0, 0.3};
+    hands_.X_device = hands_.X_proxy;
+  }
+  TissueNow Now() {
+    return {&model_, &Tissue().definition, &state_, &*conservation_, &conserved_, organs_, &tubes_, torn_};
+  }
+  void Act() {
+    OperatedTissue operated{state_, conserved_, grasps_};
+    operation_->Act(hands_, Now(), operated);
+    operation_->Heat(hands_, Now(), operated);
+    operation_->Assist(hands_, Now(), operated);
+    (void)operation_->EndCuts();
+  }
+  /// What follows the solve; the acts up to here are forgotten, the events stay until the next tick.
+  void Judge() {
+    OperatedTissue operated{state_, conserved_, grasps_};
+    operation_->Flow(hands_, Now(), operated);
+    operation_->MoveLoose(hands_, Now());
+    judge_->Update(operation_->Observe(hands_, Now(), hands_.camera));
+    hands_.time += kTick;
+  }
+  OperationResult Result() const {
+    OperationResult result;
+    operation_->AddTo(result);
+    AddTo(*judge_, result);
+    return result;
+  }
+  OperationSnapshot Published() const {
+    OperationSnapshot snapshot;
+    operation_->Size(snapshot);
+    operation_->Publish(state_, snapshot);
+    Publish(*judge_, snapshot);
+    return snapshot;
+  }
+
+  /// Exchanges the tool, as the hand's movement does.
+  void SelectTool(int hand, instrument::ToolKind kind) {
+    const auto& tray = OperationScene()->instruments[static_cast<std::size_t>(hand)].tray;
+    const auto found = std::find_if(tray.begin(), tray.end(),
+                                    [kind](const instrument::Tool& tool) { return tool.kind == kind; });
+    ASSERT_NE(found, tray.end());
+    input_.controls[hand].tool = static_cast<std::uint8_t>(found - tray.begin());
+    instrument::TrocarJoints wanted;
+    for (int i = 0; i < 80; ++i)
+      (void)operation_->MoveTool(hand, input_.controls[hand], grasps_[hand].IsHolding(), kTick, wanted);
+  }
+
+  /// Everything is divided, the bag closes around the gallbladder and leaves.
+  void TakeGallbladderOut() {
+    std::fill(state_.strand_is_intact.begin(), state_.strand_is_intact.end(), std::uint8_t{0});
+    Judge();
+    SelectTool(kRight, instrument::ToolKind::kBag);
+    Vec3 centre;
+    for (std::uint32_t i = 0; i < Gallbladder().node_count; ++i)
+      centre += state_.position[Gallbladder().first_node + i] / static_cast<double>(Gallbladder().node_count);
+    hands_.X_proxy[kRight] = hands_.X_device[kRight] = {{}, centre};
+    Act();
+    Judge();
+    SelectTool(kRight, instrument::ToolKind::kHook);
+    Judge();
+  }
+
+  bool IsEdge(const tissue::Spring& spring) const {
+    const surgery::OrganSurface& wall = organs_[static_cast<std::size_t>(gallbladder_)];
+    return std::any_of(wall.triangles.begin(), wall.triangles.end(), [&](const geometry::Triangle& t) {
+      const auto has = [&](std::uint32_t node) {
+        return std::find(t.begin(), t.end(), node - wall.first_node) != t.end();
+      };
+      return has(spring.a) && has(spring.b);
+    });
+  }
+  /// A spring of the gallbladder's wall that is far from the liver.
+  std::uint32_t FreeWallSpring() const {
+    const auto& springs = Tissue().definition.springs;
+    std::uint32_t best = 0;
+    double farthest = -1;
+    for (std::uint32_t i = 0; i < Tissue().spring_organs.size(); ++i) {
+      if (Tissue().spring_organs[i] != gallbladder_ || !IsEdge(springs[i])) continue;
+      const Vec3 middle = 0.5 * (state_.position[springs[i].a] + state_.position[springs[i].b]);
+      const surgery::OrganSurface& liver = organs_[static_cast<std::size_t>(liver_)];
+      const double distance = liver.tree.FindNearest(liver.Nodes(state_.position), middle).squared_distance;
+      if (distance > farthest) farthest = distance, best = i;
+    }
+    return best;
+  }
+
+  tissue::TissueModel model_;
+  tissue::TissueState state_;
+  std::optional<tissue::Conservation> conservation_;
+  tissue::ConservationState conserved_;
+  std::vector<surgery::OrganSurface> organs_;
+  surgery::TubeSet tubes_;
+  int gallbladder_ = -1, liver_ = -1;
+  std::vector<std::uint32_t> torn_;
+  std::unique_ptr<Operation> operation_;
+  std::optional<cholecystectomy::OperationJudge> judge_;
+  Input input_;
+  HandsNow hands_;
+  std::array<surgery::Grasp, kHandCount> grasps_;
+};
+
+}  // namespace trocar::simulation

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/record/outcome.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "trocar/host/json.h"
+#include "trocar/host/json_text.h"
+#include "trocar/simulation/attempt_end.h"
+#include "trocar/cholecystectomy/critical_view.h"
+#include "trocar/cholecystectomy/injury.h"
+#include "trocar/cholecystectomy/operation_error.h"
+
+namespace trocar::record {
+namespace {
+
+using nlohmann::ordered_json;
+using simulation::OperationResult;
+
+constexpr double kMillilitre = 1e6;  // per m^3
+
+ordered_json OutcomeOf(const scene::Task& task, const scene::TaskSnapshot& now) {
+  ordered_json json = {{"phase", scene::PhaseName(now.phase)},
+                       {"task_seconds", now.time},
+                       {"score", scene::CalcShownScore(task, now)},
+                       {"penalty", now.penalty},
+                       {"goals", ordered_json::array()},
+                       {"errors", ordered_json::object()}};
+  for (std::size_t g = 0; g < now.goals.size(); ++g) {
+    json["goals"].push_back({{"goal", task.goals[g].name},
+                             {"done", now.goals[g].is_done},
+                             {"steps_done", now.goals[g].steps_done}});
+  }
+  for (std::size_t e = 0; e < now.errors.size(); ++e) {
+    if (now.errors[e] > 0) json["errors"][task.errors[e].name] = now.errors[e];
+  }
+  return json;
+}
+
+ordered_json OutcomeOf(const OperationResult& result) {
+  const auto left = [&](surgery::Fluid fluid) {
+    return kMillilitre * result.fluids.fluids[static_cast<std::size_t>(fluid)].left;
+  };
+  ordered_json errors = ordered_json::array();
+  for (const cholecystectomy::ErrorEntry& entry : result.errors.Entries()) {
+    errors.push_back({{"error", cholecystectomy::NameOf(entry.error)},
+                      {"severity", cholecystectomy::NameOf(cholecystectomy::SeverityOf(entry.error))},
+                      {"time_s", entry.time},
+                      {"hand", entry.hand}});
+  }
+  return {{"completed", result.is_completed},
+          {"critical_view", result.was_critical_view_achieved},
+          {"phase", cholecystectomy::NameOf(result.phase)},
+          {"error_count", result.errors.Count()},
+          {"errors", std::move(errors)},
+          {"strasberg", cholecystectomy::StrasbergName(result.injuries.strasberg)},
+          {"right_liver_without_blood", result.injuries.is_right_liver_without_blood},
+          {"blood_ml", left(surgery::Fluid::kBlood)},
+          {"bile_ml", left(surgery::Fluid::kBile)},
+          {"stones_spilled", result.stones.spilled},
+          {"cleared_share", result.facts.cleared_share},
+          {"detached_share", result.facts.detached_share}};
+}
+
+std::optional<ordered_json> ReadObject(std::string_view outcome) {
+  auto parsed = host::ParseJson<ordered_json>(outcome, "the outcome", host::kSmallJson);
+  if (!parsed.ok() || !parsed->is_object()) return std::nullopt;
+  return std::move(*parsed);
+}
+
+std::string Written(const ordered_json& json) {
+  return host::FormatJson(json);
+}
+
+}  // namespace
+
+std::string CalcOutcome(const simulation::Simulation& simulation) {
+  const simulation::Snapshot& now = simulation.GetSnapshot();
+  ordered_json json = {{"seconds", now.time}};
+  if (const auto& task = simulation.GetScene().task) json["task"] = OutcomeOf(*task, now.task);
+  if (const auto result = simulation.GetOperationResult()) json["operation"] = OutcomeOf(*result);
+  return Written(json);
+}
+
+std::optional<OutcomeSummary> ReadOutcome(std::string_view outcome) {
+  using scene::TaskPhase;
+  const auto object = ReadObject(outcome);
+  if (!object) return std::nullopt;
+  const ordered_json& json = *object;
+  const auto field = [](const ordered_json& of, const char* key) {
+    const auto found = of.find(key);
+    return found == of.end() ? ordered_json() : *found;
+  };
+  OutcomeSummary summary;
+  const auto task = field(json, "task"), operation = field(json, "operation");
+  const auto phase = task.is_object() ? (field(task, "phase") == scene::PhaseName(TaskPhase::kCompleted)
+                                             ? TaskPhase::kCompleted
+                                             : TaskPhase::kRunning)
+                                      : TaskPhase::kNone;
+  const bool is_operation_completed = operation.is_object() && field(operation, "completed") == true;
+  summary.is_completed = simulation::HasCompleted(phase, is_operation_completed);
+  if (task.is_object()) {
+    if (const auto score = field(task, "score"); score.is_number()) summary.score = score.get<double>();
+  }
+  return summary;
+}
+
+CourseStep FindCourseStep(std::string_view outcome) {
+  const auto object = ReadObject(outcome);
+  if (!object) return {};
+  const auto course = object->find("course");
+  if (course == object->end() || !course->is_object()) return {};
+  const auto text = [&course](const char* key) {
+    const auto found = course->find(key);
+    return found != course->end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  return {text("course"), text("step")};
+}
+
+std::string WithCourseStep(std::string_view outcome, const CourseStep& step) {
+  ordered_json json = ReadObject(outcome).value_or(ordered_json::object());
+  json["course"] = {{"course", step.course}, {"step", step.step}};
+  return Written(json);
+}
+
+}  // namespace trocar::record

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of a recording that are text.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "trocar/record/recording.h"
+#include "trocar/scene/event.h"
+#include "trocar/scene/task.h"
+#include "trocar/cholecystectomy/triplet.h"
+
+namespace trocar::record {
+
+/// In the word before a chunk's inputs, with their count: they can be decoded without those before.
+inline constexpr std::uint32_t kNewRow = 1u << 31;
+
+std::string WriteDescription(const Description& description);
+/// \return false where the text is no description
+bool ReadDescription(std::string_view text, Description& description);
+
+std::string WriteEnding(const Ending& ending);
+bool ReadEnding(std::string_view text, Ending& ending);
+
+nlohmann::ordered_json EventJson(const scene::Event& event);
+nlohmann::ordered_json TaskErrorJson(const scene::Task& task, std::uint64_t tick,
+                                     const scene::TaskError& error);
+/// A phase of an operation that begins.
+nlohmann::ordered_json PhaseJson(std::uint64_t tick, cholecystectomy::Phase phase);
+/// Appends a list of them.
+bool ReadEvents(std::string_view text, std::vector<EventMark>& events);
+
+}  // namespace trocar::record

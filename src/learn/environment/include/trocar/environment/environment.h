@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file environment.h  A training task or the operation as an environment for reinforcement learning: reset, act, observe.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "trocar/base/result.h"
+#include "trocar/environment/settings.h"
+#include "trocar/simulation/simulation.h"
+
+namespace trocar::environment {
+
+/// What all environments of the same settings share: models of the layouts, and what actions and states mean.
+class EnvironmentModel {
+ public:
+  /// \return kUsage for a setting out of range, kUnknownName for a task that is not known, or the file's error
+  static base::Result<std::shared_ptr<EnvironmentModel>> Make(const EnvironmentSettings& settings);
+  ~EnvironmentModel();
+
+  const EnvironmentSettings& Settings() const;  ///< with what was left open filled in
+  std::span<const Field> ActionFields() const;
+  std::span<const Field> StateFields() const;
+  std::size_t ActionSize() const;  ///< numbers in an action
+  std::size_t StateSize() const;   ///< numbers in a state
+  int TicksPerAction() const;
+  /// Of a layout, 0 to layouts - 1; made when it is asked for first.
+  /// \note Any thread may call it. \return the file's error
+  base::Result<std::shared_ptr<const simulation::SimulationModel>> FindLayout(int layout);
+  /// Whether an action can be used: each number finite, and in -1 to 1 (what lies beyond by single precision's rounding, a
+  /// millionth, is cut by Step) or one of the choices.
+  /// \param action  (ActionSize())
+  /// \return kActionInvalid with the field that is wrong
+  base::Status CheckAction(std::span<const double> action) const;
+
+ private:
+  friend class Environment;
+  struct Content;
+  explicit EnvironmentModel(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+/// What one action came to.
+struct Outcome {
+  double reward = 0;
+  bool is_terminated = false;  ///< by the task's own rules: completed, its time over, or ended by an error
+  bool is_truncated = false;   ///< `most_seconds` are over
+  bool is_success = false;     ///< completed
+  Features features{};
+};
+
+/// Looks at what an environment's ticks have come to, on the thread that steps it: to collect an attempt, for example.
+/// \param input  what the tick was given; empty where an episode begins
+using TickObserver = std::function<void(const simulation::Simulation& simulation, const scene::Input* input)>;
+
+/// One running environment. Not for two threads at a time. The same model, seeds and actions give the same states and rewards.
+class Environment {
+ public:
+  /// \return as EnvironmentModel::FindLayout
+  static base::Result<Environment> Make(std::shared_ptr<EnvironmentModel> model);
+  Environment(Environment&&) noexcept;
+  Environment& operator=(Environment&&) noexcept;
+  ~Environment();
+
+  /// Begins an episode.
+  /// \param seed  chooses the layout, and those of the episodes after it; without one the row of episodes goes on
+  base::Status Reset(std::optional<std::uint64_t> seed = {});
+  /// \param action  (ActionSize()), that CheckAction accepts
+  /// \return kActionInvalid; kEnvironmentState before a Reset or after the episode's end
+  base::Result<Outcome> Step(std::span<const double> action);
+  /// The same for one who commands every tick, as scripted surgeons do: plays the ticks of one action.
+  /// \param command  what the next tick is given, from what the last one published. Settings, and a laparoscope that is no part
+  ///     of the action, stay as the environment has them
+  /// \param[out] action  (ActionSize()) what that amounts to, from -1 to 1; pedals and tools as they are at its end
+  /// \return kUsage for discrete actions; kEnvironmentState as Step
+  base::Result<Outcome> StepBy(const std::function<scene::Input(const simulation::Snapshot&)>& command,
+                               std::span<double> action);
+  /// From now on, in place of the one before; may be empty.
+  void SetTickObserver(TickObserver observer);
+  /// \param[out] state  (StateSize()) as StateFields() says
+  void Observe(std::span<float> state) const;
+  std::size_t StateSize() const;   ///< of the model
+  std::size_t ActionSize() const;  ///< of the model
+
+  const simulation::Simulation& GetSimulation() const;
+  /// What the last tick of the last action was given.
+  const scene::Input& LastInput() const;
+  int Layout() const;                 ///< of this episode
+  std::uint64_t ActionCount() const;  ///< of this episode
+  bool IsOver() const;
+
+ private:
+  base::Status CheckIsRunning() const;
+  Outcome EndStep();
+  struct Content;
+  explicit Environment(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace trocar::environment

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/files/task_file.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "field_ranges.h"
+#include "ideal_path.h"
+#include "scene_reader.h"
+#include "task_rules.h"
+#include "trocar/host/data_folder.h"
+#include "trocar/host/json.h"
+#include "trocar/host/safe_file.h"
+#include "trocar/math/random.h"
+
+namespace trocar::files {
+namespace {
+
+namespace fs = std::filesystem;
+using base::ErrorCode;
+using host::JsonView;
+
+constexpr const char* kDefaultLevel = "normal";
+
+std::vector<std::string> ReadLevels(const JsonView& root) {
+  if (!root.Has("levels")) return {kDefaultLevel};
+  std::vector<std::string> levels;
+  for (const JsonView& level : root.Array("levels")) levels.push_back(level.AsText());
+  if (std::find(levels.begin(), levels.end(), kDefaultLevel) == levels.end())
+    root.Complain("levels must contain \"normal\"", ErrorCode::kSceneInvalid);
+  return levels;
+}
+
+/// What the best shown score of a level is: 100 where the file says nothing.
+double ReadBestScore(const JsonView& root, const std::vector<std::string>& levels, const std::string& level) {
+  if (!root.Has("level_scores")) return 100.0;
+  const JsonView scores = root.Object("level_scores");
+  for (const std::string& key : scores.Keys()) {
+    if (std::find(levels.begin(), levels.end(), key) == levels.end())
+      scores.Complain("there is no level \"" + key + "\" in levels", ErrorCode::kSceneInvalid);
+  }
+  for (const std::string& each : levels) (void)scores.Number(each, range::kLevelScore);
+  return scores.Number(level, range::kLevelScore);
+}
+
+/// Values of the parameters at a level, in alphabetical order; what is random comes from the seed.
+std::map<std::string, double> CalcParameters(const JsonView& root, const std::vector<std::string>& levels,
+                                             const TaskChoice& choice) {
+  std::map<std::string, double> values;
+  if (!root.Has("parameters")) return values;
+  const JsonView parameters = root.Object("parameters");
+  math::Random random(choice.seed);
+  for (const std::string& name : parameters.Keys()) {
+    const JsonView view = parameters.Object(name);
+    view.AllowOnly({"about", "value", "by_level", "spread"});
+    double value = 0;
+    if (view.Has("value") == view.Has("by_level")) {
+      view.Complain("a parameter has either value or by_level", ErrorCode::kSceneInvalid);
+    } else if (view.Has("value")) {
+      value = view.Number("value", range::kParameter);
+    } else {
+      const JsonView by_level = view.Object("by_level");
+      for (const std::string& level : levels)
+        (void)by_level.Number(level, range::kParameter);  // each level needs its number
+      value = by_level.Number(choice.level, range::kParameter);
+    }
+    const double spread = view.NumberOr("spread", 0.0, range::kSpread);
+    values[name] = value + random.Uniform(-spread, spread);
+  }
+  return values;
+}
+
+void ReplaceAll(std::string& text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+}
+
+/// Puts numbers in the place of "{name}" and "-{name}".
+void Substitute(const std::map<std::string, double>& values, std::string& text) {
+  for (const auto& [name, value] : values) {
+    char number[40];
+    std::snprintf(number, sizeof number, "%.17g", value);
+    ReplaceAll(text, "\"{" + name + "}\"", number);
+    std::snprintf(number, sizeof number, "%.17g", -value);
+    ReplaceAll(text, "\"-{" + name + "}\"", number);
+  }
+}
+
+}  // namespace
+
+base::Result<scene::Scene> ReadTask(const fs::path& path, const TaskChoice& choice) {
+  auto text = host::ReadFile(path);
+  if (!text.ok()) return text.error();
+  return ParseTask(std::move(*text), path, choice);
+}
+
+base::Result<scene::Scene> ParseTask(std::string text, const fs::path& source, const TaskChoice& choice) {
+  // twice: what the parameters are, then the whole with their numbers in place
+  auto written = host::JsonDocument::Parse(text, source.string());
+  if (!written.ok()) return written.error();
+  const JsonView form = written->Root();
+  if (form.Text("format") != "trocar-task") form.Complain("format must be \"trocar-task\"");
+  const auto levels = ReadLevels(form);
+  if (std::find(levels.begin(), levels.end(), choice.level) == levels.end()) {
+    std::string known;
+    for (const auto& level : levels) known += (known.empty() ? "" : ", ") + level;
+    form.Complain("there is no level \"" + choice.level + "\"; known are " + known, ErrorCode::kUnknownName);
+  }
+  const auto values = CalcParameters(form, levels, choice);
+  if (const auto status = written->Check(); !status.ok()) return status.error();
+  Substitute(values, text);
+
+  auto document = host::JsonDocument::Parse(text, source.string());
+  if (!document.ok()) return document.error();
+  const JsonView root = document->Root();
+  root.AllowOnly({"format", "version", "name", "about", "levels", "level_scores", "parameters", "scene",
+                  "regions", "rules", "ideal_path"});
+  if (root.Integer("version") != 1) root.Complain("version must be 1");
+  const std::string name = root.Text("name"), about = root.Text("about");
+  auto scene = ReadSceneFields(*document, root.Object("scene"), source.parent_path(), choice.patient_folder);
+  if (!scene.ok()) return scene.error();
+  scene->name = name;
+  scene->seed = choice.seed;
+  scene::Task task = ReadTaskRules(root, *scene);
+  ReadIdealPath(root, *scene, task);
+  task.best_score = ReadBestScore(root, levels, choice.level);
+  if (const auto status = document->Check(); !status.ok()) return status.error();
+  task.name = name;
+  task.about = about;
+  task.level = choice.level;
+  scene->task = std::move(task);
+  return scene;
+}
+
+base::Result<std::vector<TaskEntry>> ListTasks() {
+  const auto data = host::FindDataFolder();
+  if (!data.ok()) return data.error();
+  const fs::path folder = *data / "scenes/tasks";
+  std::error_code failure;
+  std::vector<TaskEntry> tasks;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failure)) {
+    if (entry.path().extension() != ".json") continue;
+    auto document = host::JsonDocument::Read(entry.path());
+    if (!document.ok()) return document.error();
+    const JsonView root = document->Root();
+    TaskEntry task{entry.path().stem().string(), entry.path(), root.Text("name"), root.Text("about"),
+                   ReadLevels(root)};
+    if (const auto status = document->Check(); !status.ok()) return status.error();
+    tasks.push_back(std::move(task));
+  }
+  if (failure) {
+    return base::Error{ErrorCode::kFileMissing, folder.string() + ": " + failure.message() +
+                                                    "; the tasks are delivered with the program"};
+  }
+  std::sort(tasks.begin(), tasks.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+  return tasks;
+}
+
+base::Result<fs::path> FindTask(const std::string& name_or_path) {
+  std::error_code ignored;
+  if (name_or_path.ends_with(".json") || fs::is_regular_file(name_or_path, ignored))
+    return fs::path(name_or_path);
+  const auto tasks = ListTasks();
+  if (!tasks.ok()) return tasks.error();
+  std::string known;
+  for (const TaskEntry& task : *tasks) {
+    if (task.key == name_or_path) return task.path;
+    known += (known.empty() ? "" : ", ") + task.key;
+  }
+  return base::Error{ErrorCode::kUnknownName, "there is no task \"" + name_or_path + "\"; known are " +
+                                                  known + "; or give the path of a task file (.json)"};
+}
+
+}  // namespace trocar::files

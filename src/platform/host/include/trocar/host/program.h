@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file program.h  The running program, and those that come with it.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace trocar::host {
+
+/// File of the running program; empty where the system does not say.
+std::filesystem::path FindProgram();
+/// Folder of the running program; "." where the system does not say.
+std::filesystem::path FindProgramFolder();
+/// A program that only other programs start: in ../libexec/trocar of an installation, else beside the running one.
+std::filesystem::path FindCompanionProgram(std::string_view name);
+
+}  // namespace trocar::host

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file surgeon.h  Scripted surgeons: they act through Input alone and know only what Snapshot shows.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trocar/base/result.h"
+#include "trocar/base/state_archive.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/snapshot.h"
+
+namespace trocar::agent {
+
+using scene::Input;
+using scene::Scene;
+using scene::VisitState;
+using simulation::Snapshot;
+
+/// A pair of hands with a mind. The same scene, seed and snapshots give the same inputs.
+class Surgeon {
+ public:
+  virtual ~Surgeon() = default;
+  /// What hands, feet and the assistant do in the next tick.
+  /// \param seen  after the last tick
+  virtual Input Act(const Snapshot& seen) = 0;
+  /// Nothing is left to do, or the surgeon has given up.
+  virtual bool HasFinished() const = 0;
+  /// Its memory: the plan, timers, random streams. Restored into a surgeon made from the same entry, scene and seed, it
+  /// goes on as the one that was saved, from the snapshot that one would have seen next.
+  virtual void VisitState(base::StateArchive& archive) = 0;
+  /// For one who takes over: how the laparoscope lay at the start, from where sides are counted.
+  virtual void KnowFirstView(const instrument::TrocarJoints& /*laparoscope*/) {}
+  /// What is being done, for a person: "ring_3: hand over".
+  virtual std::string_view Doing() const = 0;
+  /// Why an operation was ended before its end because going on would not be safe; "" while it goes on, where it was
+  /// finished, and where nobody meant to finish it.
+  virtual std::string_view BailOutReason() const { return {}; }
+};
+
+/// One kind of surgeon. Several may have the same name when they suit different scenes.
+struct SurgeonEntry {
+  const char* name;   ///< "expert", "novice", "drops_object"
+  const char* about;  ///< one line
+  /// ErrorRule::name (or an operation's error) that this one commits; "" for the able ones.
+  const char* error;
+  bool (*suits)(const Scene& scene);
+  std::unique_ptr<Surgeon> (*make)(std::shared_ptr<const Scene> scene, std::uint64_t seed);
+};
+
+/// Every kind there is.
+std::vector<SurgeonEntry> ListSurgeons();
+
+/// \return kUnknownName with those that suit the scene
+base::Result<std::unique_ptr<Surgeon>> MakeSurgeon(std::string_view name, std::shared_ptr<const Scene> scene,
+                                                   std::uint64_t seed);
+
+}  // namespace trocar::agent

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file injury.h  What the acts amount to for the patient, derived from the network of ducts and arteries.
+///
+/// Source: Strasberg's classes of bile duct injury (Strasberg, Hertl and Soper, J Am Coll Surg 1995); consequences
+/// from what still hangs together.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "trocar/roles/roles.h"
+#include "trocar/surgery/flow_network.h"
+
+namespace trocar::cholecystectomy {
+
+/// What a duct or artery is to the surgeon.
+using VesselRole = roles::TubeRole;
+/// Cystic duct, cystic artery and small ducts of the bed; every other duct and artery must stay.
+bool MayBeDivided(VesselRole role) noexcept;
+
+enum class Strasberg : std::uint8_t {
+  kNone,
+  kA,   ///< leak from the cystic duct's stump or from small ducts of the bed
+  kB,   ///< a part of the biliary tree is shut off: an aberrant right duct
+  kC,   ///< an aberrant right duct is cut and not closed
+  kD,   ///< a hole in the side of a main duct
+  kE1,  ///< main duct cut or shut more than 20 mm below the confluence
+  kE2,  ///< less than that
+  kE3,  ///< at the confluence, which is kept
+  kE4,  ///< at the confluence, which is lost
+  kE5   ///< main and aberrant right duct
+};
+/// "A" to "E5", "none"
+std::string_view StrasbergName(Strasberg injury) noexcept;
+
+/// The network with the meaning of its parts.
+struct BiliaryAnatomy {
+  std::vector<VesselRole> roles;  ///< of each vessel of the network
+  /// From the confluence of the hepatic ducts along the flow of bile to the vessel's upper end [m]; of main ducts.
+  std::vector<double> below_confluence;
+  std::vector<bool> is_upstream_from;  ///< whether the vessel's `from` end is the upstream one
+  std::optional<std::uint32_t> liver;  ///< junction where bile comes from
+  std::optional<std::uint32_t> bowel;  ///< junction where it goes
+  std::vector<std::uint32_t>
+      gallbladder;                     ///< junctions at the gallbladder: of its ducts, and of its arteries
+  std::optional<std::uint32_t> aorta;  ///< junction where blood comes from
+  std::optional<std::uint32_t> right_liver;  ///< junction that the right hepatic artery supplies
+};
+
+struct InjuryReport {
+  Strasberg strasberg = Strasberg::kNone;     ///< the worst
+  bool drains_no_bile = false;                ///< no way from the liver to the bowel: jaundice
+  bool is_right_liver_without_blood = false;  ///< ischaemia
+  double bile_rate = 0;                       ///< that still leaks [m^3/s]
+  double blood_rate = 0;                      ///< [m^3/s]
+  int structures_entering = 0;                ///< ducts and arteries still joined to the gallbladder
+  int spilled_stones = 0;                     ///< in the abdomen, not retrieved; the caller counts them
+  /// Vessels that were clipped or cut though they must not be.
+  std::vector<std::uint32_t> wrong_vessels;
+
+  /// A main duct or the right hepatic artery has been clipped, cut or opened.
+  bool IsCritical() const { return strasberg >= Strasberg::kD || is_right_liver_without_blood; }
+};
+
+/// \param network  with the pressures that hold at the end; solved anew
+/// \pre roles, below_confluence and is_upstream_from are as many as vessels (TROCAR_ASSERT)
+InjuryReport JudgeInjuries(const BiliaryAnatomy& anatomy, const surgery::VesselActs& acts,
+                           surgery::FlowNetwork& network);
+
+}  // namespace trocar::cholecystectomy

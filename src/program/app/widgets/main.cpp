@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file main.cpp  trocar-window: the simulator's window, the page of devices, or one of the editors, as a program of its
+/// own.
+#include <gtkmm.h>
+
+#include <clocale>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <locale>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+#include "device_page.h"
+#include "replay_window.h"
+#include "simulator_window.h"
+#include "trocar/centre/centre_window.h"
+#include "trocar/host/console.h"
+#include "trocar/host/data_folder.h"
+#include "trocar/host/log.h"
+#include "trocar/host/partial_path.h"
+#include "trocar/host/printable_output.h"
+#include "trocar/base/simd_choice.h"
+#include "trocar/host/translate.h"
+#include "trocar/editor/contour_window.h"
+#include "trocar/editor/patient_editor_window.h"
+#include "trocar/gui/composition.h"
+#include "trocar/gui/look.h"
+#include "trocar/gui/window_screenshot.h"
+#include "trocar/presenter/options.h"
+#include "trocar/scene/scene.h"
+
+namespace trocar::app {
+namespace {
+
+/// The window that the command line asks for, and those that it opens. It opens with the application and ends with it.
+class Program {
+ public:
+  explicit Program(const presenter::CommandLine& command) : command_(command) {}
+
+  /// Who operates, and where attempts go. \return what the person has to change
+  base::Status FindStore() {
+    const presenter::Options& options = command_.options;
+    auto place = store::FindPlace(options.store);
+    if (!place.ok()) return place.error();
+    access_.place = std::move(*place);
+    // one that nobody attends keeps an attempt only where it is told to
+    const bool keeps = !options.recordings.empty() && (options.run.IsAttended() || !options.store.empty());
+    if (!options.trainee.empty()) {
+      auto pseudonym = centre::FindPseudonym(access_, options.trainee);
+      if (!pseudonym.ok()) return pseudonym.error();
+      access_.person = std::move(*pseudonym);
+    }
+    if (keeps)
+      filing_ = std::make_unique<centre::AttemptFiling>(access_, Threads(), [this] { WakeCentre(); });
+    return {};
+  }
+
+  int Run() {
+    const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
+    // in files, certificates and SQL numbers have a point, whatever the language of the desktop
+    std::locale::global(std::locale(std::locale(), std::locale::classic(), std::locale::numeric));
+    std::setlocale(LC_NUMERIC, "C");
+    host::UseLanguage(host::FindLocaleFolder());  // again: the line before has taken the language back
+    application_ = application.get();
+    application->signal_activate().connect([&] {
+      ApplyLook();
+      Open();
+      application->add_window(*window_);
+      window_->present();
+    });
+    const int status = application->run();
+    const bool has_failed = has_failed_ && has_failed_();
+    const bool is_good = status == 0 && !has_failed;
+    for (const auto& simulator : simulators_) simulator->SaveHapticRecord();
+    {
+      const std::lock_guard lock(mutex_);
+      woken_ = nullptr;
+    }
+    centre_.reset();
+    replay_.reset();
+    simulators_.clear();
+    window_.reset();
+    filing_.reset();  // after whoever records
+    return is_good ? EXIT_SUCCESS : EXIT_FAILURE;
+  }
+
+ private:
+  static void ApplyLook() {
+    if (const auto data = host::FindDataFolder(); data.ok()) {
+      gui::ApplyLook(*data);
+    } else {
+      host::Log(host::LogLevel::kWarning, data.error().Text());
+    }
+  }
+
+  void Open() {
+    const presenter::Options& options = command_.options;
+    if (!command_.contours.images.empty()) {
+      Use(std::make_unique<editor::ContourWindow>(command_.contours, since_start_));
+    } else if (options.is_device_page) {
+      Use(std::make_unique<DevicePage>(options, nullptr));
+    } else if (!command_.patient_editor.patient.empty()) {
+      Use(std::make_unique<editor::PatientEditorWindow>(command_.patient_editor));
+    } else if (!options.replay.empty()) {
+      Use(std::make_unique<ReplayWindow>(options,
+                                         [this](presenter::Branch branch) { Simulate(std::move(branch)); }));
+    } else if (!options.page.empty()) {
+      auto centre = MakeCentre();
+      OpenPage(*centre);
+      Use(std::move(centre));
+    } else {
+      Use(MakeSimulator({}));
+    }
+  }
+
+  int Threads() const {
+    return command_.options.threads > 0 ? command_.options.threads
+                                        : presenter::ChooseThreads(std::thread::hardware_concurrency());
+  }
+
+  // simulators
+
+  std::unique_ptr<SimulatorWindow> MakeSimulator(SimulatorWindow::Beginning beginning) {
+    SimulatorServices services;
+    services.open_centre = [this] { OpenCentre().Presenter().Open(centre::PageKind::kHistory); };
+    services.load_best = [this]() -> std::function<base::Result<centre::BestResults>()> {
+      return [access = access_] { return centre::LoadBestResults(access); };
+    };
+    services.be_somebody = [this](const std::optional<std::string>& text) -> base::Result<std::string> {
+      if (text) {
+        auto pseudonym = centre::FindPseudonym(access_, *text);
+        if (!pseudonym.ok()) return pseudonym.error();
+        access_.person = std::move(*pseudonym);
+        if (centre_ != nullptr) centre_->Presenter().BeSomebody(access_.person);
+        if (filing_ != nullptr) filing_->SetPerson(access_.person);
+      }
+      return centre::NameOf(access_, access_.person);
+    };
+    services.open_attempt = [this](const std::filesystem::path& recording,
+                                   const std::optional<centre::ExamSitting>& exam) {
+      centre::CentrePresenter& presenter = OpenCentre().Presenter();
+      exam ? presenter.EndExam(*exam, recording) : presenter.ExpectResult(recording);
+    };
+    if (filing_ != nullptr) {
+      services.hooks.on_begin = [filing = filing_.get()](const auto& path, const auto& step) {
+        filing->Begin(path, step);
+      };
+      services.hooks.on_end = [filing = filing_.get()](const auto& path) { filing->End(path); };
+    }
+    return std::make_unique<SimulatorWindow>(command_.options, since_start_, std::move(services),
+                                             std::move(beginning));
+  }
+
+  /// Goes on in a window beside what is there, or in the simulator that is open.
+  void Simulate(SimulatorWindow::Beginning beginning) {
+    SimulatorWindow* open = OpenSimulator();
+    if (open != nullptr && !std::holds_alternative<presenter::Branch>(beginning)) {
+      if (const auto* start = std::get_if<centre::Start>(&beginning)) open->Presenter().Open(*start);
+      if (const auto* task = std::get_if<presenter::TaskRequest>(&beginning)) open->Presenter().Open(*task);
+      return open->present();
+    }
+    simulators_.push_back(MakeSimulator(std::move(beginning)));
+    application_->add_window(*simulators_.back());
+    simulators_.back()->present();
+  }
+
+  SimulatorWindow* OpenSimulator() {
+    for (const auto& one : simulators_) {
+      if (one->get_visible()) return one.get();
+    }
+    auto* first = dynamic_cast<SimulatorWindow*>(window_.get());
+    return first != nullptr && first->get_visible() ? first : nullptr;
+  }
+
+  // the training centre
+
+  std::unique_ptr<centre::CentreWindow> MakeCentre() {
+    centre::CentreServices services;
+    services.start = [this](const centre::Start& start) { Simulate(start); };
+    services.start_task = [this](const std::string& task, const std::string& level) {
+      presenter::TaskRequest request;
+      request.task = task;
+      if (!level.empty()) request.choice.level = level;
+      Simulate(request);
+    };
+    services.replay = [this](const std::filesystem::path& recording, double time) {
+      presenter::Options options = command_.options;
+      options.replay = recording;
+      options.replay_beside.clear();
+      options.replay_at = time;
+      replay_ = std::make_unique<ReplayWindow>(
+          options, [this](presenter::Branch branch) { Simulate(std::move(branch)); });
+      application_->add_window(*replay_);
+      replay_->present();
+    };
+    auto made =
+        std::make_unique<centre::CentreWindow>(access_, Threads(), filing_.get(), std::move(services));
+    made->Presenter().SignalPerson([this](const std::string& person) { access_.person = person; });
+    const std::lock_guard lock(mutex_);
+    woken_ = made.get();
+    return made;
+  }
+
+  /// The one that is open, or a new one.
+  centre::CentreWindow& OpenCentre() {
+    if (auto* first = dynamic_cast<centre::CentreWindow*>(window_.get());
+        first != nullptr && first->get_visible()) {
+      first->present();
+      return *first;
+    }
+    if (centre_ == nullptr || !centre_->get_visible()) {
+      {
+        const std::lock_guard lock(mutex_);
+        woken_ = nullptr;
+      }
+      centre_ = MakeCentre();
+      application_->add_window(*centre_);
+    }
+    centre_->present();
+    return *centre_;
+  }
+
+  void OpenPage(centre::CentreWindow& window) {
+    const std::string& page = command_.options.page;
+    centre::CentrePresenter& presenter = window.Presenter();
+    presenter.Open(page == "courses" ? centre::PageKind::kCourses
+                   : page == "group" ? centre::PageKind::kGroup
+                   : page == "exam"  ? centre::PageKind::kExam
+                                     : centre::PageKind::kHistory);
+    if (!command_.options.exam.empty()) presenter.OpenExamFile(command_.options.exam);
+    const gui::RunOptions& run = command_.options.run;
+    if (run.IsAttended()) return;
+    Glib::signal_timeout().connect_once(
+        [&window, path = run.screenshot] {
+          if (const auto saved = gui::SaveScreenshot(window, path); !saved.ok()) {
+            host::Log(host::LogLevel::kError, saved.error().Text());
+            window.Fail(saved.error());
+          }
+          window.close();
+        },
+        static_cast<unsigned>(1e3 * run.screenshot_after));
+  }
+
+  /// By any thread.
+  void WakeCentre() {
+    const std::lock_guard lock(mutex_);
+    if (woken_ != nullptr) woken_->Wake();
+  }
+
+  template <typename Window>
+  void Use(std::unique_ptr<Window> window) {
+    if constexpr (std::is_same_v<Window, SimulatorWindow>) {
+      has_failed_ = [shown = window.get()] {
+        shown->SaveHapticRecord();
+        return shown->GetFailure().has_value();
+      };
+    } else {
+      has_failed_ = [shown = window.get()] { return shown->GetFailure().has_value(); };
+    }
+    window_ = std::move(window);
+  }
+
+  host::Stopwatch since_start_;
+  presenter::CommandLine command_;
+  centre::Access access_;
+  std::mutex mutex_;
+  centre::CentreWindow* woken_ = nullptr;  // guarded by mutex_; told of the filing's news
+  std::unique_ptr<centre::AttemptFiling> filing_;
+  Gtk::Application* application_ = nullptr;
+  std::unique_ptr<Gtk::ApplicationWindow> window_;
+  std::vector<std::unique_ptr<SimulatorWindow>> simulators_;  // that were opened beside it
+  std::unique_ptr<centre::CentreWindow> centre_;
+  std::unique_ptr<ReplayWindow> replay_;
+  std::function<bool()> has_failed_;  // asked once the windows have closed
+};
+
+}  // namespace
+}  // namespace trocar::app
+
+int main(int argc, char** argv) {
+  using namespace trocar;
+  const host::PrintableOutput fence;
+  host::UseLanguage(host::FindLocaleFolder());
+  const base::Result<presenter::CommandLine> command = presenter::ParseCommandLine(argc, argv);
+  if (!command) {
+    host::PrintErrorLine(host::ShownText(command.error()));
+    return 2;
+  }
+  if (command->is_text_only) {
+    std::fputs(command->text.c_str(), stdout);
+    return EXIT_SUCCESS;
+  }
+  if (const base::Status level = base::CheckSimdLevel(); !level) {
+    host::PrintErrorLine(host::ShownText(level.error()));
+    return 2;
+  }
+  app::Program program(*command);
+  gtk_disable_setlocale();  // glibmm does it, and what Run() sets after that would be undone
+  if (!gtk_init_check()) {
+    const base::Error error{base::ErrorCode::kNoDisplay,
+                            "no display can be opened: start from a desktop session or set DISPLAY "
+                            "or WAYLAND_DISPLAY; without one, "
+                            "`trocar simulate` runs the same scene headless"};
+    host::PrintErrorLine(host::ShownText(error));
+    return EXIT_FAILURE;
+  }
+  if (const base::Status found = program.FindStore(); !found.ok()) {
+    host::PrintErrorLine(host::ShownText(found.error()));
+    return EXIT_FAILURE;
+  }
+  host::RemovePartialPathsOnSignals();
+  gui::ChooseComposition();
+  return program.Run();
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file judged_attempt.h  From a recording to all that can be said of it: metrics, verdict, the coach's words, a report.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "trocar/assessment/proficiency.h"
+#include "trocar/base/result.h"
+#include "trocar/record/outcome.h"
+#include "trocar/report/attempt_report.h"
+#include "trocar/store/attempts.h"
+
+namespace trocar::centre {
+
+using StepName = record::CourseStep;
+
+struct JudgeSettings {
+  int threads = 1;     ///< of the solver; the numbers are the same for any number
+  StepName step;       ///< what it was made for
+  std::string person;  ///< pseudonym; may be empty
+  /// Told the share done, 0 to 1; false gives up. May be empty.
+  std::function<bool(double)> progress;
+};
+
+struct JudgedAttempt {
+  store::Attempt attempt;  ///< with metrics, as the store keeps it
+  report::AttemptReport report;
+  std::optional<assessment::Verdict> verdict;  ///< nothing where there are no thresholds
+  std::string debriefing;                      ///< of the step; empty without one
+  StepName step;
+  double begin = 0;               ///< of the recording: where a replay of it begins [s]
+  bool is_demonstration = false;  ///< of the script or the expert in the window: nobody's own
+};
+
+/// Plays the recording again and judges it, until the step's last moment where it is of a part of an operation.
+/// \return the recording's error, kRecordingInvalid where it does not replay; kCancelled where `progress` gave up
+/// \note Takes about as long as the attempt took, or less.
+base::Result<JudgedAttempt> JudgeRecording(const std::filesystem::path& path, const JudgeSettings& settings);
+
+/// What is known without playing it again: no metrics, no verdict.
+base::Result<store::Attempt> DescribeRecording(const std::filesystem::path& path, const std::string& person,
+                                               const StepName& step);
+
+/// The step for which an attempt of the store was made.
+StepName FindStepName(const store::Attempt& attempt);
+
+/// "Peg transfer" of "peg_transfer", "Cholecystectomy" of "cholecystectomy"; the key's words where no task has it.
+std::string TaskNameOf(const std::string& key);
+
+}  // namespace trocar::centre

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/session/runner.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+#include "small_scene.h"
+#include "trocar/files/task_file.h"
+#include "trocar/record/replay.h"
+
+namespace trocar::session {
+
+using scene::CalcScriptInput;
+using scene::SmallScene;
+namespace {
+
+class RunnerTest : public SmallScene {
+ protected:
+  Simulation MakeSimulation() {
+    auto scene = Read();
+    EXPECT_TRUE(scene.ok());
+    return std::move(*Simulation::Make(std::make_shared<const Scene>(std::move(*scene)), 1));
+  }
+  /// Waits, for at most ten seconds, until `claim` holds.
+  static bool Eventually(const std::function<bool()>& claim) {
+    for (int i = 0; i < 2000; ++i) {
+      if (claim()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+};
+
+TEST_F(RunnerTest, ShowsTheStartBeforeItRuns) {
+  Runner runner(MakeSimulation());
+  EXPECT_TRUE(runner.IsPaused());
+  EXPECT_EQ(runner.Latest().tick, 0u);
+  EXPECT_FALSE(runner.Latest().positions.empty());
+}
+
+TEST_F(RunnerTest, RunsPausesAndResets) {
+  Runner runner(MakeSimulation());
+  runner.SetScripted(true);
+  runner.SetPaused(false);
+  ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 20; }));
+  runner.SetPaused(true);
+  std::uint64_t last = 0;
+  ASSERT_TRUE(Eventually([&] {
+    const auto tick = runner.Latest().tick;
+    const bool is_still = tick == last;
+    last = tick;
+    return is_still;
+  }));
+  runner.Reset();
+  EXPECT_TRUE(Eventually([&] { return runner.Latest().tick == 0; }));
+}
+
+TEST_F(RunnerTest, UsesTheNewestInput) {
+  Runner runner(MakeSimulation());
+  Input input = CalcScriptInput(runner.GetScene(), 0.0);
+  input.hands[kRight].pan += 0.1;
+  runner.SetInput(input);
+  runner.SetPaused(false);
+  EXPECT_TRUE(Eventually([&] {
+    // record::RoundJoints moves it by half a nanometre at most
+    return std::abs(runner.Latest().instruments[kRight].joints.pan - input.hands[kRight].pan) < 1e-9;
+  }));
+}
+
+TEST_F(RunnerTest, EndsAtOnceEvenWhileRunning) {
+  for (int i = 0; i < 5; ++i) {
+    Runner runner(MakeSimulation());
+    runner.SetPaused(false);
+  }
+}
+
+TEST_F(RunnerTest, KeepsEachAttemptInAFileThatReplaysToTheBit) {
+  const auto kept = folder_ / "attempts";
+  AttemptKeeping keeping{kept, {}};
+  keeping.description.name = (folder_ / "scene.json").string();
+  {
+    auto simulation = MakeSimulation();
+    keeping.description.seed = simulation.GetScene().seed;
+    Runner runner(std::move(simulation), nullptr, keeping);
+    runner.SetScripted(true);
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      runner.SetPaused(false);
+      ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 140; }));
+      EXPECT_EQ(runner.RecordingStatus().value().failure, std::nullopt);
+      runner.SetPaused(true);
+      runner.Reset();
+      ASSERT_TRUE(Eventually([&] { return runner.Latest().tick == 0; }));
+    }
+    runner.SetPaused(false);
+    ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 5; }));
+  }
+  // the third was hardly begun
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    if (entry.path().extension() != ".trocar") continue;
+    EXPECT_TRUE(std::filesystem::exists(record::IndexPathOf(entry.path())));
+    ++count;
+    auto recording = record::ReadRecording(entry.path());
+    ASSERT_TRUE(recording.ok()) << recording.error().Text();
+    EXPECT_TRUE(recording->ending.has_value());
+    EXPECT_EQ(recording->description.player, "the demonstration");
+    EXPECT_GT(recording->inputs.size(), 140u);
+    auto replay = record::Replay::Open(std::move(*recording), 1);
+    ASSERT_TRUE(replay.ok()) << replay.error().Text();
+    const auto verified = replay->Verify();
+    ASSERT_TRUE(verified.ok()) << verified.error().Text();
+    EXPECT_TRUE(verified->IsVerified());
+  }
+  EXPECT_EQ(count, 2);
+}
+
+TEST_F(RunnerTest, EndsAnAttemptAndRecordsNoMoreUntilTheReset) {
+  const auto kept = folder_ / "attempts";
+  AttemptKeeping keeping{kept, {}};
+  keeping.description.name = (folder_ / "scene.json").string();
+  std::atomic<int> begun{0}, ended{0};
+  keeping.on_begin = [&](const std::filesystem::path& path) {
+    begun += path.extension() == ".trocar" ? 1 : 0;
+  };
+  keeping.on_end = [&](const std::filesystem::path& path) { ended += path.extension() == ".trocar" ? 1 : 0; };
+  {
+    Runner runner(MakeSimulation(), nullptr, keeping);
+    runner.SetPaused(false);
+    ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 140; }));
+    EXPECT_EQ(begun.load(), 1);
+    EXPECT_EQ(ended.load(), 0);
+    runner.EndAttempt();
+    ASSERT_TRUE(Eventually([&] { return ended.load() == 1; }));
+    const auto path = runner.RecordingStatus().value().path;
+    const auto recording = record::ReadRecording(path);
+    ASSERT_TRUE(recording.ok()) << recording.error().Text();
+    EXPECT_TRUE(recording->ending.has_value()) << "it is whole while the simulation goes on";
+    const auto tick = runner.Latest().tick;
+    ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > tick + 100; }));
+    EXPECT_EQ(begun.load(), 1) << "nothing more is recorded";
+    runner.Reset();
+    ASSERT_TRUE(Eventually([&] { return begun.load() == 2; }));
+  }
+  EXPECT_EQ(ended.load(), 2);
+}
+
+TEST_F(RunnerTest, GoesOnWhereAttemptsCannotBeKept) {
+  Write("attempts", "a file where the folder should be");
+  AttemptKeeping keeping{folder_ / "attempts", {}};
+  keeping.description.name = (folder_ / "scene.json").string();
+  Runner runner(MakeSimulation(), nullptr, keeping);
+  runner.SetScripted(true);
+  runner.SetPaused(false);
+  ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 20; }));
+  EXPECT_EQ(runner.RecordingStatus().value().failure.value().code, base::ErrorCode::kFileUnwritable);
+}
+
+// Slow motion changes when a tick runs, never what it computes; such an attempt is practice.
+TEST(Runner, SlowMotionIsClamped) {
+  auto scene = files::ReadTask(*files::FindTask("peg_transfer"));
+  ASSERT_TRUE(scene.ok());
+  auto simulation =
+      simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()), 1);
+  ASSERT_TRUE(simulation.ok());
+  Runner runner(std::move(simulation).value());
+  EXPECT_EQ(runner.GetSpeed(), 1.0);
+  runner.SetSpeed(0.35);
+  EXPECT_EQ(runner.GetSpeed(), 0.35);
+  runner.SetSpeed(5);
+  EXPECT_EQ(runner.GetSpeed(), 1.0);
+  for (const double broken : {0.0, -1.0, std::nan("")}) {
+    runner.SetSpeed(broken);
+    EXPECT_EQ(runner.GetSpeed(), Runner::kSlowest);
+  }
+}
+
+}  // namespace
+}  // namespace trocar::session
