@@ -12,14 +12,14 @@
 #include <span>
 #include <system_error>
 
-#include "anatomy/src/label_names.h"
-#include "device/src/haply/haply_messages.h"
-#include "record/src/chunk.h"
-#include "record/src/recording_json.h"
-#include "scene/src/material_file.h"
-#include "scene/src/script.h"
-#include "store/src/database.h"
-#include "study/src/study_folder.h"
+#include "imaging/anatomy/src/label_names.h"
+#include "hands/device/src/haply/haply_messages.h"
+#include "judge/record/src/chunk.h"
+#include "judge/record/src/recording_json.h"
+#include "platform/files/src/material_file.h"
+#include "platform/files/src/script.h"
+#include "judge/store/src/database.h"
+#include "program/study/src/study_folder.h"
 #include "trocar/files/operation_level_file.h"
 #include "trocar/files/operation_parameters_file.h"
 #include "trocar/files/patient_file.h"

@@ -18,9 +18,9 @@
 
 #include "command_runs.h"
 #include "hostile_places.h"
-#include "record/src/chunk.h"
-#include "record/src/recording_json.h"
-#include "store/src/database.h"
+#include "judge/record/src/chunk.h"
+#include "judge/record/src/recording_json.h"
+#include "judge/store/src/database.h"
 #include "trocar/cli/run_command.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/store/attempts.h"

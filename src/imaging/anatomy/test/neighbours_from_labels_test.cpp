@@ -63,7 +63,7 @@ class TrunkMap {
     };
   }
   /// From one end to the other, with round ends.
-  static Shape patient::Tube(std::array<double, 3> from, std::array<double, 3> to, double radius) {
+  static Shape Tube(std::array<double, 3> from, std::array<double, 3> to, double radius) {
     return [=](double r, double a, double s) {
       const math::Vec3 p{r, a, s}, x{from[0], from[1], from[2]}, way = math::Vec3{to[0], to[1], to[2]} - x;
       const double t = std::clamp(math::Dot(p - x, way) / math::SquaredNorm(way), 0.0, 1.0);
@@ -73,18 +73,18 @@ class TrunkMap {
 
   TrunkMap() {
     labels_.assign(static_cast<std::size_t>(kMapSize[0]) * kMapSize[1] * kMapSize[2], 0);
-    Fill(kTotalGallbladder, patient::Tube({20, 42, -62}, {20, -20, -40}, 13));
+    Fill(kTotalGallbladder, Tube({20, 42, -62}, {20, -20, -40}, 13));
     Fill(kTotalLiver, Ball({0, 0, 0}, {85, 62, 50}));
     Fill(kTotalStomach, Ball({-62, 25, -62}, {26, 30, 24}));
-    Fill(kTotalColon, patient::Tube({80, 36, -108}, {-70, 36, -114}, 16));
-    Fill(kTotalDuodenum, patient::Tube({-8, -10, -66}, {-8, -30, -110}, 11));
+    Fill(kTotalColon, Tube({80, 36, -108}, {-70, 36, -114}, 16));
+    Fill(kTotalDuodenum, Tube({-8, -10, -66}, {-8, -30, -110}, 11));
     Fill(kTotalKidney, Ball({58, -62, -62}, {24, 20, 44}));
-    Fill(kTotalL4, patient::Tube({-10, -82, -142}, {-10, -82, -132}, 11));
-    Fill(kTotalL3, patient::Tube({-10, -82, -112}, {-10, -82, -100}, 13));
-    Fill(kTotalL2, patient::Tube({-10, -82, -78}, {-10, -82, 30}, 12));
-    Fill(kTotalAorta, patient::Tube({-22, -62, -125}, {-22, -64, 40}, 8));
-    Fill(kTotalCava, patient::Tube({6, -62, -125}, {6, -66, 40}, 9));
-    Fill(kTotalRib, patient::Tube({92, -20, -20}, {84, 40, -48}, 7));
+    Fill(kTotalL4, Tube({-10, -82, -142}, {-10, -82, -132}, 11));
+    Fill(kTotalL3, Tube({-10, -82, -112}, {-10, -82, -100}, 13));
+    Fill(kTotalL2, Tube({-10, -82, -78}, {-10, -82, 30}, 12));
+    Fill(kTotalAorta, Tube({-22, -62, -125}, {-22, -64, 40}, 8));
+    Fill(kTotalCava, Tube({6, -62, -125}, {6, -66, 40}, 9));
+    Fill(kTotalRib, Tube({92, -20, -20}, {84, 40, -48}, 7));
   }
   /// Only where nothing is yet.
   void Fill(int label, const Shape& shape) {
