@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   const agent::SurgeonSkill skill =
       agent::PlantWeakness(agent::LevelSkill(agent::SkillLevel::kExpert), agent::Weakness::kTremor);
   auto person = agent::MakeSkilledSurgeon(task, skill, 1);
-  auto simulation = simulation::Simulation::Make(task, 1);
+  auto simulation = simulation::Simulation::Make(task);
   if (!person.ok() || !simulation.ok()) return 1;
 
   record::TraceBuilder builder(*simulation);

@@ -15,7 +15,7 @@ int main() {
 
   const tissue::TissueModel model = tissue::MakeTissueModel(definition);
   tissue::TissueState state = tissue::MakeRestState(model);
-  tissue::EquilibriumSolver solver(model, 1);
+  tissue::EquilibriumSolver solver(model);
   const tissue::SolveReport report = solver.Solve({tissue::SolverKind::kRelaxationPaper, 10'000, 1e-9, 0.0},
                                                   {.gravity = {0, 0, -9.81}}, state);
   std::printf("50 g on 20 N/m sinks %.3f mm (m g / k = 24.525 mm) after %d iterations\n",

@@ -21,7 +21,7 @@ int main(int count, char** arguments) {
     return 1;
   }
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   if (!simulation.ok()) {
     std::fprintf(stderr, "%s\n", simulation.error().Text().c_str());
     return 1;

@@ -24,7 +24,7 @@ base::Result<training::AttemptTrace> PlayAndRecord(const std::string& scene_file
   auto read = files::ReadScene(scene_file);
   if (!read.ok()) return read.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   if (!simulation.ok()) return simulation.error();
   record::Description description;
   description.name = scene_file;

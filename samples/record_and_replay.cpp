@@ -27,7 +27,7 @@ base::Status Record(const std::string& scene_file, const std::filesystem::path& 
   auto read = files::ReadScene(scene_file);
   if (!read.ok()) return read.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   if (!simulation.ok()) return simulation.error();
   record::Description description;
   description.name = scene_file;

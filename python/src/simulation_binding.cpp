@@ -17,6 +17,7 @@
 #include "trocar/base/state_hash.h"
 #include "trocar/files/task_file.h"
 #include "trocar/host/data_folder.h"
+#include "trocar/host/threads.h"
 #include "trocar/record/input_codec.h"
 #include "trocar/scene/task.h"
 #include "trocar/files/state_file.h"
@@ -43,7 +44,7 @@ std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& 
   PatientSource given(patient);
   const py::gil_scoped_release release;
   auto scene = std::make_shared<const scene::Scene>(Take(FindScene(source, {level, seed, given.Folder()})));
-  auto simulation = Take(Simulation::Make(scene, threads));
+  auto simulation = Take(Simulation::Make(scene, {.threads = host::UseThreads(threads)}));
   auto running = std::make_unique<Running>(
       Running{std::move(scene), std::move(simulation), std::move(given), std::nullopt});
   if (has_metrics) running->attempt.emplace(running->simulation);

@@ -10,6 +10,7 @@
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/files/task_file.h"
+#include "trocar/host/threads.h"
 #include "trocar/patient/patient.h"
 #include "trocar/scene/task.h"
 
@@ -102,7 +103,7 @@ base::Result<GoldenPlay> GoldenPlay::Make(const Golden& golden, const fs::path& 
     if (!made.ok()) return made.error();
     surgeon = std::move(*made);
   }
-  auto simulation = simulation::Simulation::Make(shared, threads);
+  auto simulation = simulation::Simulation::Make(shared, {.threads = host::UseThreads(threads)});
   if (!simulation.ok()) return simulation.error();
   GoldenPlay play(std::move(shared), std::move(*simulation), std::move(surgeon));
   if (golden.ticks > 0) play.most_ticks_ = golden.ticks;

@@ -11,6 +11,7 @@
 #include "trocar/base/state_hash.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
+#include "trocar/host/threads.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/material.h"
@@ -68,7 +69,7 @@ Sheet MakeSheet(std::uint32_t n, bool is_irregular) {
 
 /// Three solves in a row: under weight, with a node pulled away, pressed by a tool.
 std::uint64_t CalcFingerprint(Sheet sheet, SolverKind kind, SimdLevel level) {
-  EquilibriumSolver solver(sheet.model, {.threads = 2, .simd = level});
+  EquilibriumSolver solver(sheet.model, {.threads = host::UseThreads(2), .simd = level});
   SolverSettings settings;
   settings.kind = kind;
   settings.max_iterations = 60;
@@ -111,7 +112,7 @@ std::uint64_t CalcSacFingerprint(SimdLevel level) {
   Conservation conservation(model, closed);
   ConservationState state = conservation.MakeState(tissue);
   state.organs[0].target *= 1.2;
-  EquilibriumSolver solver(model, {.threads = 2, .simd = level});
+  EquilibriumSolver solver(model, {.threads = host::UseThreads(2), .simd = level});
   SolverSettings settings;
   settings.kind = SolverKind::kNewtonMultigrid;
   trocar::base::StateHash hash;

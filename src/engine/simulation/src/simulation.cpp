@@ -22,21 +22,20 @@ void Simulation::Content::MakeSolver() {
   const tissue::TissueModel& tissue_model = world.topology.Model();
   if (!services.make_device_solver) {
     tissue::SolverOptions options;
-    options.threads = thread_count;
+    options.threads = services.threads;
     if (GetScene().operation) options.spare_share = kSpareShareForCuts;
     solver = std::make_unique<tissue::EquilibriumSolver>(tissue_model, options, model->solver_model);
     solver->Prepare(GetScene().settings.solver, model->tissue->conservation.organs.size());
     return;
   }
-  auto made = services.make_device_solver(tissue_model, thread_count);
+  auto made = services.make_device_solver(tissue_model, services.threads);
   device_solver = made.get();
   solver = std::move(made);
 }
 
-base::Status Simulation::Content::MakeParts(int threads) {
+base::Status Simulation::Content::MakeParts() {
   const Scene& scene = GetScene();
   const PatientTissue& made = *model->tissue;
-  thread_count = std::max(1, threads);
   world.topology = Topology(made.definition, model->walls);
   const tissue::TissueModel& tissue_model = world.topology.Model();
   MakeSolver();
@@ -129,19 +128,19 @@ void Simulation::Content::Begin() {
   std::call_once(model->has_start, [this] { Save(model->start); });
 }
 
-base::Result<Simulation> Simulation::Make(std::shared_ptr<const SimulationModel> model, int threads,
+base::Result<Simulation> Simulation::Make(std::shared_ptr<const SimulationModel> model,
                                           const Services& services) {
   auto content = std::make_unique<Content>();
   content->model = std::move(model);
   content->services = services;
-  if (const base::Status made = content->MakeParts(threads); !made.ok()) return made.error();
+  if (const base::Status made = content->MakeParts(); !made.ok()) return made.error();
   return Simulation(std::move(content));
 }
 
-base::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, int threads, const Services& services) {
-  auto model = MakeSimulationModel(std::move(scene), threads);
+base::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, const Services& services) {
+  auto model = MakeSimulationModel(std::move(scene), services.threads);
   if (!model.ok()) return model.error();
-  return Make(std::move(*model), threads, services);
+  return Make(std::move(*model), services);
 }
 
 Simulation::Simulation(std::unique_ptr<Content> content) : content_(std::move(content)) {}
@@ -243,7 +242,7 @@ double Simulation::CalcEquilibriumError() const {
   exact.newton.max_linear_iterations = 300;
   exact.outer.law_error = 1e-7;
   exact.outer.max_count = 50;
-  tissue::EquilibriumSolver judge(c.world.topology.Model(), 1);
+  tissue::EquilibriumSolver judge(c.world.topology.Model());
   const tissue::SolveReport solved =
       tissue::FindConservedEquilibrium(judge, exact, *c.conservation, c.tick.load, state, c.world.conserved);
   if (!solved.converged) return std::nan("");

@@ -88,7 +88,6 @@ struct Simulation::Content {
   Services services;
   std::unique_ptr<tissue::Conservation> conservation;
   surgery::GraspSettings grasp_settings;
-  int thread_count = 1;
   Snapshot snapshot;
   std::unique_ptr<tissue::PatchCutter> patch_cutter;
 
@@ -129,7 +128,7 @@ struct Simulation::Content {
   void EmitGrasps() noexcept;
 
   // --- as a whole
-  base::Status MakeParts(int threads);
+  base::Status MakeParts();
   void RegisterTopology();
   void UpdateSurfaces(bool is_restored);
   void MakeSolver();

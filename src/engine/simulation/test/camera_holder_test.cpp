@@ -119,7 +119,7 @@ TEST_F(AutomaticCamera, IsASettingOfTheSceneAndMovesTheSnapshotsLaparoscope) {
   ASSERT_TRUE(scene.ok()) << scene.error().Text();
   EXPECT_TRUE(scene->settings.holds_camera);
   const auto shared = std::make_shared<const Scene>(std::move(*scene));
-  auto simulation = Simulation::Make(shared, 1);
+  auto simulation = Simulation::Make(shared);
   ASSERT_TRUE(simulation.ok());
   Input input = CalcScriptInput(*shared, 0.0);
   // both hands go aside; what the trainee's laparoscope does is not looked at
@@ -149,7 +149,7 @@ TEST_F(AutomaticCamera, IsASettingOfTheSceneAndMovesTheSnapshotsLaparoscope) {
 std::size_t CountErrorsOutOfView(bool holds_camera) {
   auto scene = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
   EXPECT_TRUE(scene.ok()) << scene.error().Text();
-  auto simulation = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)), 1);
+  auto simulation = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)));
   EXPECT_TRUE(simulation.ok());
   const Scene& played = simulation->GetScene();
   Input input = CalcScriptInput(played, 0.0);

@@ -54,7 +54,7 @@ struct FittedCavity {
 Simulation MakePatient() {
   auto scene = ReadScene(*FindDataFolder() / "scenes" / "retraction.json");
   EXPECT_TRUE(scene.ok());
-  auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)), 1);
+  auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)));
   EXPECT_TRUE(made.ok());
   return std::move(*made);
 }

@@ -90,7 +90,7 @@ class CutPatient : public testing::Test {
     for (const geometry::Triangle& lid : geometry::MakeLids(organ.Mesh())) closed.triangles.push_back(lid);
     tissue::Conservation conservation(model_, settings);
     tissue::ConservationState conserved = conservation.MakeState(tissue::MakeRestState(model_));
-    tissue::EquilibriumSolver solver(model_, 1);
+    tissue::EquilibriumSolver solver(model_);
     tissue::SolverSettings solver_settings;
     // pulled to the left and held, under a tilted table
     const std::uint32_t held = organ.Node(17);

@@ -33,7 +33,7 @@ TEST(GeneratedPatient, RunsInTheDemonstrationScene) {
   ASSERT_TRUE(read.ok()) << read.error().Text();
   EXPECT_EQ(read->patient.name, patient->name);
   EXPECT_EQ(read->patient_folder, folder);
-  auto simulation = Simulation::Make(std::make_shared<const Scene>(*read), 1);
+  auto simulation = Simulation::Make(std::make_shared<const Scene>(*read));
   ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
   double worst_residual = 0;
   for (int tick = 0; tick < 240; ++tick) {

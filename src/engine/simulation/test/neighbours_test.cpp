@@ -26,7 +26,7 @@ class Neighbours : public SmallScene {
     EXPECT_TRUE(files::WritePatient(folder_ / "patient", patient).ok());
     auto read = Read();
     EXPECT_TRUE(read.ok()) << read.error().Text();
-    auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)), 1);
+    auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)));
     EXPECT_TRUE(made.ok()) << made.error().Text();
     return std::move(*made);
   }

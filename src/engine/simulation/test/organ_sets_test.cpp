@@ -37,7 +37,7 @@ class OrganSets : public SmallScene {
     auto read = Read();
     ASSERT_TRUE(read.ok()) << read.error().Text();
     EXPECT_EQ(read->patient.OrganOf(roles::OrganRole::kGallbladder), -1);
-    auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)), 1);
+    auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)));
     ASSERT_TRUE(made.ok()) << made.error().Text();
     simulation_.emplace(std::move(*made));
     Input input = scene::CalcScriptInput(simulation_->GetScene(), 0.0);
@@ -102,7 +102,7 @@ TEST_F(OrganSets, AnOrganWithoutAMaterialIsNamed) {
   Write("scene.json", SceneOf(MaterialOf("liver")));
   auto read = Read();
   ASSERT_TRUE(read.ok()) << read.error().Text();
-  const auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)), 1);
+  const auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)));
   ASSERT_FALSE(made.ok());
   EXPECT_NE(made.error().message.find("spleen"), std::string::npos);
 }

@@ -25,7 +25,7 @@ TEST(Recovery, TheGallbladderComesHomeAfterTheDemonstration) {
   auto read = ReadScene(*data / "scenes" / "demonstration.json");
   ASSERT_TRUE(read.ok()) << read.error().Text();
   const auto scene = std::make_shared<const Scene>(std::move(*read));
-  auto still = Simulation::Make(scene, 1), played = Simulation::Make(scene, 1);
+  auto still = Simulation::Make(scene), played = Simulation::Make(scene);
   ASSERT_TRUE(still.ok() && played.ok());
   const Input home = CalcScriptInput(*scene, 0.0);
   for (int tick = 0; tick < 400; ++tick) still->Step(home);

@@ -27,7 +27,7 @@ struct PegTransfer {
     auto read = files::ReadTask(*files::FindTask("peg_transfer"));
     EXPECT_TRUE(read.ok());
     auto scene = std::make_shared<const scene::Scene>(std::move(read).value());
-    auto simulation = Simulation::Make(scene, 1);
+    auto simulation = Simulation::Make(scene);
     EXPECT_TRUE(simulation.ok());
     scene::Input input;
     input.settings = scene->settings;

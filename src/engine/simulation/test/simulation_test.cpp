@@ -16,6 +16,7 @@
 #include "allocation_counter.h"
 #include "small_scene.h"
 #include "trocar/host/safe_file.h"
+#include "trocar/host/threads.h"
 
 namespace trocar::simulation {
 
@@ -33,7 +34,7 @@ class SimulationTest : public SmallScene {
     auto scene = Read();
     EXPECT_TRUE(scene.ok()) << scene.error().Text();
     scene_ = std::make_shared<const Scene>(std::move(*scene));
-    auto simulation = Simulation::Make(scene_, threads);
+    auto simulation = Simulation::Make(scene_, {.threads = host::UseThreads(threads)});
     EXPECT_TRUE(simulation.ok()) << simulation.error().Text();
     return std::move(*simulation);
   }
@@ -263,7 +264,7 @@ TEST_F(SimulationTest, MissingMaterialIsNamed) {
   auto scene = Read();
   ASSERT_TRUE(scene.ok());
   scene->materials.erase(scene->materials.begin() + 1);
-  const auto simulation = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)), 1);
+  const auto simulation = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)));
   ASSERT_FALSE(simulation.ok());
   EXPECT_EQ(simulation.error().code, base::ErrorCode::kSceneInvalid);
   EXPECT_NE(simulation.error().message.find("gallbladder"), std::string::npos);

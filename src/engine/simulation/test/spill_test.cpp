@@ -408,7 +408,7 @@ TEST_F(SpillTest, AStoneGoesOutWithTheToolThatHoldsIt) {
 
 TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
   auto scene = std::make_shared<Scene>(WithStones(40, 0.002));
-  auto made = Simulation::Make(scene, 1);
+  auto made = Simulation::Make(scene);
   ASSERT_TRUE(made.ok()) << made.error().Text();
   Simulation& simulation = *made;
   const Snapshot& seen = simulation.GetSnapshot();

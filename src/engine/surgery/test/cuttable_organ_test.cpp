@@ -95,7 +95,7 @@ double CalcPull(CuttableSystem& system) {
       right.push_back(node);
     }
   }
-  tissue::EquilibriumSolver solver(system.model, 1);
+  tissue::EquilibriumSolver solver(system.model);
   tissue::SolverSettings settings;
   for (int tick = 0; tick < 40; ++tick) solver.Solve(settings, {}, system.state);
   return math::Norm(solver.CalcReaction({}, system.state, right));
@@ -141,7 +141,7 @@ TEST_P(CutAndSolve, AHundredTicksAfterEveryStrokeAreFinite) {
       const double z = random.Uniform(-0.02, 0.02), y = random.Uniform(-0.02, 0.0);
       system.CutLine({{0.01, y, z}, {0.05, y, z}}, {{0.01, y + 0.02, z + 0.006}, {0.05, y + 0.02, z + 0.006}},
                      8);
-      tissue::EquilibriumSolver solver(system.model, 1);
+      tissue::EquilibriumSolver solver(system.model);
       tissue::SolverSettings settings;
       settings.max_iterations = 20;
       const auto held = static_cast<std::uint32_t>(random.Uniform() * 162);

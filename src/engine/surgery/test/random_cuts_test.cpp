@@ -73,7 +73,7 @@ class CutTissue {
       : system_(MakeSystem(mesh, fixed, wall, cut, spare_count)),
         is_closed_(geometry::InspectMesh(mesh).closed),
         size_(CalcSize(mesh)),
-        solver_(system_.model, {.threads = 1, .spare_share = 0.5}),
+        solver_(system_.model, {.spare_share = 0.5}),
         conservation_(system_.model, {ClosedOrgans(), {}, {}}),
         conserved_(conservation_.MakeState(system_.state)),
         guard_(system_.model) {}

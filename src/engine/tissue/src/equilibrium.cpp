@@ -169,8 +169,7 @@ SolveReport EquilibriumSolver::Content::SolveNewton(const SolverSettings& settin
 
 // --- the solver
 
-EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
-    : EquilibriumSolver(model, SolverOptions{.threads = threads}) {}
+EquilibriumSolver::EquilibriumSolver(const TissueModel& model) : EquilibriumSolver(model, SolverOptions{}) {}
 
 EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptions& options,
                                      std::shared_ptr<const SolverModel> same_model)

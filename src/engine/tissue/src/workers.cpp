@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workers.h"
 
-#include <oneapi/tbb/info.h>
-
 #include <algorithm>
 #include <thread>
 
@@ -31,28 +29,22 @@ void Pause(int& spins) noexcept {
 
 }  // namespace
 
-Workers::Workers(int threads) : threads_(threads), slots_(static_cast<std::size_t>(std::max(threads, 1))) {
-  TROCAR_ASSERT(threads >= 1);
-  if (threads > tbb::info::default_concurrency()) {
-    more_workers_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  }
-  if (threads > 1) arena_.initialize(threads);
+Workers::Workers(const base::Threads& threads)
+    : threads_(threads.count), slots_(static_cast<std::size_t>(std::max(threads.count, 1))) {
+  TROCAR_ASSERT(threads.count >= 1 && (threads.count == 1 || threads.make_crew != nullptr));
+  if (threads.count > 1) crew_ = threads.make_crew(threads.count);
 }
 
 Workers::Session::Session(Workers& workers) noexcept : workers_(workers) {
   if (workers_.threads_ == 1) return;
   workers_.is_open_.store(true);
-  workers_.arena_.execute([this] {
-    for (int slot = 1; slot < workers_.threads_; ++slot) {
-      workers_.workers_.run([this, slot] { workers_.Serve(slot); });
-    }
-  });
+  workers_.crew_->Begin([](void* workers, int slot) { static_cast<Workers*>(workers)->Serve(slot); }, &workers_);
 }
 
 Workers::Session::~Session() {
   if (workers_.threads_ == 1) return;
   workers_.is_open_.store(false);
-  workers_.arena_.execute([this] { workers_.workers_.wait(); });
+  workers_.crew_->End();
 }
 
 void Workers::Serve(int slot) noexcept {

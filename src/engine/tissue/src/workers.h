@@ -2,15 +2,13 @@
 /// \file workers.h  Threads that share the chunks of short loops within one solve.
 #pragma once
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
-
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <vector>
+
+#include "trocar/base/threads.h"
 
 namespace trocar::tissue {
 
@@ -20,8 +18,7 @@ namespace trocar::tissue {
 /// depend on who runs it or when; then results do not depend on the threads.
 class Workers {
  public:
-  /// \param threads  >= 1, with the caller
-  explicit Workers(int threads);
+  explicit Workers(const base::Threads& threads = {});
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
@@ -87,9 +84,7 @@ class Workers {
   void Serve(int slot) noexcept;
 
   int threads_;
-  std::optional<tbb::global_control> more_workers_;  // when more threads are asked for than there are cores
-  tbb::task_arena arena_;
-  tbb::task_group workers_;
+  std::unique_ptr<base::Crew> crew_;  // of more than one thread
 
   alignas(kLine) std::atomic<bool> is_open_ = false;
   std::atomic<std::uint64_t> loop_ = 0;  // the present one, see Loop

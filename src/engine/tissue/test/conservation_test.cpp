@@ -10,6 +10,7 @@
 
 #include "sac.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/host/threads.h"
 #include "trocar/tissue/conserved_equilibrium.h"
 
 namespace trocar::tissue {
@@ -55,7 +56,7 @@ TEST(Conservation, PressureOfAFilledSphereIsThatOfAMembrane) {
   Sac sac(100.0);
   for (auto& intact : sac.tissue.strand_is_intact) intact = 0;
   Conservation conservation(sac.model, sac.settings);
-  EquilibriumSolver solver(sac.model, 1);
+  EquilibriumSolver solver(sac.model);
   ConservationState state = conservation.MakeState(sac.tissue);
   const double strain = 1e-3;
   state.organs[0].target *= 1.0 + 3.0 * strain;
@@ -75,7 +76,7 @@ TEST(Conservation, PressureOfAFilledSphereIsThatOfAMembrane) {
 TEST(Conservation, VolumeIsExactAtEveryTickAndTheRestIsEquilibrium) {
   Sac sac(3e4);
   Conservation conservation(sac.model, sac.settings);
-  EquilibriumSolver solver(sac.model, 1);
+  EquilibriumSolver solver(sac.model);
   ConservationState state = conservation.MakeState(sac.tissue);
   const double volume = sac.Volume();
   const auto left = sac.Pole({-1, 0, 0}), right = sac.Pole({1, 0, 0});
@@ -126,7 +127,7 @@ TEST(Conservation, PressedSacPushesBackHarderWhenTense) {
   const auto reaction = [](double pressure) {
     Sac sac(3e4);
     Conservation conservation(sac.model, sac.settings);
-    EquilibriumSolver solver(sac.model, 1);
+    EquilibriumSolver solver(sac.model);
     ConservationState state = conservation.MakeState(sac.tissue);
     if (pressure > 0.0) {
       EXPECT_LT(FillToPressure(solver, 0, pressure, {}, conservation, sac.tissue, state), 1e-5);
@@ -158,7 +159,7 @@ TEST(Conservation, PressedSacPushesBackHarderWhenTense) {
 TEST(Conservation, APerforatedSacLeaksUntilItsPressureIsGoneAndNoDropIsLost) {
   Sac sac(3e4);
   Conservation conservation(sac.model, sac.settings);
-  EquilibriumSolver solver(sac.model, 1);
+  EquilibriumSolver solver(sac.model);
   ConservationState state = conservation.MakeState(sac.tissue);
   (void)FillToPressure(solver, 0, 800.0, {}, conservation, sac.tissue, state);
   const double full = state.organs[0].target;
@@ -279,7 +280,7 @@ double ShapeError(const Sac& sac) {
 double CarryAway(bool follows, std::uint64_t* hash = nullptr, int threads = 1) {
   Sac sac(3e4);
   Conservation conservation(sac.model, sac.settings);
-  EquilibriumSolver solver(sac.model, threads);
+  EquilibriumSolver solver(sac.model, {.threads = host::UseThreads(threads)});
   ConservationState state = conservation.MakeState(sac.tissue);
   for (auto& intact : sac.tissue.strand_is_intact) intact = 0;
   if (!follows) state.intact_links = sac.model.SpringCount();
@@ -322,7 +323,7 @@ TEST(Conservation, AFreedOrganHangsOnTheJawsByItsWholeWeight) {
   Sac sac(3e4);
   sac.settings.imaging_gravity = {0, 0, -9.81};
   Conservation conservation(sac.model, sac.settings);
-  EquilibriumSolver solver(sac.model, 1);
+  EquilibriumSolver solver(sac.model);
   ConservationState state = conservation.MakeState(sac.tissue);
   for (auto& intact : sac.tissue.strand_is_intact) intact = 0;
   const auto pole = sac.Pole({0, 0, 1}, 0.8);
@@ -369,7 +370,7 @@ TEST(Conservation, AFreedOrganThatNobodyHoldsStays) {
   Sac sac(3e4);
   sac.settings.imaging_gravity = {0, 0, -9.81};
   Conservation conservation(sac.model, sac.settings);
-  EquilibriumSolver solver(sac.model, 1);
+  EquilibriumSolver solver(sac.model);
   ConservationState state = conservation.MakeState(sac.tissue);
   for (auto& intact : sac.tissue.strand_is_intact) intact = 0;
   for (int tick = 0; tick < 100; ++tick) {
@@ -395,7 +396,7 @@ TEST(Conservation, GivesTheSameBitsForAnyNumberOfThreads) {
 TEST(Conservation, EachRoundLowersTheEnergyOfSpringsAndFrame) {
   Sac sac(3e4);
   Conservation conservation(sac.model, {{}, {}, {}});
-  EquilibriumSolver solver(sac.model, 1);
+  EquilibriumSolver solver(sac.model);
   for (auto& intact : sac.tissue.strand_is_intact) intact = 0;
   ConservationState state = conservation.MakeState(sac.tissue);
   ASSERT_EQ(state.regions.count, 1u);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sac.h"
+#include "trocar/host/threads.h"
 #include "trocar/tissue/conserved_equilibrium.h"
 
 namespace trocar::tissue {
@@ -20,7 +21,7 @@ TEST(Conservation, NewtonSettlesOnTheSamePressureAsTheChebyshevIteration) {
     Sac sac(3e4);
     sac.settings.imaging_gravity = {0, 0, -9.81};
     Conservation conservation(sac.model, sac.settings);
-    EquilibriumSolver solver(sac.model, 1);
+    EquilibriumSolver solver(sac.model);
     ConservationState state = conservation.MakeState(sac.tissue);
     for (auto& intact : sac.tissue.strand_is_intact) intact = 0;
     sac.Hold(sac.Pole({0, 0, 1}, 0.8), {});
@@ -51,7 +52,7 @@ TEST(Conservation, NewtonKnowsHowPressureTurns) {
   const auto pull = [](bool follows_snap_through) {
     Sac sac(1e3);
     Conservation conservation(sac.model, sac.settings);
-    EquilibriumSolver solver(sac.model, 1);
+    EquilibriumSolver solver(sac.model);
     ConservationState state = conservation.MakeState(sac.tissue);
     state.organs[0].target *= 1.2;
     SolverSettings settings = kExact;
@@ -81,7 +82,7 @@ TEST(Conservation, TheJudgeOfATickKeepsTheVolumeAndFindsWhatExactTicksComeTo) {
   newton.kind = SolverKind::kNewtonMultigrid;
   Sac sac(3e4);
   Conservation conservation(sac.model, sac.settings);
-  EquilibriumSolver solver(sac.model, 1), judge(sac.model, 1);
+  EquilibriumSolver solver(sac.model), judge(sac.model);
   ConservationState state = conservation.MakeState(sac.tissue);
   const double volume = sac.Volume();
   TissueLoad load;
@@ -126,7 +127,7 @@ TEST(Conservation, ATickThatMayDoLittleFollowsAHandThatGoesOn) {
   const auto pull = [](bool extrapolates) {
     Sac sac(3e4);
     Conservation conservation(sac.model, sac.settings);
-    EquilibriumSolver solver(sac.model, 1), judge(sac.model, 1);
+    EquilibriumSolver solver(sac.model), judge(sac.model);
     ConservationState state = conservation.MakeState(sac.tissue);
     SolverSettings newton = kExact, little = kExact;
     newton.kind = little.kind = SolverKind::kNewtonMultigrid;
@@ -155,7 +156,7 @@ TEST(Conservation, AnExtrapolationUphillIsNotTaken) {
   const auto tick = [](const Vec3& extrapolation) {
     Sac sac(3e4);
     Conservation conservation(sac.model, sac.settings);
-    EquilibriumSolver solver(sac.model, 1);
+    EquilibriumSolver solver(sac.model);
     ConservationState state = conservation.MakeState(sac.tissue);
     SolverSettings little = kExact;
     little.kind = SolverKind::kNewtonMultigrid;
@@ -181,7 +182,7 @@ TEST(Conservation, LocalSolvesSaveStepsInASnapThrough) {
   const auto dent = [](bool follows_snap_through, int threads = 1) {
     Sac sac(1e3);
     Conservation conservation(sac.model, sac.settings);
-    EquilibriumSolver solver(sac.model, threads), judge(sac.model, 1);
+    EquilibriumSolver solver(sac.model, {.threads = host::UseThreads(threads)}), judge(sac.model);
     ConservationState state = conservation.MakeState(sac.tissue);
     SolverSettings settings, exact = kExact;
     settings.kind = exact.kind = SolverKind::kNewtonMultigrid;

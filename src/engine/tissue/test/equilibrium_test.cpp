@@ -9,6 +9,7 @@
 #include "crumpled_sphere.h"
 #include "test_systems.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/host/threads.h"
 
 namespace trocar::tissue {
 namespace {
@@ -28,7 +29,7 @@ TEST_P(BothSolvers, HangingSpringSinksByWeightOverStiffness) {
   const double k = 20.0, mass = 0.05;
   const TissueModel model = MakeTissueModel(MakeHangingSpring(k, 0.1, mass));
   TissueState state = MakeRestState(model);
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   const TissueLoad load{.gravity = {0, 0, -9.81}};
   const SolveReport report = solver.Solve(Settings(1e-10), load, state);
   EXPECT_TRUE(report.converged);
@@ -46,7 +47,7 @@ TEST_P(BothSolvers, VirtualSpringBalancesWeight) {
   definition.shape_stiffness = {5.0};
   const TissueModel model = MakeTissueModel(definition);
   TissueState state = MakeRestState(model);
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   (void)solver.Solve(Settings(1e-12), {.gravity = {0, 0, -9.81}, .shape_scale = 2.0}, state);
   EXPECT_NEAR(state.position[0].z, 0.3 - 0.02 * 9.81 / 10.0, 1e-12);
 }
@@ -72,7 +73,7 @@ TEST_P(BothSolvers, StretchedPatchHasTheModulusAndPoissonRatioOfAMembrane) {
       if (column != 0) right.push_back(node);
     }
   }
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   const SolveReport report = solver.Solve(Settings(1e-7), {}, state);
   ASSERT_TRUE(report.converged) << report.residual;
   const double height = (rows - 1) * side * std::sqrt(0.75);
@@ -93,7 +94,7 @@ TEST_P(BothSolvers, FoundationCarriesAnEvenLoad) {
   for (std::size_t i = 0; i < areas.size(); ++i) definition.mass[i] = 20.0 * areas[i];
   const TissueModel model = MakeTissueModel(definition);
   TissueState state = MakeRestState(model);
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   (void)solver.Solve(Settings(1e-9), {.gravity = {0, 0, -9.81}}, state);
   for (const Vec3& p : state.position) EXPECT_NEAR(p.z, -20.0 * 9.81 / 5e4, 1e-7);
 }
@@ -111,7 +112,7 @@ TEST(Chebyshev, AgreesWithTheReferenceWithinAThousandthOfTheLargestDisplacement)
     const Vec3 centre = (model.rest[9] + model.rest[10] + model.rest[11]) / 3.0;
     contact.normal = -math::Normalized(centre);
     contact.offset = math::Dot(contact.normal, centre) + 0.001;
-    EquilibriumSolver solver(model, 1);
+    EquilibriumSolver solver(model);
     const auto report =
         solver.Solve({kind, 200'000, 1e-8, 0.0}, {.gravity = {0, 0, -1}, .contacts = {&contact, 1}}, state);
     EXPECT_TRUE(report.converged) << SolverName(kind) << " " << report.residual;
@@ -135,7 +136,7 @@ TEST(Chebyshev, NeedsFarFewerIterationsThanTheRelaxation) {
     TissueState state = MakeRestState(model);
     state.condition[0] = NodeCondition::kPrescribed;
     state.position[0] += Vec3{0, 0.006, 0};
-    EquilibriumSolver solver(model, 1);
+    EquilibriumSolver solver(model);
     return solver.Solve({kind, 200'000, 1e-4, 0.0}, {}, state).iterations;
   };
   EXPECT_LT(10 * iterations(SolverKind::kChebyshevJacobi2015), iterations(SolverKind::kRelaxationPaper));
@@ -148,7 +149,7 @@ TEST(Chebyshev, ComesBackFromACrumpledStart) {
   const TissueModel& model = sphere.model;
   TissueState& state = sphere.state;
   const double before = CalcEnergy(model, state, {});
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   (void)solver.Solve({SolverKind::kChebyshevJacobi2015, 5000, 1e-6, 0.0}, {}, state);
   EXPECT_LT(CalcEnergy(model, state, {}), 1e-3 * before);
 }
@@ -160,7 +161,7 @@ TEST(Chebyshev, GivesTheSameBitsForAnyNumberOfThreads) {
     TissueState state = MakeRestState(model);
     state.condition[5] = NodeCondition::kPrescribed;
     state.position[5] += Vec3{0.003, 0.006, 0};
-    EquilibriumSolver solver(model, threads);
+    EquilibriumSolver solver(model, {.threads = host::UseThreads(threads)});
     for (int tick = 0; tick < 5; ++tick) (void)solver.Solve({}, {.gravity = {0, 0, -3}}, state);
     base::StateHash fingerprint;
     for (const Vec3& p : state.position) fingerprint.Add(p.x), fingerprint.Add(p.y), fingerprint.Add(p.z);
@@ -179,7 +180,7 @@ TEST(Relaxation, AcceptsThePapersConstantsAndItsBound) {
   const TissueModel model = MakeTissueModel(definition);
   EXPECT_GT(CalcLargestAlpha(model, {}), 0.1);
   TissueState state = MakeRestState(model);
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   const auto report =
       solver.Solve({SolverKind::kRelaxationPaper, 100'000, 5e-4, 0.1}, {.gravity = {0, 0, -9.81}}, state);
   EXPECT_TRUE(report.converged);
@@ -195,7 +196,7 @@ TEST(Solve, LeavesPrescribedNodesExactlyWhereTheyAre) {
     TissueState state = MakeRestState(model);
     state.condition[7] = NodeCondition::kPrescribed;
     const Vec3 held = state.position[7] += Vec3{0.01, 0, 0};
-    EquilibriumSolver solver(model, 1);
+    EquilibriumSolver solver(model);
     (void)solver.Solve({kind, 51, 1e-9, 0.0}, {.gravity = {0, 0, -9.81}}, state);
     EXPECT_EQ(state.position[7], held);
     for (const int fixed : {1, 2, 3}) EXPECT_EQ(state.position[fixed], model.rest[fixed]);
@@ -213,7 +214,7 @@ TEST(Solve, ACutStrandHoldsNothing) {
   const auto depth = [&](bool is_intact) {
     TissueState state = MakeRestState(model);
     state.strand_is_intact[0] = is_intact;
-    EquilibriumSolver solver(model, 1);
+    EquilibriumSolver solver(model);
     (void)solver.Solve({SolverKind::kChebyshevJacobi2015, 10'000, 1e-12, 0.0}, {.gravity = {0, 0, -10}},
                        state);
     return -0.001 - state.position[1].z;

@@ -72,7 +72,7 @@ TEST(CheckTissue, FixesANodeThatNothingHolds) {
   const TissueModel model = MakeTissueModel(definition);
   for (const SolverKind kind : kSolverKinds) {
     TissueState state = MakeRestState(model);
-    EquilibriumSolver solver(model, 1);
+    EquilibriumSolver solver(model);
     (void)solver.Solve({kind, 100, 1e-6, 0.0}, {.gravity = {0, 0, -9.81}}, state);
     EXPECT_EQ(state.position[2], (Vec3{1, 2, 3})) << SolverName(kind);
   }
@@ -106,7 +106,7 @@ TEST(Faults, ANaNInAnyArrayIsFoundInItsTick) {
       for (const int tick_of_fault : {0, 3}) {
         TissueState state = MakeRestState(model);
         StateGuard guard(model);
-        EquilibriumSolver solver(model, 1);
+        EquilibriumSolver solver(model);
         std::vector<Vec3> external(model.Size());
         ContactSpring contact{{9, 10, 11}, {0.2, 0.3, 0.5}, {0, 0, 1}, 1.0, 0.001};
         TissueLoad load{.gravity = {0, 0, -1}, .contacts = {&contact, 1}, .external_force = external};

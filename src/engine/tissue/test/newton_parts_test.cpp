@@ -14,6 +14,7 @@
 #include "local_solve.h"
 #include "solver_model.h"
 #include "test_systems.h"
+#include "trocar/host/threads.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue {
@@ -72,7 +73,7 @@ struct Evaluated {
   Linearisation linearisation;
   Balance balance;
   std::vector<Double4> position;
-  Workers workers{1};
+  Workers workers;
   const Kernels* kernels;
 
   Evaluated(const TissueModel& from, const TissueLoad& loads, const TissueState& state, base::SimdLevel level)
@@ -191,7 +192,7 @@ TEST(LinkHierarchy, CoarseLevelsAreAsMadeAnewForAnyThreads) {
   const std::vector<float> expected = Values(anew.hierarchy);
   for (const int threads : {1, 2, 3, 4, 8}) {
     Evaluated again(model, {}, other, level);
-    Workers workers(threads);
+    Workers workers(host::UseThreads(threads));
     const Workers::Session session(workers);
     again.hierarchy.UpdateCoarse(*again.kernels, workers);
     ASSERT_NE(Values(again.hierarchy), expected);
@@ -347,7 +348,7 @@ TEST(NewtonMultigrid, KeepsItsPromiseOnADuct) {
   const TissueModel model = MakeTissueModel(patient.definition);
   TissueState state = MakeRestState(model);
   state.condition[patient.duct.back()] = NodeCondition::kPrescribed;
-  EquilibriumSolver solver(model, 1), judge(model, 1);
+  EquilibriumSolver solver(model), judge(model);
   SolverSettings settings;
   settings.kind = SolverKind::kNewtonMultigrid;
   SolverSettings exact = settings;
@@ -418,7 +419,7 @@ TEST(LocalSolve, ComesToRestWhereAllOthersAreHeld) {
     truth.condition[whole.model.old_of_new[i]] = NodeCondition::kFree;
     external[whole.model.old_of_new[i]] += Vec3{-0.5 * double{1e-4f}, 0, 0.5 * double{2e-4f}};
   }
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   const SolverSettings exact{
       .kind = SolverKind::kChebyshevJacobi2015, .max_iterations = 20000, .tolerance = 1e-11};
   ASSERT_TRUE(solver.Solve(exact, load, truth).converged);

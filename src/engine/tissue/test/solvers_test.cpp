@@ -11,6 +11,7 @@
 #include "crumpled_sphere.h"
 #include "test_systems.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/host/threads.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue {
@@ -70,7 +71,7 @@ TEST(NewtonMultigrid, MovesALightSheetOnStiffVirtualSprings) {
     settings.kind = SolverKind::kNewtonMultigrid;
     settings.max_error = 1e-5;
     settings.newton.max_linear_iterations = 1000;
-    EquilibriumSolver solver(model, 1);
+    EquilibriumSolver solver(model);
     const SolveReport report = solver.Solve(settings, {.gravity = {0, -9.81, 0}}, state);
     EXPECT_TRUE(report.converged) << shape << ": " << report.error;
     EXPECT_LT(report.linear_iterations, 200) << shape;
@@ -90,7 +91,7 @@ double CalcError(const TissueModel& model, const TissueState& state, const Tissu
 /// Equilibrium by the slow reference, until the residual is at the limit of double precision.
 TissueState Relax(const Sheet& sheet) {
   TissueState state = sheet.start;
-  EquilibriumSolver solver(sheet.model, 1);
+  EquilibriumSolver solver(sheet.model);
   const SolveReport report =
       solver.Solve({SolverKind::kRelaxationPaper, 400'000, 1e-11, 0.0}, sheet.Load(), state);
   EXPECT_TRUE(report.converged) << report.residual;
@@ -126,7 +127,7 @@ TEST_P(EverySolver, ReachesTheReferencesEquilibrium) {
     const Sheet sheet = MakeSheet(20, 0.05, is_shuffled);
     const TissueState truth = Relax(sheet);
     TissueState state = sheet.start;
-    EquilibriumSolver solver(sheet.model, 1);
+    EquilibriumSolver solver(sheet.model);
     EXPECT_EQ(solver.IsStructured(), !is_shuffled);
     SolverSettings settings = Exact(GetParam());
     const SolveReport report = solver.Solve(settings, sheet.Load(), state);
@@ -140,7 +141,7 @@ TEST(EverySolverControl, AFewIterationsAreNotEnough) {
   const Sheet sheet = MakeSheet(20, 0.05);
   const TissueState truth = Relax(sheet);
   TissueState state = sheet.start;
-  EquilibriumSolver solver(sheet.model, 1);
+  EquilibriumSolver solver(sheet.model);
   (void)solver.Solve({SolverKind::kRelaxationPaper, 50, 0.0, 0.0}, sheet.Load(), state);
   EXPECT_GT(CalcError(sheet.model, state, truth), 1e-2);
 }
@@ -150,7 +151,7 @@ TEST(NewtonMultigrid, SpendsNoMoreThanATickMayAndArrivesInMoreTicks) {
   const Sheet sheet = MakeSheet(20, 0.05, true);
   const TissueState truth = Relax(sheet);
   TissueState state = sheet.start;
-  EquilibriumSolver solver(sheet.model, 1);
+  EquilibriumSolver solver(sheet.model);
   SolverSettings settings = Exact(SolverKind::kNewtonMultigrid);
   SolveReport report = solver.Solve(settings, sheet.Load(), state);
   EXPECT_GT(report.linear_iterations, 7) << "negative control";
@@ -172,7 +173,7 @@ TEST_P(EverySolver, GivesTheSameBitsForAnyNumberOfThreads) {
     const Sheet sheet = MakeSheet(70, 0.01, is_shuffled);
     const auto hash = [&](int threads) {
       TissueState state = sheet.start;
-      EquilibriumSolver solver(sheet.model, threads);
+      EquilibriumSolver solver(sheet.model, {.threads = host::UseThreads(threads)});
       SolverSettings settings{GetParam(), 60, 0.0, 0.0};
       settings.max_error = 1e-9;
       settings.newton.max_steps = 2;
@@ -192,7 +193,7 @@ TEST_P(EverySolver, LeavesPrescribedNodesExactlyWhereTheyAre) {
   const std::uint32_t node = 40;
   state.condition[node] = NodeCondition::kPrescribed;
   const Vec3 held = state.position[node] += Vec3{0.1, 0.2, 0.3};
-  EquilibriumSolver solver(sheet.model, 1);
+  EquilibriumSolver solver(sheet.model);
   (void)solver.Solve({GetParam(), 51, 1e-9, 0.0}, sheet.Load(), state);
   EXPECT_EQ(state.position[node], held);
   EXPECT_EQ(state.position[3], sheet.model.rest[3]);
@@ -206,7 +207,7 @@ TEST_P(EverySolver, EndsAtWhatIsNotFinite) {
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     TissueState state = sheet.start;
     state.position[50].y = bad;
-    EquilibriumSolver solver(sheet.model, 1);
+    EquilibriumSolver solver(sheet.model);
     (void)solver.Solve(Exact(GetParam()), sheet.Load(), state);
     EXPECT_FALSE(math::IsFinite(state.position[50]));
   }
@@ -225,7 +226,7 @@ TEST_P(EverySolver, CallsTheConstraintsAndTakesTheirForces) {
     std::vector<Vec3>* force;
   } counter(sheet.external);
   TissueState state = sheet.start;
-  EquilibriumSolver solver(sheet.model, 1);
+  EquilibriumSolver solver(sheet.model);
   SolverSettings settings = Exact(GetParam());
   settings.tolerance = 1e-10, settings.max_error = 1e-7, settings.max_iterations = 40'000;
   (void)solver.Solve(settings, sheet.Load(), state, &counter);
@@ -301,7 +302,7 @@ TEST(StructuredMesh, MayHaveAnyDiagonalsStiffnessAndPlace) {
   sheet.external[node(5, 6)] = {0.1, 0.2, 0.3};
   const TissueState truth = Relax(sheet);
   TissueState state = sheet.start;
-  EquilibriumSolver solver(sheet.model, 2);
+  EquilibriumSolver solver(sheet.model, {.threads = host::UseThreads(2)});
   EXPECT_TRUE(solver.IsStructured());
   (void)solver.Solve(Exact(SolverKind::kAcceleratedDescent), sheet.Load(), state);
   EXPECT_LT(CalcError(sheet.model, state, truth), 2e-5);
@@ -311,7 +312,7 @@ TEST(StructuredMesh, MayHaveAnyDiagonalsStiffnessAndPlace) {
 TEST(Newton, ItsEstimateBoundsTheTrueErrorWhereTheResidualDoesNot) {
   const Sheet sheet = MakeSheet(60, 0.0);
   TissueState truth = sheet.start;
-  EquilibriumSolver solver(sheet.model, 1);
+  EquilibriumSolver solver(sheet.model);
   (void)solver.Solve(Exact(SolverKind::kAdaptive), sheet.Load(), truth);
   SolverSettings exact = Exact(SolverKind::kNewtonMultigrid);
   exact.max_error = 1e-9;
@@ -337,7 +338,7 @@ TEST(Newton, ComesHomeFromACrumpledStart) {
   const TissueModel& model = sphere.model;
   TissueState& state = sphere.state;
   const double before = CalcEnergy(model, state, {});
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   SolverSettings settings = Exact(SolverKind::kNewtonMultigrid);
   const SolveReport report = solver.Solve(settings, {}, state);
   EXPECT_LT(CalcEnergy(model, state, {}), 1e-3 * before);
@@ -362,7 +363,7 @@ TEST(Newton, FindsAContactThatDoesNotPressYet) {
                               .stiffness = kStiffness};
   const std::vector<Vec3> push(3, {0, 0, kForce / 3});
   const TissueLoad load{.contacts = std::span(&contact, 1), .external_force = push};
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   SolverSettings settings{.kind = SolverKind::kNewtonMultigrid, .max_error = 1e-6};
   TissueState state = MakeRestState(model);
   const SolveReport report = solver.Solve(settings, load, state);
@@ -392,7 +393,7 @@ TEST(Newton, BalancesContactsAndStrands) {
   const auto solve = [&](SolverSettings settings) {
     TissueState state = MakeRestState(model);
     state.strand_is_intact[1] = 0;
-    EquilibriumSolver solver(model, 1);
+    EquilibriumSolver solver(model);
     EXPECT_TRUE(solver.Solve(settings, load, state).converged) << SolverName(settings.kind);
     return state;
   };
@@ -405,7 +406,7 @@ TEST(Newton, BalancesContactsAndStrands) {
 TEST(GaussSeidel, VisitsOnlyTheSurroundingsOfWhatMoved) {
   const Sheet sheet = MakeSheet(60, 0.5);
   TissueState state = sheet.start;
-  EquilibriumSolver solver(sheet.model, 1);
+  EquilibriumSolver solver(sheet.model);
   const std::uint32_t node = 30 * 60 + 30;
   state.condition[node] = NodeCondition::kPrescribed;
   state.position[node].x += 0.2;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file spring_law_test.cpp  Springs that stiffen, are cut or tear: closed formulas, and every solver alike.
+#include "trocar/host/threads.h"
 #include "trocar/tissue/spring_law.h"
 
 #include <gtest/gtest.h>
@@ -114,7 +115,7 @@ TEST_P(SpringLawSolvers, AHangingMassFollowsTheStretchCurve) {
       (CalcSpringTension(kWall, k, length, middle) < mass * 9.81 ? low : high) = middle;
     }
     TissueState state = MakeRestState(model);
-    EquilibriumSolver solver(model, 1);
+    EquilibriumSolver solver(model);
     const SolveReport report = solver.Solve(Exact(GetParam()), {.gravity = {0, 0, -9.81}}, state);
     // single precision without virtual springs has no estimate of its error
     const bool can_tell = GetParam() != SolverKind::kAcceleratedDescent;
@@ -190,7 +191,7 @@ TEST_P(SpringLawSolvers, BalancesTheLawOnAStructuredAndOnAnIrregularMesh) {
     const Pulled sheet = MakePulled(is_shuffled);
     const TissueLoad load{.gravity = {0, 0, -1}};
     TissueState state = sheet.state;
-    EquilibriumSolver solver(sheet.model, 1);
+    EquilibriumSolver solver(sheet.model);
     EXPECT_EQ(solver.IsStructured(), !is_shuffled);
     const SolveReport report = solver.Solve(Exact(GetParam()), load, state);
     EXPECT_TRUE(report.converged) << report.residual << " law " << report.law_error;
@@ -206,7 +207,7 @@ TEST_P(SpringLawSolvers, ACutSpringIsNoSpring) {
     Pulled sheet = MakePulled(is_shuffled);
     ASSERT_EQ(sheet.cut.size(), 10u);
     const TissueLoad load{.gravity = {0, 0, -1}};
-    EquilibriumSolver solver(sheet.model, 1);
+    EquilibriumSolver solver(sheet.model);
     TissueState state = sheet.state;
     (void)solver.Solve(Exact(GetParam()), load, state);
     const TissueState whole = state;
@@ -220,7 +221,7 @@ TEST_P(SpringLawSolvers, ACutSpringIsNoSpring) {
     TissueState expected = MakeRestState(model);
     expected.position = whole.position;
     expected.condition = sheet.state.condition;
-    EquilibriumSolver other(model, 1);
+    EquilibriumSolver other(model);
     (void)other.Solve(Exact(SolverKind::kNewtonMultigrid), load, expected);
     const double tolerance = GetParam() == SolverKind::kAcceleratedDescent ? 1e-4 : 1e-6;
     EXPECT_LT(CalcError(sheet.model, state, expected), tolerance);
@@ -242,7 +243,7 @@ TEST_P(SpringLawSolvers, GivesTheSameBitsForAnyNumberOfThreads) {
   std::vector<Vec3> first;
   for (const int threads : {1, 2, 3, 4, 8}) {
     TissueState state = sheet.state;
-    EquilibriumSolver solver(sheet.model, threads);
+    EquilibriumSolver solver(sheet.model, {.threads = host::UseThreads(threads)});
     for (int tick = 0; tick < 3; ++tick) (void)solver.Solve(settings, {.gravity = {0, 0, -1}}, state);
     if (first.empty()) first = state.position;
     EXPECT_EQ(first, state.position) << threads << " threads";
@@ -254,7 +255,7 @@ TEST(SpringLawTicks, SettleOnTheLaw) {
   const Pulled sheet = MakePulled(true);
   const TissueLoad load{.gravity = {0, 0, -1}};
   TissueState exact = sheet.state, state = sheet.state;
-  EquilibriumSolver solver(sheet.model, 1);
+  EquilibriumSolver solver(sheet.model);
   (void)solver.Solve(Exact(SolverKind::kNewtonMultigrid), load, exact);
   SolveReport report;
   for (int tick = 0; tick < 12; ++tick) report = solver.Solve({}, load, state);
@@ -269,7 +270,7 @@ TEST(SpringLawTicks, RoundsSpendTogetherNoMoreThanATickMay) {
   SolverSettings settings = Exact(SolverKind::kNewtonMultigrid);
   const auto solve = [&] {
     TissueState state = sheet.state;
-    EquilibriumSolver solver(sheet.model, 1);
+    EquilibriumSolver solver(sheet.model);
     return solver.Solve(settings, load, state);
   };
   const SolveReport whole = solve();
@@ -283,7 +284,7 @@ TEST_P(SpringLawSolvers, ANodeThatLosesItsLastSpringStaysFinite) {
   const TissueModel model = MakeTissueModel(definition);
   TissueState state = MakeRestState(model);
   state.spring_factor[0] = 0.0;
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   SolverSettings settings;
   settings.kind = GetParam();
   const SolveReport report = solver.Solve(settings, {.gravity = {0, 0, -9.81}}, state);
@@ -294,7 +295,7 @@ TEST_P(SpringLawSolvers, ANodeThatLosesItsLastSpringStaysFinite) {
 
 TEST(SpringFactor, OneThatIsNoNumberIsFoundInTheSameTick) {
   const TissueModel model = MakeTissueModel(MakeHangingSpring(50.0, 0.01, 0.002));
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   for (const double bad : {std::nan(""), -0.5, std::numeric_limits<double>::infinity()}) {
     TissueState state = MakeRestState(model);
     state.spring_factor[0] = bad;
@@ -368,7 +369,7 @@ TEST(TearSprings, ARipRunsThroughASheetThatIsPulledApart) {
   Pulled sheet = MakePulled(true);
   sheet.definition.laws[1].failure_strain = 0.43;
   const TissueModel model = MakeTissueModel(sheet.definition);
-  EquilibriumSolver solver(model, 1);
+  EquilibriumSolver solver(model);
   TissueState state = sheet.state;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     if (state.condition[i] == NodeCondition::kPrescribed && !model.is_fixed[i]) state.position[i].z += 2.0;

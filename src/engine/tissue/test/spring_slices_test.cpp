@@ -13,6 +13,8 @@
 #include <random>
 #include <vector>
 
+#include "trocar/host/threads.h"
+
 namespace trocar::tissue {
 namespace {
 
@@ -121,7 +123,7 @@ TEST(SpringSlices, IterateAsThePlainFormulaSays) {
     for (const base::SimdLevel level : {base::SimdLevel::kBaseline, base::SimdLevel::kAvx2, base::SimdLevel::kAvx512}) {
       if (!base::HasSimdLevel(level)) continue;
       Sliced sliced(model);
-      Workers workers(1);
+      Workers workers;
       for (const auto& [omega, is_first] : {std::pair{1.0f, true}, {1.5f, false}, {1.3f, false}}) {
         (void)sliced.slices.Step(GetKernels(level), workers, omega, 0.9f, is_first, false);
         sliced.plain.Step(kLoad, static_cast<double>(omega), static_cast<double>(0.9f), is_first);
@@ -153,7 +155,7 @@ TEST(SpringSlices, HaveTheSameBitsLookedUpOrNot) {
   Kernels single = GetKernels(base::SimdLevel::kAvx512);
   ASSERT_TRUE(single.looks_up);
   single.looks_up = false;
-  Workers workers(2);
+  Workers workers(host::UseThreads(2));
   const Workers::Session session(workers);
   for (int i = 0; i < 25; ++i) {
     const bool is_first = i == 0;
@@ -174,7 +176,7 @@ TEST(SpringSlices, IterateSeveralAtATimeToTheSameBits) {
     for (const int threads : {1, 2, 3}) {
       Sliced a(model), b(model);
       ASSERT_EQ(a.slices.CountRanges(threads), side == 120 ? threads : 0);
-      Workers workers(threads);
+      Workers workers(host::UseThreads(threads));
       const Workers::Session session(workers);
       const Kernels& kernels = GetKernels(base::FindSimdLevel());
       for (const bool is_first : {true, false}) {
@@ -198,7 +200,7 @@ TEST(SpringSlices, ReportAResidualThatIsNotANumber) {
   const TissueModel model = MakeMesh({.side = 120});
   Sliced sliced(model);
   sliced.slices.SetDisplacement(sliced.ordered.Size() / 2, {NAN, 0, 0});
-  Workers workers(1);
+  Workers workers;
   EXPECT_TRUE(std::isnan(sliced.slices.Step(GetKernels(base::FindSimdLevel()), workers, 1.0f, 0.9f, true, true)));
 }
 

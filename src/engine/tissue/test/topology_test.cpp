@@ -15,6 +15,7 @@
 #include "aggregation.h"
 #include "hierarchy_topology.h"
 #include "test_systems.h"
+#include "trocar/host/threads.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
 
@@ -117,12 +118,12 @@ TEST_P(AfterACut, GoesOnAsIfMadeAnew) {
     Theatre theatre(seed);
     TissueModel model = MakeTissueModel(theatre.definition);
     const TissueModel whole = model;
-    EquilibriumSolver solver(model, {.threads = 2, .spare_share = 0.5});
+    EquilibriumSolver solver(model, {.threads = host::UseThreads(2), .spare_share = 0.5});
     for (int cut = 0; cut < 6; ++cut) {
       theatre.Cut();
       model = MakeTissueModel(theatre.definition);
       solver.UpdateTopology(model);
-      EquilibriumSolver anew(model, 1);
+      EquilibriumSolver anew(model);
       TissueState state = Pull(model), expected = state;
       state.spring_factor[11] = expected.spring_factor[11] = 0.3;
       for (int tick = 0; tick < 2; ++tick) {
@@ -133,7 +134,7 @@ TEST_P(AfterACut, GoesOnAsIfMadeAnew) {
         ASSERT_EQ(state.position, expected.position) << "cut " << cut;
       }
       // negative control: the uncut tissue is elsewhere
-      EquilibriumSolver uncut(whole, 1);
+      EquilibriumSolver uncut(whole);
       TissueState elsewhere = Pull(whole);
       (void)uncut.Solve(settings, {.gravity = {0, 0, -3}}, elsewhere);
       ASSERT_NE(state.position, elsewhere.position);
@@ -146,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(Every, AfterACut, testing::ValuesIn(kSolverKinds),
 TEST(AfterACut, NothingIsAllocatedWithinTheReserve) {
   Theatre theatre(5);
   TissueModel model = MakeTissueModel(theatre.definition);
-  EquilibriumSolver solver(model, {.threads = 1, .spare_share = 0.5});
+  EquilibriumSolver solver(model, {.spare_share = 0.5});
   for (const SolverKind kind : kSolverKinds) solver.Prepare({.kind = kind}, 1);
   for (int cut = 0; cut < 30; ++cut) {
     theatre.Cut();
@@ -157,7 +158,7 @@ TEST(AfterACut, NothingIsAllocatedWithinTheReserve) {
   }
   // negative control: the counter counts, and without a reserve there is something to count
   const int before = allocations;
-  EquilibriumSolver small(model, 1);
+  EquilibriumSolver small(model);
   EXPECT_GT(allocations, before);
   const int made = allocations;
   for (int cut = 0; cut < 5; ++cut) theatre.Cut();
@@ -168,7 +169,7 @@ TEST(AfterACut, NothingIsAllocatedWithinTheReserve) {
   EXPECT_GT(allocations, remade);
   EXPECT_GT(remade, made);
   // and goes on all the same
-  EquilibriumSolver anew(model, 1);
+  EquilibriumSolver anew(model);
   TissueState one = Pull(model), other = one;
   (void)small.Solve({}, {}, one);
   (void)anew.Solve({}, {}, other);
@@ -186,7 +187,7 @@ TEST_P(AfterACut, OnlyAFirstSolveAllocates) {
     (void)solver.Solve(settings, {.gravity = {0, 0, -3}}, state);
     return allocations - before;
   };
-  EquilibriumSolver prepared(model, 1), unprepared(model, 1);
+  EquilibriumSolver prepared(model), unprepared(model);
   prepared.Prepare(settings, 0);
   EXPECT_EQ(count(prepared), 0);
   EXPECT_GT(count(unprepared), 0) << "negative control";
@@ -202,7 +203,7 @@ TEST_P(AfterACut, SharedMemoryChangesNoBit) {
   EquilibriumSolver second(model, {.spare_share = 0.5}, first->ShareModel());
   EXPECT_EQ(second.ShareModel(), first->ShareModel());
   first.reset();
-  EquilibriumSolver alone(model, 1);
+  EquilibriumSolver alone(model);
   const auto expect_same = [&] {
     TissueState state = Pull(model), expected = state;
     (void)second.Solve(settings, {.gravity = {0, 0, -3}}, state);
@@ -220,13 +221,13 @@ TEST_P(AfterACut, SharedMemoryChangesNoBit) {
 TEST(AfterACut, AStructuredMeshIsOneNoMore) {
   TissueDefinition definition = MakeMembrane(geometry::MakeGrid(20, 0.001), 100.0, 1e5);
   const TissueModel whole = MakeTissueModel(definition);
-  EquilibriumSolver solver(whole, 1);
+  EquilibriumSolver solver(whole);
   ASSERT_TRUE(solver.IsStructured());
   std::swap(definition.springs[40].b, definition.springs[300].b);
   const TissueModel cut = MakeTissueModel(definition);
   solver.UpdateTopology(cut);
   EXPECT_FALSE(solver.IsStructured());
-  EquilibriumSolver anew(cut, 1);
+  EquilibriumSolver anew(cut);
   TissueState state = Pull(cut), expected = state;
   (void)solver.Solve({}, {}, state);
   (void)anew.Solve({}, {}, expected);
@@ -247,7 +248,7 @@ TEST(SolverMemory, AColdStartOnAGridForgetsWhereOtherNodesWereHeld) {
     EXPECT_GT(report.coarse_levels, 2);
     return state.position;
   };
-  EquilibriumSolver used(model, 1), anew(model, 1);
+  EquilibriumSolver used(model), anew(model);
   const auto first = press(used, 40);
   const auto second = press(used, 0);
   EXPECT_EQ(second, press(anew, 0));
@@ -260,7 +261,7 @@ TEST(SolverMemory, AFactorThatIsNoNumberHidesNoCutSpring) {
   definition.shape_stiffness.push_back(0);
   definition.springs.insert(definition.springs.begin(), {1, 2, 20, 0.1});
   const TissueModel model = MakeTissueModel(definition);
-  EquilibriumSolver used(model, 1), anew(model, 1);
+  EquilibriumSolver used(model), anew(model);
   TissueState state = MakeRestState(model);
   state.spring_factor = {0.0, std::nan("")};
   EXPECT_FALSE(used.Solve({}, {.gravity = {0, 0, -9.81}}, state).is_finite);
@@ -276,7 +277,7 @@ TEST(SolverMemory, AFactorThatIsNoNumberHidesNoCutSpring) {
 TEST(AfterACut, VolumesAreKept) {
   Theatre theatre(9);
   TissueModel model = MakeTissueModel(theatre.definition);
-  EquilibriumSolver solver(model, {.threads = 1, .spare_share = 0.5});
+  EquilibriumSolver solver(model, {.spare_share = 0.5});
   const ConservationSettings settings{
       .organs = {{0, static_cast<std::uint32_t>(theatre.mesh.positions.size()), theatre.mesh.triangles}}};
   Conservation conservation(model, settings);
@@ -304,7 +305,7 @@ TEST(AfterACut, VolumesAreKept) {
   EXPECT_NEAR(kept.organs[0].volume, kept.organs[0].target, 1e-6 * kept.organs[0].target);
   EXPECT_NE(kept.organs[0].pressure, pressure_before);
 
-  EquilibriumSolver anew(model, 1);
+  EquilibriumSolver anew(model);
   Conservation other(model, settings);
   TissueState expected = state;
   ConservationState expected_kept = kept;

@@ -67,7 +67,7 @@ class PressedSheet {
     exact.max_error = 1e-10;
     exact.newton.max_steps = 200;
     exact.newton.max_linear_iterations = 300;
-    tissue::EquilibriumSolver solver(model, 1);
+    tissue::EquilibriumSolver solver(model);
     solver.Solve(exact, load, state);
     force = solver.CalcReaction(load, state, held);
     for (const tissue::ContactSpring& contact : contacts) {

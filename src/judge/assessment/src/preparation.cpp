@@ -9,6 +9,7 @@
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
+#include "trocar/host/threads.h"
 #include "trocar/patient/patient.h"
 #include "trocar/assessment/play_state.h"
 #include "trocar/base/state_hash.h"
@@ -93,7 +94,7 @@ base::Result<Preparation> PrepareStep(const Step& step, const PreparationSetting
                  "there is no operation \"" + step.operation + "\"; delivered is cholecystectomy"};
   }
   const auto scene = std::make_shared<const scene::Scene>(std::move(**found));
-  auto simulation = simulation::Simulation::Make(scene, settings.threads);
+  auto simulation = simulation::Simulation::Make(scene, {.threads = host::UseThreads(settings.threads)});
   if (!simulation.ok()) return simulation.error();
   preparation.surgeon = "expert, seed " + std::to_string(settings.surgeon_seed);
   preparation.state = CacheOr(settings.cache) / "starts" /

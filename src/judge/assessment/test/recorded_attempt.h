@@ -31,7 +31,7 @@ inline void RecordAttempt(const std::filesystem::path& path, const record::Descr
   auto made = record::MakeScene(description);
   ASSERT_TRUE(made.ok()) << made.error().Text();
   const auto scene = std::make_shared<const scene::Scene>(std::move(*made));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   auto surgeon = agent::MakeSurgeon(attempt.surgeon, scene, attempt.surgeon_seed);
   ASSERT_TRUE(simulation.ok() && surgeon.ok());
   record::RecorderSettings settings;

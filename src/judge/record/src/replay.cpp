@@ -7,6 +7,7 @@
 
 #include "state_index.h"
 #include "trocar/host/clock.h"
+#include "trocar/host/threads.h"
 #include "trocar/record/outcome.h"
 #include "trocar/simulation/engine_bits.h"
 
@@ -56,10 +57,9 @@ base::Result<Replay> Replay::Open(Recording recording, const ReplaySettings& set
   }
   auto scene = MakeScene(recording.description);
   if (!scene.ok()) return scene.error();
-  auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*scene)),
-                                               settings.threads);
+  auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*scene)), host::UseThreads(settings.threads));
   if (!model.ok()) return model.error();
-  auto made = Simulation::Make(*model, settings.threads, {.now = host::NowNanoseconds});
+  auto made = Simulation::Make(*model, {.threads = host::UseThreads(settings.threads), .now = host::NowNanoseconds});
   if (!made.ok()) return made.error();
   const Description& d = recording.description;
   if (made->ModelFingerprint() != d.model) {
@@ -89,7 +89,7 @@ base::Result<Replay> Replay::Open(Recording recording, const ReplaySettings& set
 }
 
 base::Result<Replay> Replay::Another(double visit_seconds) const {
-  auto made = Simulation::Make(model_, threads_, {.now = host::NowNanoseconds});
+  auto made = Simulation::Make(model_, {.threads = host::UseThreads(threads_), .now = host::NowNanoseconds});
   if (!made.ok()) return made.error();
   Replay other(recording_, model_, std::move(*made), threads_, visit_seconds);
   other.first_ = first_;
@@ -99,7 +99,7 @@ base::Result<Replay> Replay::Another(double visit_seconds) const {
 }
 
 base::Result<Simulation> Replay::Branch(int threads) const {
-  auto made = Simulation::Make(model_, threads, {.now = host::NowNanoseconds});
+  auto made = Simulation::Make(model_, {.threads = host::UseThreads(threads), .now = host::NowNanoseconds});
   if (!made.ok()) return made.error();
   std::vector<std::byte> state;
   simulation_.Save(state);

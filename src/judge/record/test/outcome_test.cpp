@@ -21,7 +21,7 @@ json FirstOutcome(const std::string& name) {
   auto scene = files::FindScene(name);
   EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().Text());
   if (!scene.ok()) return {};
-  auto simulation = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)), 1);
+  auto simulation = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)));
   EXPECT_TRUE(simulation.ok());
   return simulation.ok() ? json::parse(CalcOutcome(*simulation)) : json();
 }

@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   auto scene = files::ReadScene(argv[1]);
   if (!scene.ok()) return 3;
   const auto shared = std::make_shared<const scene::Scene>(std::move(*scene));
-  auto simulation = simulation::Simulation::Make(shared, 1);
+  auto simulation = simulation::Simulation::Make(shared);
   if (!simulation.ok()) return 3;
   record::Description description;
   description.name = argv[1];

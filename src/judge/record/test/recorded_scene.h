@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "small_scene.h"
+#include "trocar/host/threads.h"
 #include "trocar/record/recorder.h"
 #include "wandering_input.h"
 
@@ -21,7 +22,7 @@ class RecordedScene : public scene::SmallScene {
     scene_ = std::make_shared<const scene::Scene>(std::move(*read));
   }
   simulation::Simulation Make(int threads = 1) {
-    auto made = simulation::Simulation::Make(scene_, threads);
+    auto made = simulation::Simulation::Make(scene_, {.threads = host::UseThreads(threads)});
     EXPECT_TRUE(made.ok()) << made.error().Text();
     return std::move(*made);
   }

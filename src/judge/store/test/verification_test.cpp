@@ -174,7 +174,7 @@ class ReplayedAttempt : public testing::Test {
     auto read = files::FindScene("instrument_navigation", {"easy", 3, ""});
     ASSERT_TRUE(read.ok()) << read.error().Text();
     const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-    auto simulation = simulation::Simulation::Make(scene, 1);
+    auto simulation = simulation::Simulation::Make(scene);
     ASSERT_TRUE(simulation.ok());
     record::Description description;
     description.kind = record::Description::Kind::kTask;

@@ -81,7 +81,7 @@ base::Result<std::unique_ptr<Player>> MakeSurgeonPlayer(const Plan& plan, std::u
   read->laparoscope.field_of_view =
       std::min(kWidestView, read->laparoscope.field_of_view * field_of_view_scale);
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   if (!simulation) return simulation.error();
   auto surgeon = agent::MakeSurgeon(plan.surgeon, scene, seed);
   if (!surgeon) return surgeon.error();

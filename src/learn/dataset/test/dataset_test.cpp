@@ -42,7 +42,7 @@ void RecordExpert(const fs::path& file, double seconds) {
   auto read = files::ReadTask(*path, {.seed = 1});
   ASSERT_TRUE(read.ok());
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   auto surgeon = agent::MakeSurgeon("expert", scene, 1);
   ASSERT_TRUE(simulation.ok() && surgeon.ok());
   record::Description description;

@@ -75,7 +75,7 @@ base::Result<std::shared_ptr<EnvironmentModel>> EnvironmentModel::Make(const Env
   std::shared_ptr<EnvironmentModel> model(new EnvironmentModel(std::move(content)));
   const auto first = model->FindLayout(0);
   if (!first) return first.error();
-  const auto simulation = simulation::Simulation::Make(*first, 1);
+  const auto simulation = simulation::Simulation::Make(*first);
   if (!simulation) return simulation.error();
   const scene::Scene& scene = simulation->GetScene();
   Content& made = *model->content_;
@@ -155,7 +155,7 @@ Environment::~Environment() = default;
 base::Result<Environment> Environment::Make(std::shared_ptr<EnvironmentModel> model) {
   const auto first = model->FindLayout(0);
   if (!first) return first.error();
-  auto simulation = simulation::Simulation::Make(*first, 1);
+  auto simulation = simulation::Simulation::Make(*first);
   if (!simulation) return simulation.error();
   return Environment(std::make_unique<Content>(std::move(model), std::move(*simulation)));
 }
@@ -168,7 +168,7 @@ base::Status Environment::Reset(std::optional<std::uint64_t> seed) {
   if (layout != now.layout) {
     const auto model = now.model->FindLayout(layout);
     if (!model) return model.error();
-    auto made = simulation::Simulation::Make(*model, 1);
+    auto made = simulation::Simulation::Make(*model);
     if (!made) return made.error();
     now.simulation = std::move(*made);
     now.layout = layout;

@@ -145,7 +145,7 @@ TEST(Environment, IsPlayedByASurgeon) {
   Environment played = std::move(*Environment::Make(model)), repeated = std::move(*Environment::Make(model));
   ASSERT_TRUE(played.Reset(1).ok() && repeated.Reset(1).ok());
   const auto scene = std::make_shared<const scene::Scene>(played.GetSimulation().GetScene());
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   auto surgeon = agent::MakeSurgeon("expert", scene, 1), other = agent::MakeSurgeon("expert", scene, 1);
   ASSERT_TRUE(simulation.ok() && surgeon.ok() && other.ok());
   std::vector<double> action(model->ActionSize());
@@ -212,7 +212,7 @@ TEST(RewardMeter, GathersEveryGoalOfTheExpert) {
   auto read = files::ReadTask(*path, {.seed = 1});
   ASSERT_TRUE(read.ok());
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   auto surgeon = agent::MakeSurgeon("expert", scene, 1);
   ASSERT_TRUE(simulation.ok() && surgeon.ok());
   Features sum{};

@@ -162,7 +162,7 @@ base::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
   }
   // patterns stick to the rest shapes: those of a simulation that has not begun; the scene outlives it
   const std::shared_ptr<const scene::Scene> scene(std::shared_ptr<const scene::Scene>(), &front.GetScene());
-  auto fresh = simulation::Simulation::Make(scene, 1);
+  auto fresh = simulation::Simulation::Make(scene);
   if (!fresh.ok()) return fresh.error();
   const auto model = simulation::DescribeModel(*scene);
   if (!model.ok()) return model.error();

@@ -9,6 +9,7 @@
 
 #include "trocar/host/clock.h"
 #include "trocar/base/statistics.h"
+#include "trocar/host/threads.h"
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
@@ -69,7 +70,7 @@ base::Result<DemoReport> PlayDemonstration(std::shared_ptr<const scene::Scene> s
   const auto duration = FindDuration(*scene, options);
   if (!duration) return duration.error();
 
-  auto simulation = simulation::Simulation::Make(scene, options.threads);
+  auto simulation = simulation::Simulation::Make(scene, {.threads = host::UseThreads(options.threads)});
   if (!simulation) return simulation.error();
   if (!options.start.empty()) {
     if (const auto restored = simulation->Restore(options.start); !restored) return restored.error();

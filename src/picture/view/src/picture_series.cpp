@@ -12,6 +12,7 @@
 #include "trocar/host/clock.h"
 #include "trocar/base/state_archive.h"
 #include "trocar/base/statistics.h"
+#include "trocar/host/threads.h"
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
@@ -93,7 +94,7 @@ class Sitting {
     auto found = files::FindScene(plan.task, {"normal", kSeed, {}});
     if (!found) return found.error();
     const auto scene = std::make_shared<const scene::Scene>(std::move(*found));
-    auto simulation = simulation::Simulation::Make(scene, options.threads);
+    auto simulation = simulation::Simulation::Make(scene, {.threads = host::UseThreads(options.threads)});
     if (!simulation) return simulation.error();
     auto surgeon = agent::MakeSurgeon(plan.surgeon, scene, kSeed);
     if (!surgeon) return surgeon.error();

@@ -17,7 +17,7 @@ namespace {
 base::Result<simulation::Simulation> MakeOperation() {
   auto scene = files::FindOperation("cholecystectomy", {}, 1);
   EXPECT_TRUE(scene.ok() && scene->has_value());
-  return simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(**scene)), 1);
+  return simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(**scene)));
 }
 
 TEST(CriticalViewDoublet, ShowsTwoSidesAndLeavesTheStateAlone) {
@@ -105,7 +105,7 @@ TEST(CriticalViewDoublet, RefusesASceneWithoutDuctsAndASizeOfNothing) {
   const auto path = files::FindTask("peg_transfer");
   auto scene = files::ReadTask(*path);
   ASSERT_TRUE(scene.ok());
-  auto pegs = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)), 1);
+  auto pegs = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)));
   ASSERT_TRUE(pegs.ok());
   EXPECT_EQ(RenderCriticalViewDoublet(*pegs).error().code, base::ErrorCode::kUsage);
   auto operation = MakeOperation();

@@ -76,7 +76,7 @@ TEST_F(DemoTest, PlaysWhatTheSimulationAlonePlays) {
   options_.has_video = false;
   const auto report = PlayDemonstration(scene_, options_);
   ASSERT_TRUE(report.ok()) << report.error().Text();
-  auto simulation = simulation::Simulation::Make(scene_, 1);
+  auto simulation = simulation::Simulation::Make(scene_);
   ASSERT_TRUE(simulation.ok());
   for (std::uint64_t tick = 0; tick < report->ticks; ++tick) {
     simulation->Step(scene::CalcScriptInput(*scene_, simulation->GetSnapshot().time));

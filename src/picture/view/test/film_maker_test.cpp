@@ -21,7 +21,7 @@ class FilmMakerTest : public testing::Test {
   void SetUp() override {
     auto scene = files::ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes" / "demonstration.json");
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
-    auto made = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)), 1);
+    auto made = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)));
     ASSERT_TRUE(made.ok());
     simulation_.emplace(std::move(*made));
     settings_.width = 324, settings_.height = 120;

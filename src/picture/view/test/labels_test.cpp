@@ -97,7 +97,7 @@ RayCast CastRays(const std::vector<LabelledMesh>& meshes, const math::Pose& X_wo
 class LabelsTest : public testing::Test {
  protected:
   void Show(std::shared_ptr<const scene::Scene> scene, int ticks) {
-    auto made = simulation::Simulation::Make(scene, 1);
+    auto made = simulation::Simulation::Make(scene);
     ASSERT_TRUE(made.ok()) << made.error().Text();
     simulation_.emplace(std::move(*made));
     auto& simulation = simulation_;

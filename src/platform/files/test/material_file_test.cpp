@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "small_scene.h"
+#include "trocar/host/threads.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::files {
@@ -89,14 +90,14 @@ TEST_F(MaterialFile, ATenseGallbladderStartsUnderItsPressure) {
   Write("scene.json", scene);
   auto read = Read();
   ASSERT_TRUE(read.ok()) << read.error().Text();
-  auto simulation = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*read)), 1);
+  auto simulation = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*read)));
   ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
   const auto& organs = simulation->GetSnapshot().organs;
   ASSERT_EQ(organs.size(), 2u);
   EXPECT_NEAR(organs[1].pressure, 300.0, 1.0);
   const double tense = organs[1].volume;
   Write("scene.json", SceneText());
-  auto slack = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*Read())), 1);
+  auto slack = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*Read())));
   ASSERT_TRUE(slack.ok());
   EXPECT_GT(tense, 1.001 * slack->GetSnapshot().organs[1].volume);
   // and stays so while nothing acts
@@ -117,7 +118,7 @@ TEST_F(MaterialFile, AWeakBedTearsUnderTractionAndTheEventSaysSo) {
   Write("scene.json", scene);
   auto read = Read();
   ASSERT_TRUE(read.ok()) << read.error().Text();
-  auto simulation = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*read)), 1);
+  auto simulation = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*read)));
   ASSERT_TRUE(simulation.ok());
   std::set<EventKind> seen;
   std::uint64_t events = 0;
@@ -157,7 +158,7 @@ TEST_F(MaterialFile, AWeakWallTearsUnderTractionAndLeaks) {
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
   std::uint64_t hash = 0;
   for (const int threads : {1, 3}) {
-    auto simulation = simulation::Simulation::Make(scene, threads);
+    auto simulation = simulation::Simulation::Make(scene, {.threads = host::UseThreads(threads)});
     ASSERT_TRUE(simulation.ok());
     int tears = 0;
     std::uint64_t events = 0;

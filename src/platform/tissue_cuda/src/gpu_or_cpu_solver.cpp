@@ -20,8 +20,8 @@ bool HasPlainSprings(const tissue::TissueState& state) noexcept {
 
 }  // namespace
 
-GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, int threads, base::Result<GpuSolver> gpu)
-    : DeviceSolver(model, threads) {
+GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, const base::Threads& threads, base::Result<GpuSolver> gpu)
+    : DeviceSolver(model, tissue::SolverOptions{.threads = threads}) {
   if (gpu) {
     gpu_ = std::move(gpu).value();
   } else {
@@ -50,7 +50,8 @@ tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings
   return EquilibriumSolver::Solve(settings, load, state, constraints, extrapolation);
 }
 
-std::unique_ptr<tissue::DeviceSolver> MakeGpuOrCpuSolver(const tissue::TissueModel& model, int threads) {
+std::unique_ptr<tissue::DeviceSolver> MakeGpuOrCpuSolver(const tissue::TissueModel& model,
+                                                         const base::Threads& threads) {
   return std::make_unique<GpuOrCpuSolver>(model, threads, GpuSolver::Make(model));
 }
 

@@ -25,12 +25,12 @@ TEST(GpuOrCpuSolver, WithoutAGpuGivesTheProcessorsBits) {
   const TissueModel model = MakeModel();
   DriverSource nowhere = StandIn::Source();
   nowhere.file = "/nonexistent/libcuda.so.1";
-  GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, nowhere));
+  GpuOrCpuSolver solver(model, base::Threads{}, MakeGpuSolver(model, {}, nowhere));
   EXPECT_EQ(solver.Gpu(), nullptr);
   ASSERT_TRUE(solver.GpuError());
   EXPECT_EQ(solver.GpuError()->code, base::ErrorCode::kGpuMissing);
   TissueState expected = MakeMovedState(model, 3e-4), found = expected;
-  tissue::EquilibriumSolver cpu(model, 1);
+  tissue::EquilibriumSolver cpu(model);
   (void)cpu.Solve(kChebyshev, kLoad, expected);
   (void)solver.Solve(kChebyshev, kLoad, found);
   EXPECT_EQ(found.position, expected.position);
@@ -41,12 +41,12 @@ TEST(GpuOrCpuSolver, TheProcessorGoesOnInTheTickInWhichTheGpuFails) {
   const TissueModel model = MakeModel();
   for (int fails_at = 1; fails_at <= 4; ++fails_at) {
     const StandIn stand_in("fail=cuLaunchCooperativeKernel:" + std::to_string(fails_at) + ":700");
-    GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, StandIn::Source()));
+    GpuOrCpuSolver solver(model, base::Threads{}, MakeGpuSolver(model, {}, StandIn::Source()));
     ASSERT_NE(solver.Gpu(), nullptr);
     TissueState state = MakeMovedState(model, 3e-4);
     for (int tick = 1; tick <= 5; ++tick) {
       TissueState expected = state;
-      tissue::EquilibriumSolver cpu(model, 1);
+      tissue::EquilibriumSolver cpu(model);
       const auto wanted = cpu.Solve(kChebyshev, kLoad, expected);
       const auto report = solver.Solve(kChebyshev, kLoad, state);
       EXPECT_EQ(solver.Gpu() != nullptr, tick < fails_at);
@@ -65,12 +65,12 @@ TEST(GpuOrCpuSolver, TheProcessorGoesOnInTheTickInWhichTheGpuFails) {
 TEST(GpuOrCpuSolver, CutSpringsAreSolvedOnTheProcessorAndTheGpuIsKept) {
   const StandIn stand_in;
   const TissueModel model = MakeModel();
-  GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, StandIn::Source()));
+  GpuOrCpuSolver solver(model, base::Threads{}, MakeGpuSolver(model, {}, StandIn::Source()));
   ASSERT_NE(solver.Gpu(), nullptr);
   TissueState state = MakeMovedState(model, 3e-4);
   state.spring_factor[5] = 0.0;
   TissueState expected = state;
-  tissue::EquilibriumSolver cpu(model, 1);
+  tissue::EquilibriumSolver cpu(model);
   (void)cpu.Solve(kChebyshev, kLoad, expected);
   (void)solver.Solve(kChebyshev, kLoad, state);
   EXPECT_EQ(state.position, expected.position);
@@ -96,7 +96,7 @@ TEST(GpuOrCpuSolver, SpringsThatStiffenAreRefused) {
 TEST(GpuOrCpuSolver, TheChebyshevIterationAndAnOpenChoiceGoToTheGpu) {
   const StandIn stand_in("fail=cuLaunchCooperativeKernel:1:700");
   const TissueModel model = MakeModel();
-  GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, StandIn::Source()));
+  GpuOrCpuSolver solver(model, base::Threads{}, MakeGpuSolver(model, {}, StandIn::Source()));
   TissueState state = MakeMovedState(model, 3e-4);
   (void)solver.Solve({SolverKind::kRelaxationPaper, 3, 1e-9, 0.0}, kLoad, state);
   EXPECT_NE(solver.Gpu(), nullptr);  // it was not asked, so it did not fail
@@ -135,7 +135,7 @@ TEST(GpuOrCpuSolver, CallsTheConstraintsBetweenTheSameIterationsAsTheProcessor) 
             model, 1,
             MakeGpuSolver(model, {Layout::kTiled, Precision::kDouble, forbid_resident}, StandIn::Source()));
         ASSERT_NE(solver.Gpu(), nullptr);
-        tissue::EquilibriumSolver cpu(model, 1);
+        tissue::EquilibriumSolver cpu(model);
         const SolverSettings settings{SolverKind::kChebyshevJacobi2015, iterations, 1e-30, 0.0};
         const auto run = [&](tissue::EquilibriumSolver& which, TissueState& state, Shift& shift) {
           tissue::TissueLoad load = kLoad;
@@ -162,10 +162,10 @@ TEST(GpuOrCpuSolver, CallsTheConstraintsBetweenTheSameIterationsAsTheProcessor) 
 TEST(GpuOrCpuSolver, AFailureBetweenTwoCallsOfTheConstraintsStartsTheTickAgain) {
   const TissueModel model = MakeModel();
   const StandIn stand_in("fail=cuLaunchCooperativeKernel:3:700");
-  GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, StandIn::Source()));
+  GpuOrCpuSolver solver(model, base::Threads{}, MakeGpuSolver(model, {}, StandIn::Source()));
   TissueState expected = MakeMovedState(model, 3e-4), found = expected;
   Shift on_cpu(model.Size(), 5), on_gpu = on_cpu;
-  tissue::EquilibriumSolver cpu(model, 1);
+  tissue::EquilibriumSolver cpu(model);
   (void)cpu.Solve(kChebyshev, kLoad, expected, &on_cpu);
   (void)solver.Solve(kChebyshev, kLoad, found, &on_gpu);
   EXPECT_EQ(solver.Gpu(), nullptr);

@@ -71,7 +71,7 @@ TEST(GpuSolver, EveryLayoutAndPrecisionReachesTheCpusEquilibrium) {
   const StandIn stand_in;
   GridCase given;
   TissueState expected = given.state;
-  tissue::EquilibriumSolver cpu(given.model, 1);
+  tissue::EquilibriumSolver cpu(given.model);
   ASSERT_TRUE(cpu.Solve({SolverKind::kRelaxationPaper, 100'000, 1e-10, 0.0}, given.load, expected).converged);
   const double largest = CalcLargestDistance(expected.position, given.model.rest);
   EXPECT_GT(largest, 1e-4);
@@ -134,7 +134,7 @@ TEST(GpuSolver, TakesNewConditionsForcesContactsAndStrandsWithoutBeingMadeAgain)
       state.position[50] += Vec3{0.001, 0, 0};
     }
     TissueState expected = state;
-    tissue::EquilibriumSolver cpu(model, 1);
+    tissue::EquilibriumSolver cpu(model);
     (void)cpu.Solve({SolverKind::kChebyshevJacobi2015, 30, 1e-9}, load, expected);
     ASSERT_TRUE(solver->Solve({30, 1e-9}, load, state));
     EXPECT_LT(CalcLargestDistance(expected.position, state.position), 1e-12) << tick;

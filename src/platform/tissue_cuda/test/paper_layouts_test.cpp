@@ -75,7 +75,7 @@ TEST_P(PaperLayout, ReachesTheEquilibriumOfThePapersRelaxation) {
   const TissueModel model = tissue::MakeTissueModel(MakeGridSystem(18, 19, Springs::kVaried));
   const tissue::TissueLoad load{.gravity = {0, 0, -9.81}, .shape_scale = 10};
   TissueState expected = MakeMovedState(model, 0.05), found = expected;
-  tissue::EquilibriumSolver reference(model, 1);
+  tissue::EquilibriumSolver reference(model);
   ASSERT_TRUE(
       reference.Solve({tissue::SolverKind::kRelaxationPaper, 100'000, 1e-10, 0.0}, load, expected).converged);
   Watch watch;

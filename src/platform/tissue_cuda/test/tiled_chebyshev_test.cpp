@@ -62,7 +62,7 @@ TEST(TiledChebyshev, TakesTheStepsOfTheCpusSolver) {
       for (const int iterations : {1, 2, 7, 45}) {
         const GpuSettings settings{iterations, 1e-300};
         TissueState expected = given->state;
-        tissue::EquilibriumSolver cpu(given->model, 1);
+        tissue::EquilibriumSolver cpu(given->model);
         const tissue::SolveReport report =
             cpu.Solve({SolverKind::kChebyshevJacobi2015, settings.max_iterations, settings.tolerance},
                       given->load, expected);
@@ -104,7 +104,7 @@ TEST(TiledChebyshev, SinglePrecisionReachesTheReferencesEquilibrium) {
     SCOPED_TRACE(name);
     const auto given = MakeCase(definition, true);
     TissueState expected = given->state;
-    tissue::EquilibriumSolver reference(given->model, 1);
+    tissue::EquilibriumSolver reference(given->model);
     ASSERT_TRUE(reference.Solve({SolverKind::kRelaxationPaper, 200'000, 1e-10, 0.0}, given->load, expected)
                     .converged);
     const Solved found = Solve<TiledResident, float>(*given, {1500, 1e-6}, CountTiles(given->model), 0);

@@ -39,7 +39,7 @@ Snapshot Shown(const simulation::Simulation& simulation) {
 std::vector<Vec3> FindClosings() {
   constexpr int kTicks = 30000;
   const auto scene = OperationScene();
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   EXPECT_TRUE(simulation.ok());
   auto surgeon = MakeSurgeon("expert", scene, 1);
   EXPECT_TRUE(surgeon.ok());

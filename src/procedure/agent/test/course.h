@@ -228,7 +228,7 @@ class Actor {
 
 /// What is done in a course, tick by tick.
 inline std::vector<Input> RecordInputs(const Course& course, std::shared_ptr<const Scene> scene) {
-  Simulation simulation = std::move(*Simulation::Make(std::move(*simulation::MakeSimulationModel(scene)), 1));
+  Simulation simulation = std::move(*Simulation::Make(std::move(*simulation::MakeSimulationModel(scene))));
   Actor actor(course, std::move(scene), std::hash<std::string>()(course.name));
   std::vector<Input> inputs;
   for (int tick = 0; tick < course.ticks + kGoesOn && !actor.HasFinished(); ++tick) {
@@ -252,7 +252,7 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
   auto model = simulation::MakeSimulationModel(scene);
   EXPECT_TRUE(model.ok()) << model.error().Text();
   recording.model = *model;
-  Simulation simulation = std::move(*Simulation::Make(recording.model, 1));
+  Simulation simulation = std::move(*Simulation::Make(recording.model));
   const std::uint64_t seed = std::hash<std::string>()(course.name);
   Actor actor(course, scene, seed);
   math::Random random(seed);
@@ -267,7 +267,7 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
   std::optional<Simulation> altered;
   Simulation::AlterField alter;
   if (course.alteration[0] != 0) {
-    altered = std::move(*Simulation::Make(recording.model, 1));
+    altered = std::move(*Simulation::Make(recording.model));
     alter = FindAlteration(course.alteration);
   }
   const auto take = [&](Point& point, std::size_t tick) {

@@ -35,7 +35,7 @@ class EmptiedGallbladder : public testing::Test {
     auto read = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
     ASSERT_TRUE(read.ok()) << read.error().Text();
     scene_ = std::make_shared<const Scene>(std::move(*read));
-    auto made = Simulation::Make(scene_, 1);
+    auto made = Simulation::Make(scene_);
     ASSERT_TRUE(made.ok()) << made.error().Text();
     simulation_.emplace(std::move(*made));
     input_ = CalcScriptInput(*scene_, 0.0);

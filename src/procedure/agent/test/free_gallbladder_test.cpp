@@ -38,7 +38,7 @@ Snapshot Dissected(const simulation::Simulation& simulation, bool is_off_bed) {
 /// What the expert does in turn from there, as far as the left hand draws to show the other side.
 std::vector<std::string> DoingsBeforeDraw(bool is_off_bed) {
   constexpr int kTicks = 12000;
-  auto simulation = simulation::Simulation::Make(OperationScene(), 1);
+  auto simulation = simulation::Simulation::Make(OperationScene());
   EXPECT_TRUE(simulation.ok());
   auto surgeon = MakeSurgeon("expert", OperationScene(), 1);
   EXPECT_TRUE(surgeon.ok());

@@ -47,7 +47,7 @@ using simulation::Simulation;
 namespace {
 
 Simulation MakeOperation() {
-  auto made = Simulation::Make(OperationScene(), 1);
+  auto made = Simulation::Make(OperationScene());
   EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().Text());
   return std::move(*made);
 }
@@ -328,7 +328,7 @@ TEST(OperationWhole, AnExpertOperatesOnGeneratedPatients) {
     auto read = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json", folder);
     ASSERT_TRUE(read.ok()) << read.error().Text();
     const auto scene = std::make_shared<const Scene>(std::move(*read));
-    auto simulation = Simulation::Make(scene, 1);
+    auto simulation = Simulation::Make(scene);
     ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
     auto surgeon = MakeSurgeon("expert", scene, 1);
     ASSERT_TRUE(surgeon.ok());

@@ -77,7 +77,7 @@ class OtherNames : public testing::Test {
     OperationResult result;
   };
   static Played Play(const std::shared_ptr<const Scene>& scene, const std::string& name, double seconds) {
-    auto simulation = Simulation::Make(scene, 1);
+    auto simulation = Simulation::Make(scene);
     EXPECT_TRUE(simulation.ok());
     auto surgeon = MakeSurgeon(name, scene, 1);
     EXPECT_TRUE(surgeon.ok()) << surgeon.error().Text();

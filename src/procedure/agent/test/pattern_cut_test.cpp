@@ -91,7 +91,7 @@ TEST_F(Sheet, ASquareCutOutDiffersFromTheCircleAsTheFormulaSays) {
 
 TEST(PatternCut, TheExpertsPieceIsFreeRoundAndLeftWhereItWas) {
   const auto scene = ReadDelivered("pattern_cut");
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok());
   auto surgeon = MakeSurgeon("expert", scene, 1);
   while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < 200)
@@ -122,7 +122,7 @@ SheetAround CutSheetUnder(double prestrain) {
   auto scene = std::make_shared<Scene>(*ReadDelivered("pattern_cut"));
   ModelSheet& sheet = scene->model->sheets[0];
   sheet.prestrain = prestrain;
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   EXPECT_TRUE(simulation.ok());
   std::vector<Vec3> rest = simulation->GetSnapshot().positions;
   rest.resize(simulation->Surfaces()[0].node_count);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "course.h"
+#include "trocar/host/threads.h"
 
 namespace trocar::agent {
 
@@ -42,11 +43,11 @@ void CheckCourse(const Course& whole) {
   const Recording recording = Record(course, scene);
   ASSERT_GE(recording.points.size(), 2U) << course.name;
   testing::Test::RecordProperty("points", std::to_string(recording.points.size()));
-  Simulation used = std::move(*Simulation::Make(recording.model, 2));
+  Simulation used = std::move(*Simulation::Make(recording.model, {.threads = host::UseThreads(2)}));
   // backwards, so that every state is one of another past
   for (std::size_t i = recording.points.size(); i-- > 0;) {
     const Point& point = recording.points[i];
-    Simulation fresh = std::move(*Simulation::Make(recording.model, 1));
+    Simulation fresh = std::move(*Simulation::Make(recording.model));
     for (Simulation* simulation : {&used, &fresh}) {
       const base::Status restored = simulation->Restore(point.bytes);
       ASSERT_TRUE(restored.ok()) << restored.error().Text();
@@ -108,8 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(SimulationStateGuard, TakesABadTickBackAfterRestoringAsBefore) {
   const auto model = MakeSimulationModel(ReadCourse({"retraction", "", 0, 0}));
   ASSERT_TRUE(model.ok());
-  Simulation simulation = std::move(*Simulation::Make(*model, 1));
-  Simulation fresh = std::move(*Simulation::Make(*model, 1));
+  Simulation simulation = std::move(*Simulation::Make(*model));
+  Simulation fresh = std::move(*Simulation::Make(*model));
   for (int tick = 0; tick < 120; ++tick)
     simulation.Step(scene::CalcScriptInput(simulation.GetScene(), simulation.GetSnapshot().time));
   std::vector<std::byte> bytes;
@@ -140,8 +141,8 @@ TEST(SimulationWorld, IsTheSameWithoutThoseWhoLook) {
        {Course{"pattern_cut", "expert", 1200, 1}, Course{"clip_and_cut", "crosses_clips", 1200, 1},
         Course{"peg_transfer", "expert", 600, 1}}) {
     const Recording recording = Record(course, ReadCourse(course));
-    Simulation judged = std::move(*Simulation::Make(recording.model, 1));
-    Simulation alone = std::move(*Simulation::Make(recording.model, 1));
+    Simulation judged = std::move(*Simulation::Make(recording.model));
+    Simulation alone = std::move(*Simulation::Make(recording.model));
     for (const Input& input : recording.inputs) {
       judged.Step(input);
       alone.StepWorld(input);
@@ -153,7 +154,7 @@ TEST(SimulationWorld, IsTheSameWithoutThoseWhoLook) {
 
 TEST(SimulationStateBytes, RefusesWhatIsDamagedOrOfAnotherModel) {
   const auto scene = ReadDelivered("hook_dissection");
-  Simulation simulation = std::move(*Simulation::Make(scene, 1));
+  Simulation simulation = std::move(*Simulation::Make(scene));
   std::vector<std::byte> bytes;
   simulation.Save(bytes);
   const std::uint64_t hash = simulation.Hash();
@@ -171,7 +172,7 @@ TEST(SimulationStateBytes, RefusesWhatIsDamagedOrOfAnotherModel) {
   std::vector<std::byte> longer = bytes;
   longer.push_back({});
   EXPECT_TRUE(refuses(longer));
-  Simulation other = std::move(*Simulation::Make(ReadDelivered("clip_and_cut"), 1));
+  Simulation other = std::move(*Simulation::Make(ReadDelivered("clip_and_cut")));
   EXPECT_FALSE(other.Restore(bytes).ok());
   EXPECT_EQ(simulation.Hash(), hash) << "what was refused has changed nothing";
   EXPECT_TRUE(simulation.Restore(bytes).ok());
@@ -190,10 +191,10 @@ TEST(SimulationModelMemory, IsShared) {
   auto model = MakeSimulationModel(scene);
   ASSERT_TRUE(model.ok());
   std::vector<Simulation> simulations;
-  simulations.push_back(std::move(*Simulation::Make(*model, 1)));
+  simulations.push_back(std::move(*Simulation::Make(*model)));
   const std::size_t before = ResidentBytes();
   constexpr std::size_t kMore = 8;
-  for (std::size_t i = 0; i < kMore; ++i) simulations.push_back(std::move(*Simulation::Make(*model, 1)));
+  for (std::size_t i = 0; i < kMore; ++i) simulations.push_back(std::move(*Simulation::Make(*model)));
   const double each_mb = static_cast<double>(ResidentBytes() - before) / kMore * 1e-6;
   std::vector<std::byte> bytes;
   simulations.back().Save(bytes);

@@ -130,7 +130,7 @@ Shown Play(const std::string& task, const SurgeonSkill& skill, std::uint64_t see
   const auto scene = ReadDelivered(task, {"normal", seed, {}});
   auto surgeon = MakeSkilledSurgeon(scene, skill, seed);
   EXPECT_TRUE(surgeon.ok());
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   EXPECT_TRUE(simulation.ok());
   Shown shown;
   std::array<Vec3, scene::kHandCount> last;
@@ -216,7 +216,7 @@ TEST(Weaknesses, AreListedWhereTheyCanShow) {
 /// Inputs that wait and a picture that drifts are memory, too.
 TEST(SkilledSurgeon, GoesOnAfterRestoring) {
   const auto scene = ReadDelivered("object_transport");
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok());
   const auto make = [&] { return std::move(*MakeSkilledSurgeon(scene, LevelSkill(SkillLevel::kNovice), 3)); };
   const std::unique_ptr<Surgeon> surgeon = make();

@@ -146,7 +146,7 @@ struct Future {
 class PointControl {
  public:
   PointControl(const Recording& recording, const Point& point)
-      : recording_(recording), point_(point), simulation_(std::move(*Simulation::Make(recording.model, 1))) {
+      : recording_(recording), point_(point), simulation_(std::move(*Simulation::Make(recording.model))) {
     simulation_.Save(others_[0].bytes);
     others_[0].fields = HashByField(simulation_);
     EXPECT_TRUE(simulation_.Restore(point.bytes).ok());
@@ -494,7 +494,7 @@ TEST(StateFieldsTable, ListsEach) {
   const Table table = ReadTable();
   for (const char* name : {"retraction", "tearing", "cholecystectomy", "clip_and_cut", "hook_dissection",
                            "pattern_cut", "peg_transfer", "camera_navigation_30", "wire_run"}) {
-    const Simulation simulation = std::move(*Simulation::Make(ReadCourse({name, "", 0, 0}), 1));
+    const Simulation simulation = std::move(*Simulation::Make(ReadCourse({name, "", 0, 0})));
     for (const auto& [field, hash] : simulation.HashFields())
       EXPECT_TRUE(table.proved.contains(field) || IsGroup(field, table.proved)) << field << " of " << name;
   }

@@ -80,7 +80,7 @@ struct Follower {
 template <typename T>
 void PlayWithFollowers(const std::shared_ptr<const Scene>& scene, const T& fresh, const std::set<int>& at,
                        int most_ticks, Fields* fields = nullptr) {
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
   T surgeon(fresh);
   std::vector<Follower<T>> followers;
@@ -218,7 +218,7 @@ TEST(OperatorMemory, WhoTakesOverCountsSidesFromTheStart) {
     surgeon.VisitState(archive);
     return found;
   };
-  auto simulation = simulation::Simulation::Make(OperationScene(), 1);
+  auto simulation = simulation::Simulation::Make(OperationScene());
   ASSERT_TRUE(simulation.ok());
   auto surgeon = MakeSurgeon("expert", OperationScene(), 1);
   ASSERT_TRUE(surgeon.ok());

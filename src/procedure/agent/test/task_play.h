@@ -42,7 +42,7 @@ inline base::Result<Played> PlayTask(std::shared_ptr<const Scene> scene, const c
                                      double most_seconds = 400) {
   auto surgeon = MakeSurgeon(name, scene, seed);
   if (!surgeon.ok()) return surgeon.error();
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   if (!simulation.ok()) return simulation.error();
   while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < most_seconds)
     simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));

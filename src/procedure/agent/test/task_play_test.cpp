@@ -105,7 +105,7 @@ TEST_P(EveryTask, IsFinishedByWhoeverTakesOver) {
     std::erase_if(scene->task->goals,
                   [](const Goal& goal) { return goal.name.find("Ring 4") == std::string::npos; });
   for (const double after : {1.5, 4.0, 7.5}) {
-    auto simulation = Simulation::Make(scene, 1);
+    auto simulation = Simulation::Make(scene);
     auto first = MakeSurgeon("expert", scene, 1);
     ASSERT_TRUE(simulation.ok() && first.ok());
     while (simulation->GetSnapshot().time < after) simulation->Step((*first)->Act(simulation->GetSnapshot()));
@@ -165,7 +165,7 @@ TEST(Surgeons, AreRefusedWhereTheyDoNotSuit) {
 /// The left hand takes the first bar of the transport, by hand-made inputs.
 TEST(RigidThings, AreHeldFeltPublishedAndReset) {
   const auto scene = ReadDelivered("object_transport");
-  auto made = Simulation::Make(scene, 1);
+  auto made = Simulation::Make(scene);
   ASSERT_TRUE(made.ok());
   Simulation simulation = std::move(*made);
   const std::uint64_t start = simulation.Hash();
@@ -208,7 +208,7 @@ TEST(RigidThings, AreHeldFeltPublishedAndReset) {
 
 TEST(RigidThings, ABoardPushesBackAndKeepsTheSeenToolOut) {
   const auto scene = ReadDelivered("instrument_navigation");
-  auto made = Simulation::Make(scene, 1);
+  auto made = Simulation::Make(scene);
   ASSERT_TRUE(made.ok());
   Input input = CalcScriptInput(*scene, 0);
   const math::Vec3& port = scene->instruments[kLeft].p_world_port;

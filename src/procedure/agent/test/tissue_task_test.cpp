@@ -174,7 +174,7 @@ TEST(TissueModelFile, BadOnesAreRefusedWithPathAndRemedy) {
     if (bad.code == ErrorCode::kNone) {
       // the file is well, but the tissue cannot be made
       ASSERT_TRUE(scene.ok()) << scene.error().Text();
-      const auto made = Simulation::Make(std::make_shared<Scene>(std::move(*scene)), 1);
+      const auto made = Simulation::Make(std::make_shared<Scene>(std::move(*scene)));
       ASSERT_FALSE(made.ok());
       EXPECT_NE(made.error().Text().find("no material for \"duct\""), std::string::npos)
           << made.error().Text();
@@ -379,7 +379,7 @@ TEST_P(TissueTask, IsDoneByTheExpertAtEveryLevel) {
 
 TEST_P(TissueTask, BeginsAnewAfterAReset) {
   const auto scene = ReadDelivered(GetParam());
-  auto made = Simulation::Make(scene, 1);
+  auto made = Simulation::Make(scene);
   ASSERT_TRUE(made.ok());
   const std::uint64_t start = made->Hash();
   const auto play = [&] {
@@ -399,7 +399,7 @@ INSTANTIATE_TEST_SUITE_P(Delivered, TissueTask,
 
 TEST(ClipAndCut, LeavesThreeGoodClipsOnTheirMarksAndTwoStumps) {
   const auto scene = ReadDelivered("clip_and_cut");
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok());
   auto surgeon = MakeSurgeon("expert", scene, 1);
   while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < 200)
@@ -431,7 +431,7 @@ int CountEvents(Simulation& simulation, const Input& input, double seconds, Even
 
 TEST(ImpossibleActs, AnEmptyClipApplierSaysSoEachTimeItIsClosed) {
   const auto scene = ReadDelivered("clip_and_cut");
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok());
   Input input = CalcScriptInput(*scene, 0);
   const int clips = scene->instruments[kRight].tool.clips;
@@ -453,7 +453,7 @@ TEST(ImpossibleActs, AnEmptyClipApplierSaysSoEachTimeItIsClosed) {
 
 TEST(ImpossibleActs, ToolsThatAreOutOfTheirTrocarsSaySoOnceATry) {
   const auto scene = ReadDelivered("hook_dissection");
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok());
   Input input = CalcScriptInput(*scene, 0);
   input.controls[kRight].coagulate = true;
@@ -468,7 +468,7 @@ TEST(ImpossibleActs, ToolsThatAreOutOfTheirTrocarsSaySoOnceATry) {
 
 TEST(HookDissection, CurrentPartsWhatItTouchesAndNothingElse) {
   const auto scene = ReadDelivered("hook_dissection", {"hard", 1, {}});
-  auto simulation = Simulation::Make(scene, 1);
+  auto simulation = Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok());
   // the hook rests on the first band without current, then with it
   const ModelBand& band = scene->model->bands[0];

@@ -13,6 +13,7 @@
 #include "trocar/device/simulated_force_device.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/host/data_folder.h"
+#include "trocar/host/threads.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
 #include "trocar/session/haptic_loop.h"
@@ -207,7 +208,7 @@ base::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   auto scene = files::ReadScene(*folder / "scenes/demonstration.json");
   if (!scene) return scene.error();
   auto simulation =
-      simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)), options.threads);
+      simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)), {.threads = host::UseThreads(options.threads)});
   if (!simulation) return simulation.error();
 
   // devices, and where they are led

@@ -23,7 +23,7 @@ base::Result<PhysicsCheck> CheckVolume(const std::filesystem::path& path) {
   auto read = files::ReadScene(path);
   if (!read.ok()) return read.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   if (!simulation.ok()) return simulation.error();
   const double duration = scene->script.Duration();
   const auto ticks = static_cast<int>(std::lround(duration / scene->tick_seconds));
@@ -74,7 +74,7 @@ base::Result<PhysicsCheck> CheckTickRate(const std::filesystem::path& path, doub
     if (!read.ok()) return read.error();
     read->tick_seconds = 1.0 / rate;
     const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-    auto simulation = simulation::Simulation::Make(scene, 1);
+    auto simulation = simulation::Simulation::Make(scene);
     if (!simulation.ok()) return simulation.error();
     start = simulation->GetSnapshot().positions;
     const auto ticks = static_cast<int>(std::lround(time * rate));

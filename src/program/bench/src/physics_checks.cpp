@@ -68,7 +68,7 @@ Stretched StretchStrip(double bending_share, double strain) {
       if (column != 0) right.push_back(node);
     }
   }
-  tissue::EquilibriumSolver solver(model, 1);
+  tissue::EquilibriumSolver solver(model);
   (void)solver.Solve(Exact(), {}, state);
   const double height = (rows - 1) * side * std::sqrt(0.75);
   const auto top = static_cast<std::size_t>((rows - 1) * columns + columns / 2),
@@ -120,7 +120,7 @@ PhysicsCheck CheckHangingChain() {
   definition.fixed = {0};
   const auto model = tissue::MakeTissueModel(definition);
   auto state = tissue::MakeRestState(model);
-  tissue::EquilibriumSolver solver(model, 1);
+  tissue::EquilibriumSolver solver(model);
   (void)solver.Solve(Exact(), {.gravity = {0, 0, -kGravity}}, state);
   PhysicsCheck check{
       "Hanging chain",
@@ -170,7 +170,7 @@ PhysicsCheck CheckIndentation() {
     punch.push_back(i);
     area += areas[i];
   }
-  tissue::EquilibriumSolver solver(model, 1);
+  tissue::EquilibriumSolver solver(model);
   double first = 0, last = 0;
   for (const double depth : {0.00001, 0.001, 0.002, 0.003, 0.004, 0.006, 0.008}) {
     auto state = tissue::MakeRestState(model);
@@ -202,7 +202,7 @@ PhysicsCheck CheckSelfWeight() {
   for (std::size_t i = 0; i < areas.size(); ++i) definition.mass[i] = load * areas[i];
   const auto model = tissue::MakeTissueModel(definition);
   auto state = tissue::MakeRestState(model);
-  tissue::EquilibriumSolver solver(model, 1);
+  tissue::EquilibriumSolver solver(model);
   (void)solver.Solve(Exact(), {.gravity = {0, 0, -kGravity}}, state);
   const double expected = load * kGravity / foundation;
   double worst = 0;
@@ -234,7 +234,7 @@ PhysicsCheck CheckEnergy() {
       const auto wobble = [&](int salt) { return 0.004 * std::sin(12.9898 * double(i) + 78.233 * salt); };
       state.position[i] += Vec3{wobble(1), wobble(2), wobble(3)};
     }
-    tissue::EquilibriumSolver solver(model, 1);
+    tissue::EquilibriumSolver solver(model);
     PlotLine line{std::string(tissue::SolverName(kind)), {}};
     double before = tissue::CalcEnergy(model, state, {}), start = before, rise = 0;
     for (int tick = 0; tick <= 60; ++tick) {
@@ -270,7 +270,7 @@ PhysicsCheck CheckMeshRefinement() {
         model, {{{0, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles}}, {}, {}});
     auto kept = conservation.MakeState(state);
     kept.organs[0].target *= 1.0 + 3.0 * strain;
-    tissue::EquilibriumSolver solver(model, 1);
+    tissue::EquilibriumSolver solver(model);
     for (int tick = 0; tick < 30; ++tick) {
       tissue::TissueLoad load;
       (void)tissue::SolveConserving(
@@ -307,7 +307,7 @@ PhysicsCheck CheckFreedOrgan() {
       kept.regions.count = 0;
       std::fill(kept.regions.of_node.begin(), kept.regions.of_node.end(), tissue::kPinnedRegion);
     }
-    tissue::EquilibriumSolver solver(model, 1);
+    tissue::EquilibriumSolver solver(model);
     double error = 0;
     for (int tick = 0; tick <= 300; ++tick) {
       const double way = std::min(1.0, tick / 240.0);

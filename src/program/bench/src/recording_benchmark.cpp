@@ -14,6 +14,7 @@
 #include "trocar/host/partial_path.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/device/ports.h"
+#include "trocar/host/threads.h"
 #include "trocar/record/recorder.h"
 #include "trocar/record/replay.h"
 #include "trocar/record/trace.h"
@@ -42,11 +43,11 @@ base::Result<Played> PlayExpert(int threads) {
   if (!scene) return scene.error();
   const auto shared = std::make_shared<const scene::Scene>(std::move(**scene));
   Played played;
-  auto model = simulation::MakeSimulationModel(shared, threads);
+  auto model = simulation::MakeSimulationModel(shared, host::UseThreads(threads));
   if (!model) return model.error();
   played.model = *model;
   played.tick_seconds = shared->tick_seconds;
-  auto simulation = Simulation::Make(played.model, threads);
+  auto simulation = Simulation::Make(played.model, {.threads = host::UseThreads(threads)});
   auto surgeon = agent::MakeSurgeon("expert", shared, 1);
   if (!simulation) return simulation.error();
   if (!surgeon) return surgeon.error();
@@ -88,7 +89,7 @@ enum class Keeps { kNothing, kRecording, kTrace };
 
 /// \param path  of the recording, replaced
 base::Result<Cost> Step(const Played& played, int threads, Keeps keeps, const std::filesystem::path& path) {
-  auto simulation = Simulation::Make(played.model, threads);
+  auto simulation = Simulation::Make(played.model, {.threads = host::UseThreads(threads)});
   if (!simulation) return simulation.error();
   std::unique_ptr<record::Recorder> recorder;
   std::optional<record::TraceBuilder> trace;
@@ -199,7 +200,7 @@ base::Result<SeekTimes> Seek(const Played& played, int threads, const std::files
 
 /// Processor time of a tick of the 1 kHz loop, median [s]. \param folder  empty: nothing is recorded
 base::Result<double> TimeHapticTick(const Played& played, int threads, const std::filesystem::path& folder) {
-  auto simulation = Simulation::Make(played.model, threads);
+  auto simulation = Simulation::Make(played.model, {.threads = host::UseThreads(threads)});
   if (!simulation) return simulation.error();
   auto driver = device::MakeForceDriver("simulated:held");
   if (!driver) return driver.error();

@@ -14,6 +14,7 @@
 #include "trocar/files/scene_file.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/text_table.h"
+#include "trocar/host/threads.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::bench {
@@ -62,7 +63,7 @@ Arrival TimeRelaxation(const GridCase& grid, const tissue::TissueState& truth) {
 Arrival TimeSolver(const GridCase& grid, const tissue::TissueState& truth, SolverKind kind,
                    bool recognises_grids, const ExperimentOptions& options) {
   tissue::EquilibriumSolver solver(grid.model,
-                                   {.threads = options.threads, .recognises_grids = recognises_grids});
+                                   {.threads = host::UseThreads(options.threads), .recognises_grids = recognises_grids});
   const bool counts_steps = kind == SolverKind::kNewtonMultigrid;
   SolverSettings settings;
   settings.kind = kind;
@@ -152,7 +153,7 @@ base::Status AddPatient(const ExperimentOptions& options, Experiment& experiment
   auto read = files::ReadScene(*folder / "scenes/retraction.json");
   if (!read) return read.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(read).value());
-  auto made = simulation::Simulation::Make(scene, options.threads);
+  auto made = simulation::Simulation::Make(scene, {.threads = host::UseThreads(options.threads)});
   if (!made) return made.error();
   const int ticks = options.is_quick ? 121 : 1801;
   std::vector<double> times, errors;

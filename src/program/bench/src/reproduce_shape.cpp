@@ -11,6 +11,7 @@
 #include "trocar/host/text_table.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
+#include "trocar/host/threads.h"
 #include "trocar/patient/patient.h"
 #include "trocar/scene/scene.h"
 #include "trocar/tissue/equilibrium.h"
@@ -72,7 +73,7 @@ tissue::TissueModel MakeModel(const Shape& shape, double virtual_stiffness) {
 base::Result<ShapeError> Sag(const Shape& shape, double virtual_stiffness,
                              const tissue::SolverSettings& settings, int threads) {
   const tissue::TissueModel model = MakeModel(shape, virtual_stiffness);
-  tissue::EquilibriumSolver solver(model, threads);
+  tissue::EquilibriumSolver solver(model, {.threads = host::UseThreads(threads)});
   tissue::TissueState state = tissue::MakeRestState(model);
   const tissue::SolveReport report = solver.Solve(settings, {.gravity = shape.gravity}, state);
   if (settings.kind == tissue::SolverKind::kNewtonMultigrid && !report.converged) {

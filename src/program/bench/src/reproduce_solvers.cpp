@@ -12,6 +12,7 @@
 #include "trocar/bench/benchmark.h"
 #include "trocar/bench/experiment.h"
 #include "trocar/host/text_table.h"
+#include "trocar/host/threads.h"
 #include "trocar/tissue_cuda/gpu_benchmark.h"
 #include "trocar/tissue_cuda/gpu_solver.h"
 
@@ -45,7 +46,7 @@ constexpr std::array<Contender, 6> kContenders = {{
 base::Result<double> TimeIteration(const GridCase& grid, const Contender& contender, int iterations,
                                    const ExperimentOptions& options) {
   tissue::EquilibriumSolver solver(
-      grid.model, {.threads = options.threads, .recognises_grids = contender.recognises_grids});
+      grid.model, {.threads = host::UseThreads(options.threads), .recognises_grids = contender.recognises_grids});
   SolverSettings settings;
   settings.kind = contender.kind;
   settings.tolerance = settings.max_error = 0;

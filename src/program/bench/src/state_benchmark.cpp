@@ -7,6 +7,7 @@
 #include "trocar/bench/benchmark.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/host/data_folder.h"
+#include "trocar/host/threads.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/simulation.h"
 
@@ -36,16 +37,15 @@ base::Result<BenchmarkResult> RunStateBenchmark(const BenchmarkOptions& options)
   if (!folder) return folder.error();
   auto read = files::ReadScene(*folder / "scenes/cholecystectomy.json");
   if (!read) return read.error();
-  const auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*read)),
-                                                     options.threads);
+  const auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*read)), host::UseThreads(options.threads));
   if (!model) return model.error();
-  auto made = simulation::Simulation::Make(*model, options.threads);
+  auto made = simulation::Simulation::Make(*model, {.threads = host::UseThreads(options.threads)});
   if (!made) return made.error();
 
   const double before = ResidentBytes();
   std::vector<simulation::Simulation> copies;
   for (std::size_t i = 0; i < kCopies; ++i) {
-    auto copy = simulation::Simulation::Make(*model, options.threads);
+    auto copy = simulation::Simulation::Make(*model, {.threads = host::UseThreads(options.threads)});
     if (!copy) return copy.error();
     copies.push_back(std::move(*copy));
   }

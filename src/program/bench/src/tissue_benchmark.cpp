@@ -70,7 +70,7 @@ base::Result<tissue::TissueState> FindTruth(const std::string& name, const GridC
   exact.max_error = 1e-9;
   exact.newton.max_steps = 100;
   exact.newton.max_linear_iterations = 300;
-  tissue::EquilibriumSolver judge(grid.model, 1);
+  tissue::EquilibriumSolver judge(grid.model);
   tissue::TissueState truth = state;
   (void)judge.Solve(exact, grid.Load(), truth);
   std::vector<Vec3> residual(grid.model.Size());

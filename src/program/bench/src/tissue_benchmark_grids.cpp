@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tissue_benchmark.h"
+#include "trocar/host/threads.h"
 
 namespace trocar::bench {
 namespace {
@@ -35,7 +36,7 @@ double LargestDisplacement(const GridCase& grid, const TissueState& state) {
 base::Status RunIterations(const std::string& name, const GridCase& grid, bool as_grid,
                            const BenchmarkOptions& options, BenchmarkResult& result) {
   const auto make = [&](int threads) {
-    return tissue::EquilibriumSolver(grid.model, {.threads = threads, .recognises_grids = as_grid});
+    return tissue::EquilibriumSolver(grid.model, {.threads = host::UseThreads(threads), .recognises_grids = as_grid});
   };
   tissue::EquilibriumSolver solver = make(options.threads);
   SolverSettings settings;
@@ -101,7 +102,7 @@ base::Status AddSolve(const std::string& name, double seconds, const tissue::Sol
 /// From flat to the allowed error with the solver that runs.
 base::Result<TissueState> RunCold(const std::string& name, const GridCase& grid,
                                   const BenchmarkOptions& options, double& seconds, BenchmarkResult& result) {
-  tissue::EquilibriumSolver solver(grid.model, options.threads);
+  tissue::EquilibriumSolver solver(grid.model, {.threads = host::UseThreads(options.threads)});
   const SolverSettings settings;
   TissueState state = grid.start;
   tissue::SolveReport report;
@@ -124,7 +125,7 @@ base::Status RunWarm(const std::string& name, const GridCase& grid, const Tissue
   const std::size_t node = kSide / 4 * kSide + kSide / 4;
   moved.condition[node] = tissue::NodeCondition::kPrescribed;
   moved.position[node].z += 1.0;
-  tissue::EquilibriumSolver solver(grid.model, options.threads);
+  tissue::EquilibriumSolver solver(grid.model, {.threads = host::UseThreads(options.threads)});
   SolverSettings settings;
   TissueState state = moved;
   tissue::SolveReport report;

@@ -133,7 +133,7 @@ base::Result<StudyAttempt> PlayAttempt(const StudyOptions& options, const Job& j
   if (!scene.ok()) return scene.error();
   auto person = MakePerson(options, job, *scene);
   if (!person.ok()) return person.error();
-  auto simulation = simulation::Simulation::Make(*scene, 1);
+  auto simulation = simulation::Simulation::Make(*scene);
   if (!simulation.ok()) return simulation.error();
   record::TraceBuilder trace(*simulation);
   trace.Add(simulation->GetSnapshot());

@@ -235,7 +235,7 @@ std::vector<training::Advice> CoachOne(const CoachSetting& coach, const std::str
   math::Random random(seed);
   if (weakness) skill = agent::PlantWeakness(skill, *weakness, random.Uniform(0.7, 1.3));
   auto person = agent::MakeSkilledSurgeon(scene, skill, seed);
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   EXPECT_TRUE(person.ok() && simulation.ok());
   record::TraceBuilder builder(*simulation);
   builder.Add(simulation->GetSnapshot());

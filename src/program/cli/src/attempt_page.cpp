@@ -42,7 +42,7 @@ std::string DescribeScore(const cholecystectomy::CriticalViewScore& score) {
 base::Result<simulation::Simulation> RestoreMoment(const scene::Scene& scene,
                                                    const view::CriticalViewMoments::Moment& moment) {
   auto made = simulation::Simulation::Make(
-      std::shared_ptr<const scene::Scene>(std::shared_ptr<const scene::Scene>(), &scene), 1);
+      std::shared_ptr<const scene::Scene>(std::shared_ptr<const scene::Scene>(), &scene));
   if (!made.ok()) return made.error();
   if (const auto restored = made->Restore(moment.state); !restored.ok()) return restored.error();
   return made;

@@ -13,6 +13,7 @@
 #include "trocar/assessment/exam.h"
 #include "trocar/assessment/proficiency.h"
 #include "trocar/files/scene_file.h"
+#include "trocar/host/threads.h"
 #include "trocar/record/recording.h"
 
 namespace trocar::cli {
@@ -73,7 +74,7 @@ base::Status RunExam(const RunArguments& arguments) {
   const auto scene = std::make_shared<const scene::Scene>(std::move(*made));
   auto surgeon = agent::MakeSurgeon(arguments.surgeon, scene, arguments.hands);
   if (!surgeon.ok()) return surgeon.error();
-  auto simulation = simulation::Simulation::Make(scene, arguments.threads);
+  auto simulation = simulation::Simulation::Make(scene, {.threads = host::UseThreads(arguments.threads)});
   if (!simulation.ok()) return simulation.error();
   auto recording = AttemptRecording::Start(arguments.record, *description, *simulation);
   if (!recording.ok()) return recording.error();

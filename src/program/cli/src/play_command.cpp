@@ -26,6 +26,7 @@
 #include "trocar/host/safe_file.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/base/statistics.h"
+#include "trocar/host/threads.h"
 #include "trocar/host/version.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/attempt_end.h"
@@ -241,7 +242,7 @@ RunReport MakeRunReport(const scene::Scene& scene, const PlayArguments& argument
 /// Without pictures.
 base::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                                    const PlayArguments& arguments) {
-  auto made = simulation::Simulation::Make(scene, arguments.threads);
+  auto made = simulation::Simulation::Make(scene, {.threads = host::UseThreads(arguments.threads)});
   if (!made) return made.error();
   simulation::Simulation simulation = std::move(*made);
   if (auto restored = GoOn(arguments.files, arguments.most_seconds, simulation, surgeon); !restored)

@@ -12,6 +12,7 @@
 #include "trocar/host/json.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/base/statistics.h"
+#include "trocar/host/threads.h"
 #include "trocar/host/translate.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/cholecystectomy/injury.h"
@@ -176,7 +177,7 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     progress.Show(Share(now));
   };
   if (play.output.empty()) {
-    auto made = simulation::Simulation::Make(scene, play.threads);
+    auto made = simulation::Simulation::Make(scene, {.threads = host::UseThreads(play.threads)});
     if (!made.ok()) return made.error();
     simulation::Simulation simulation = std::move(*made);
     if (auto restored = GoOn(play.files, play.most_seconds, simulation, surgeon); !restored) return restored;

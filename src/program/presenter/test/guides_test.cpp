@@ -25,7 +25,7 @@ struct Bench {
 
   static Bench Make(const scene::Scene& read) {
     auto scene = std::make_shared<const scene::Scene>(read);
-    auto simulation = simulation::Simulation::Make(scene, 1);
+    auto simulation = simulation::Simulation::Make(scene);
     EXPECT_TRUE(simulation.ok()) << simulation.error().Text();
     simulation::Snapshot snapshot = simulation->GetSnapshot();
     return {scene, std::move(simulation).value(), std::move(snapshot)};

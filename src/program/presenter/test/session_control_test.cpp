@@ -27,7 +27,7 @@ class SessionControlTest : public testing::Test {
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
     for (scene::InstrumentSetup& setup : scene->instruments) setup.tray.resize(3, setup.tray.front());
     base::Result<simulation::Simulation> simulation =
-        simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()), 1);
+        simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()));
     ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
     base::Result<std::unique_ptr<SessionControl>> made = SessionControl::Make(std::move(simulation).value());
     ASSERT_TRUE(made.ok()) << made.error().Text();

@@ -272,7 +272,7 @@ TEST_F(PresenterSlow, APreparedStepGoesOnWhereTheExpertStood) {
   auto operation = files::FindOperation("cholecystectomy", {}, 7);
   ASSERT_TRUE(operation.ok() && operation->has_value());
   const auto shared = std::make_shared<const scene::Scene>(std::move(**operation));
-  auto simulation = simulation::Simulation::Make(shared, 1);
+  auto simulation = simulation::Simulation::Make(shared);
   auto surgeon = agent::MakeSurgeon("expert", shared, 7);
   ASSERT_TRUE(simulation.ok() && surgeon.ok());
   for (std::uint64_t tick = 0; tick < kPrepared; ++tick)
@@ -639,7 +639,7 @@ Branch MakeBranch(std::uint64_t seed) {
   auto scene = files::ReadTask(*files::FindTask("wire_run"), {"easy", seed, {}});
   EXPECT_TRUE(scene.ok());
   const auto shared = std::make_shared<const scene::Scene>(std::move(*scene));
-  auto simulation = simulation::Simulation::Make(shared, 1);
+  auto simulation = simulation::Simulation::Make(shared);
   EXPECT_TRUE(simulation.ok());
   scene::Input input = scene::CalcScriptInput(*shared, 0);
   input.hands[scene::kRight].pan += 0.1;

@@ -49,7 +49,7 @@ class PlayedJump : public testing::Test {
     device::HandPlayer player(path_, clock);
     PlaceAtHome(*scene_, player);
     EXPECT_TRUE(player.Configure().ok() && player.Activate().ok());
-    auto simulation = std::move(*Simulation::Make(scene_, 1));
+    auto simulation = std::move(*Simulation::Make(scene_));
     Input input;
     input.hands = {scene_->instruments[kLeft].home, scene_->instruments[kRight].home};
     input.laparoscope = scene_->laparoscope.home;

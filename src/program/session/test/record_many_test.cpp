@@ -15,6 +15,7 @@
 #include "trocar/files/task_file.h"
 #include "trocar/host/clock.h"
 #include "trocar/device/force_device_spec.h"
+#include "trocar/host/threads.h"
 #include "trocar/record/input_codec.h"
 #include "trocar/record/replay.h"
 #include "trocar/scene/task.h"
@@ -110,7 +111,7 @@ class RecordMany : public testing::Test {
     if (!read.ok()) return "!" + read.error().Text();
     description.seed = read->seed;
     const auto scene = std::make_shared<const Scene>(std::move(*read));
-    auto simulation = Simulation::Make(scene, 1 + number % 2);
+    auto simulation = Simulation::Make(scene, {.threads = host::UseThreads(1 + number % 2)});
     if (!simulation.ok()) return "!" + simulation.error().Text();
     const auto seed = random();
     if (number % 8 == 3) return RecordHaptic(folder, description, std::move(*simulation), seed);

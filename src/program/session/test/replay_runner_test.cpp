@@ -24,7 +24,7 @@ class ReplayRunnerTest : public scene::SmallScene {
     auto read = Read();
     ASSERT_TRUE(read.ok());
     const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-    auto simulation = Simulation::Make(scene, 1);
+    auto simulation = Simulation::Make(scene);
     ASSERT_TRUE(simulation.ok());
     record::Description description;
     description.name = (folder_ / "scene.json").string();

@@ -24,7 +24,7 @@ class RunnerTest : public SmallScene {
   Simulation MakeSimulation() {
     auto scene = Read();
     EXPECT_TRUE(scene.ok());
-    return std::move(*Simulation::Make(std::make_shared<const Scene>(std::move(*scene)), 1));
+    return std::move(*Simulation::Make(std::make_shared<const Scene>(std::move(*scene))));
   }
   /// Waits, for at most ten seconds, until `claim` holds.
   static bool Eventually(const std::function<bool()>& claim) {
@@ -165,7 +165,7 @@ TEST(Runner, SlowMotionIsClamped) {
   auto scene = files::ReadTask(*files::FindTask("peg_transfer"));
   ASSERT_TRUE(scene.ok());
   auto simulation =
-      simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()), 1);
+      simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()));
   ASSERT_TRUE(simulation.ok());
   Runner runner(std::move(simulation).value());
   EXPECT_EQ(runner.GetSpeed(), 1.0);

@@ -84,7 +84,7 @@ base::Result<RunResult> PlayRun(const StudyPlan& plan, const Run& run) {
     return base::Error{base::ErrorCode::kStudyInvalid,
                        "\"until\" names a moment of an operation; " + plan.task + " is none: leave it out"};
   const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
-  auto simulation = simulation::Simulation::Make(scene, 1);
+  auto simulation = simulation::Simulation::Make(scene);
   if (!simulation) return simulation.error();
   auto surgeon = agent::MakeSurgeon(run.surgeon, scene, run.seed);
   if (!surgeon) return surgeon.error();

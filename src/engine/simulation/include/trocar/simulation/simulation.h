@@ -28,9 +28,9 @@ using scene::Input;
 
 /// What the program gives a simulation from outside.
 struct Services {
-  /// Makes the solver of another device, with so many threads of the processor, which has other bits than the processor's; empty:
-  /// the processor solves.
-  std::function<std::unique_ptr<tissue::DeviceSolver>(const tissue::TissueModel& model, int threads)>
+  base::Threads threads{};
+  /// Makes the solver of another device, which has other bits than the processor's; empty: the processor solves.
+  std::function<std::unique_ptr<tissue::DeviceSolver>(const tissue::TissueModel& model, const base::Threads& threads)>
       make_device_solver{};
   /// Monotonic time [ns], for Snapshot::stage_seconds alone, which are 0 where it is null.
   std::int64_t (*now)() noexcept = nullptr;
@@ -39,10 +39,10 @@ struct Services {
 /// What is constant while a surgery runs: scene, patient, the tissue at rest. Shared by any number of simulations.
 struct SimulationModel;
 
-/// \param threads  used to fill tense organs, >= 1
+/// \param threads  used to fill tense organs
 /// \return kSceneInvalid or kPatientInvalid
 base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::shared_ptr<const Scene> scene,
-                                                                         int threads = 1);
+                                                                         const base::Threads& threads = {});
 
 /// Parts of a simulation's state.
 enum class StatePart : std::uint8_t {
@@ -54,7 +54,7 @@ enum class StatePart : std::uint8_t {
 /// number of threads. It has no clock and no hands of its own: whoever steps it says when, and with which Input.
 ///
 ///     auto scene = std::make_shared<const Scene>(*files::ReadScene("scenes/retraction.json"));
-///     Simulation simulation = std::move(*Simulation::Make(scene, 1));
+///     Simulation simulation = std::move(*Simulation::Make(scene));
 ///     Input input = scene::CalcScriptInput(*scene, 0.0);      // or hands of one's own, as joints in the trocars
 ///     simulation.Step(input);
 ///     simulation.GetSnapshot().positions;                     // nodes after the tick [m]
@@ -62,12 +62,11 @@ enum class StatePart : std::uint8_t {
 /// A whole program is samples/headless_scene.cpp.
 class Simulation {
  public:
-  /// \param threads  used by the solver, >= 1
   /// \return kSceneInvalid or kPatientInvalid
-  static base::Result<Simulation> Make(std::shared_ptr<const Scene> scene, int threads,
+  static base::Result<Simulation> Make(std::shared_ptr<const Scene> scene,
                                        const Services& services = {});
   /// One more of the same model.
-  static base::Result<Simulation> Make(std::shared_ptr<const SimulationModel> model, int threads,
+  static base::Result<Simulation> Make(std::shared_ptr<const SimulationModel> model,
                                        const Services& services = {});
 
   Simulation(Simulation&&) noexcept;

@@ -10,6 +10,7 @@
 
 #include "trocar/base/result.h"
 #include "trocar/base/simd_level.h"
+#include "trocar/base/threads.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/tissue/solver_settings.h"
 #include "trocar/tissue/tissue_model.h"
@@ -43,7 +44,7 @@ struct SolveReport {
 
 /// How a solver runs; none of it changes what it finds.
 struct SolverOptions {
-  int threads = 1;  ///< >= 1
+  base::Threads threads;
   base::SimdLevel simd =
       base::FindSimdLevel();  ///< the bits of AVX2 and AVX-512 agree; the baseline's differ in the last place
   bool recognises_grids = true;  ///< take structured meshes as stencils
@@ -98,9 +99,8 @@ struct SolverModel;
 /// The solvers of one model and their memory.
 class EquilibriumSolver {
  public:
-  /// \param model    must outlive the solver
-  /// \param threads  >= 1; the result does not depend on it
-  EquilibriumSolver(const TissueModel& model, int threads);
+  /// With the default options. \param model  must outlive the solver
+  explicit EquilibriumSolver(const TissueModel& model);
   /// \param same_model  of another solver of an equal model, to share its memory; null makes one. Shared, because none of
   ///                    the solvers outlives the others for sure.
   /// \pre HasSimdLevel(options.simd)

@@ -15,9 +15,9 @@ namespace trocar::tissue_cuda {
 class GpuOrCpuSolver final : public tissue::DeviceSolver {
  public:
   /// \param model    must outlive the solver
-  /// \param threads  of the processor, >= 1
+  /// \param threads  of the processor
   /// \param gpu      a solver of the same model, or why there is none
-  GpuOrCpuSolver(const tissue::TissueModel& model, int threads, base::Result<GpuSolver> gpu);
+  GpuOrCpuSolver(const tissue::TissueModel& model, const base::Threads& threads, base::Result<GpuSolver> gpu);
   ~GpuOrCpuSolver() override;
 
   /// The Chebyshev iteration runs on the GPU, also where the choice is left open (kAdaptive); other solvers
@@ -47,6 +47,7 @@ class GpuOrCpuSolver final : public tissue::DeviceSolver {
 };
 
 /// Of the first GPU; where there is none, the processor solves and DeviceError() says so.
-std::unique_ptr<tissue::DeviceSolver> MakeGpuOrCpuSolver(const tissue::TissueModel& model, int threads);
+std::unique_ptr<tissue::DeviceSolver> MakeGpuOrCpuSolver(const tissue::TissueModel& model,
+                                                         const base::Threads& threads);
 
 }  // namespace trocar::tissue_cuda
