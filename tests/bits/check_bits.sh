@@ -18,7 +18,7 @@ done
 architecture=$(uname -m)
 # elementary_bits COMPILER FLAG...: what the program prints
 elementary_bits() {
-  "$1" -std=c++20 -fno-math-errno -fno-trapping-math -w "-I$source_folder"/src/{math/include,math/src,math/test,core/include} \
+  "$1" -std=c++20 -fno-math-errno -fno-trapping-math -w "-I$source_folder"/src/engine/{math/include,math/src,math/test,base/include} \
     "${@:2}" "$source_folder"/tests/bits/elementary_bits.cpp "$source_folder"/src/engine/math/src/elementary_*.cpp -o "$scratch/elementary_bits"
   "$scratch/elementary_bits"
 }
@@ -48,7 +48,7 @@ fi
 # what CMakeLists.txt gives them, but for the optimisation
 flags=(-std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w)
 solver_sources() {
-  printf '%s\n' "$1"/tests/bits/solve_bits.cpp "$1"/src/engine/tissue/src/*.cpp "$1"/src/platform/host/src/{assert,simd_level,state_archive}.cpp \
+  printf '%s\n' "$1"/tests/bits/solve_bits.cpp "$1"/src/engine/tissue/src/*.cpp "$1"/src/engine/base/src/{assert,simd_level,state_archive}.cpp "$1"/src/platform/host/src/threads.cpp \
     "$1"/src/engine/math/src/{pose,elementary_*}.cpp "$1"/src/engine/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp
 }
 # solve_bits SOURCES FOLDER COMPILER FLAG...: compiles as many files at a time as there are processors, and prints what the program does
@@ -56,7 +56,7 @@ solve_bits() {
   local sources=$1 folder=$2 compiler=$3 running=0 file own includes=()
   rm -rf "$folder"
   mkdir -p "$folder"
-  for file in tissue geometry math core; do includes+=(-I"$sources/src/$file/include"); done
+  for file in engine/{tissue,geometry,math,base} platform/host; do includes+=(-I"$sources/src/$file/include"); done
   for file in $(solver_sources "$sources"); do
     own=()
     if [ "$architecture" = x86_64 ]; then
@@ -67,7 +67,7 @@ solve_bits() {
       esac
     fi
     [ $running -lt "$(nproc)" ] || { wait -n; running=$((running - 1)); }
-    "$compiler" "${flags[@]}" "${includes[@]}" -I"$sources"/src/{tissue,math}/src "${@:4}" ${own[@]+"${own[@]}"} \
+    "$compiler" "${flags[@]}" "${includes[@]}" -I"$sources"/src/engine/{tissue,math}/src "${@:4}" ${own[@]+"${own[@]}"} \
       -c "$file" -o "$folder/$(basename "$file" .cpp).o" &
     running=$((running + 1))
   done
@@ -104,7 +104,7 @@ done
 [ ${#levels[@]} -gt 1 ] || exit 0
 for mistake in "${mistakes[@]}"; do
   copy=$scratch/mistaken
-  copy_sources "$source_folder" "$copy" src/{tissue,geometry,math,core} tests/bits
+  copy_sources "$source_folder" "$copy" src/engine/{tissue,geometry,math,base} src/platform/host tests/bits
   make_mistake "$mistake" "$copy"
   if [ "$mistake" = function_of_the_c_library ]; then
     source_folder=$copy elementary_bits "${compilers[0]}" -ffp-contract=off -O1 > "$scratch/$mistake"

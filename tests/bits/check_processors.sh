@@ -13,11 +13,11 @@ processors=("${@:-wasm}")
 
 tissue=$source_folder/src/engine/tissue
 elementary=("$source_folder"/tests/bits/elementary_bits.cpp "$source_folder"/src/engine/math/src/elementary_*.cpp)
-solvers=("$source_folder"/tests/bits/solve_bits.cpp "$tissue"/src/*.cpp "$source_folder"/src/platform/host/src/{assert,simd_level,state_archive}.cpp
+solvers=("$source_folder"/tests/bits/solve_bits.cpp "$tissue"/src/*.cpp "$source_folder"/src/engine/base/src/{assert,simd_level,state_archive}.cpp
   "$source_folder"/src/engine/math/src/{pose,elementary_*}.cpp "$source_folder"/src/engine/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp)
 flags=(-std=c++20 -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w)
-for module in tissue geometry math core; do flags+=(-I"$source_folder/src/$module/include"); done
-for folder in tissue/src math/src math/test; do flags+=(-I"$source_folder/src/$folder"); done
+for module in tissue geometry math base; do flags+=(-I"$source_folder/src/engine/$module/include"); done
+for folder in tissue/src math/src math/test; do flags+=(-I"$source_folder/src/engine/$folder"); done
 
 # objects_of FOLDER FILE...: where the objects of these sources lie
 objects_of() {
@@ -70,7 +70,7 @@ for processor in "${processors[@]}"; do can_compare "$processor" && wanted+=("$p
 [ ${#wanted[@]} -gt 0 ] || exit 77
 
 rm -rf "$scratch/here" "$scratch"/wasm* "$scratch/aarch64"
-one_thread=(-isystem "$source_folder/tests/bits/one_thread")
+one_thread=(-DTROCAR_BITS_ONE_THREAD)
 link=()
 build "$scratch/here" "" g++ "${one_thread[@]}"
 "$scratch/here/elementary_bits" >"$scratch/here/elementary"

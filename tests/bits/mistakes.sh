@@ -7,15 +7,15 @@ make_mistake() {
   local file from to instead=no
   case $1 in
     fused_multiply_add) # rounded once, as a processor with FMA would
-      file=math/include/trocar/math/lane_arithmetic.h from='inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {'
+      file=engine/math/include/trocar/math/lane_arithmetic.h from='inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {'
       to='for (int lane = 0; lane < TROCAR_LANES; ++lane) c[lane] = __builtin_fmaf(a[lane], b[lane], c[lane]); return c;' ;;
     function_of_the_c_library)
-      file=math/src/elementary_exponential.cpp from='double Exp(double x) noexcept {' to='return __builtin_exp(x);' ;;
+      file=engine/math/src/elementary_exponential.cpp from='double Exp(double x) noexcept {' to='return __builtin_exp(x);' ;;
     functions_of_the_c_library) # those that every tick calls
-      file=math/src/elementary_trigonometric.cpp from='SineCosine SinCos(double x) noexcept {'
+      file=engine/math/src/elementary_trigonometric.cpp from='SineCosine SinCos(double x) noexcept {'
       to='return {__builtin_sin(x), __builtin_cos(x)};' ;;
     unstable_sort) # neighbours that are equal stay as they come
-      file=tissue/src/tissue_model.cpp from='return a.other != b.other ? a.other < b.other : a.spring < b.spring;'
+      file=engine/tissue/src/tissue_model.cpp from='return a.other != b.other ? a.other < b.other : a.spring < b.spring;'
       to='return a.other % 8 < b.other % 8;' instead=yes ;;
   esac
   cp "$2/src/$file" "$2/src/$file.right"

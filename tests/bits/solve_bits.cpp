@@ -11,15 +11,26 @@
 #include "trocar/base/state_hash.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
-#include "trocar/host/threads.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/material.h"
+#if !defined(TROCAR_BITS_ONE_THREAD)
+#include "trocar/host/threads.h"
+#endif
 
 namespace {
 
 using namespace trocar::tissue;
 using trocar::math::Vec3;
+
+/// Where there is no library of threads (WebAssembly, another processor's), the caller does all: the bits are the same.
+trocar::base::Threads UseTwoThreads() {
+#if defined(TROCAR_BITS_ONE_THREAD)
+  return {};
+#else
+  return trocar::host::UseThreads(2);
+#endif
+}
 
 struct Sheet {
   TissueModel model;
@@ -69,7 +80,7 @@ Sheet MakeSheet(std::uint32_t n, bool is_irregular) {
 
 /// Three solves in a row: under weight, with a node pulled away, pressed by a tool.
 std::uint64_t CalcFingerprint(Sheet sheet, SolverKind kind, SimdLevel level) {
-  EquilibriumSolver solver(sheet.model, {.threads = host::UseThreads(2), .simd = level});
+  EquilibriumSolver solver(sheet.model, {.threads = UseTwoThreads(), .simd = level});
   SolverSettings settings;
   settings.kind = kind;
   settings.max_iterations = 60;
@@ -112,7 +123,7 @@ std::uint64_t CalcSacFingerprint(SimdLevel level) {
   Conservation conservation(model, closed);
   ConservationState state = conservation.MakeState(tissue);
   state.organs[0].target *= 1.2;
-  EquilibriumSolver solver(model, {.threads = host::UseThreads(2), .simd = level});
+  EquilibriumSolver solver(model, {.threads = UseTwoThreads(), .simd = level});
   SolverSettings settings;
   settings.kind = SolverKind::kNewtonMultigrid;
   trocar::base::StateHash hash;

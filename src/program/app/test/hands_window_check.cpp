@@ -19,6 +19,7 @@ using trocar::test::kLongest;
 using trocar::test::Screen;
 using trocar::test::WaitFor;
 namespace math = trocar::math;
+namespace files = trocar::files;
 namespace scene = trocar::scene;
 
 constexpr double kRim = 0.0095;                 // of the rings [m]
