@@ -16,7 +16,7 @@
 #include "allocation_counter.h"
 #include "small_scene.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::simulation {
 
@@ -34,7 +34,7 @@ class SimulationTest : public SmallScene {
     auto scene = Read();
     EXPECT_TRUE(scene.ok()) << scene.error().Text();
     scene_ = std::make_shared<const Scene>(std::move(*scene));
-    auto simulation = Simulation::Make(scene_, {.threads = host::UseThreads(threads)});
+    auto simulation = Simulation::Make(scene_, {.threads = test::UseThreads(threads)});
     EXPECT_TRUE(simulation.ok()) << simulation.error().Text();
     return std::move(*simulation);
   }

@@ -122,7 +122,7 @@ class BallInCavity : public testing::Test {
     organs_.clear();
     organs_.push_back(MakeOrganSurface(state_.position, 0, ball).value());
     contact_ = MakeCavityContact(cavity_, organs_, state_.position, model_.is_fixed, 0, settings_);
-    solver_.emplace(model_, 1);
+    solver_.emplace(model_);
   }
   void Tick(const Vec3& gravity, bool has_contact = true) {
     contacts_.Clear();

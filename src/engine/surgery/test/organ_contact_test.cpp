@@ -40,7 +40,7 @@ class OrganContact : public testing::Test {
     organs_.push_back(MakeOrganSurface(state_.position, first_large, large).value());
     organs_.push_back(MakeOrganSurface(state_.position, first_small, small).value());
     pair_ = MakeOrganPair(organs_, state_.position, 1, 0, {}, settings_);
-    solver_.emplace(model_, 1);
+    solver_.emplace(model_);
   }
   void Tick(const Vec3& gravity, bool has_contact = true) {
     contacts_.Clear();
@@ -282,7 +282,7 @@ class TubeOnOrgan : public testing::Test {
     organs_.clear();
     organs_.push_back(MakeOrganSurface(state_.position, 0, ball).value());
     pair_ = MakeTubePair(organs_, state_.position, tube_, 1, 0, settings_);
-    solver_.emplace(model_, 1);
+    solver_.emplace(model_);
   }
   void Tick(const Vec3& gravity, bool has_contact = true) {
     contacts_.Clear();

@@ -54,7 +54,7 @@ class OrganFixture : public testing::Test {
     EXPECT_TRUE(tubes.ok());
     tubes_ = std::move(*tubes);
     before_ = state_.position;
-    solver_.emplace(model_, 1);
+    solver_.emplace(model_);
   }
 
   /// Pose of the tool at joints, through a trocar 15 cm above the organ's middle.

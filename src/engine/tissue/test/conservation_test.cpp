@@ -10,7 +10,7 @@
 
 #include "sac.h"
 #include "trocar/base/state_hash.h"
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 #include "trocar/tissue/conserved_equilibrium.h"
 
 namespace trocar::tissue {
@@ -280,7 +280,7 @@ double ShapeError(const Sac& sac) {
 double CarryAway(bool follows, std::uint64_t* hash = nullptr, int threads = 1) {
   Sac sac(3e4);
   Conservation conservation(sac.model, sac.settings);
-  EquilibriumSolver solver(sac.model, {.threads = host::UseThreads(threads)});
+  EquilibriumSolver solver(sac.model, {.threads = test::UseThreads(threads)});
   ConservationState state = conservation.MakeState(sac.tissue);
   for (auto& intact : sac.tissue.strand_is_intact) intact = 0;
   if (!follows) state.intact_links = sac.model.SpringCount();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sac.h"
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 #include "trocar/tissue/conserved_equilibrium.h"
 
 namespace trocar::tissue {
@@ -182,7 +182,7 @@ TEST(Conservation, LocalSolvesSaveStepsInASnapThrough) {
   const auto dent = [](bool follows_snap_through, int threads = 1) {
     Sac sac(1e3);
     Conservation conservation(sac.model, sac.settings);
-    EquilibriumSolver solver(sac.model, {.threads = host::UseThreads(threads)}), judge(sac.model);
+    EquilibriumSolver solver(sac.model, {.threads = test::UseThreads(threads)}), judge(sac.model);
     ConservationState state = conservation.MakeState(sac.tissue);
     SolverSettings settings, exact = kExact;
     settings.kind = exact.kind = SolverKind::kNewtonMultigrid;

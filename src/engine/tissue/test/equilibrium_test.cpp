@@ -9,7 +9,7 @@
 #include "crumpled_sphere.h"
 #include "test_systems.h"
 #include "trocar/base/state_hash.h"
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {
@@ -161,7 +161,7 @@ TEST(Chebyshev, GivesTheSameBitsForAnyNumberOfThreads) {
     TissueState state = MakeRestState(model);
     state.condition[5] = NodeCondition::kPrescribed;
     state.position[5] += Vec3{0.003, 0.006, 0};
-    EquilibriumSolver solver(model, {.threads = host::UseThreads(threads)});
+    EquilibriumSolver solver(model, {.threads = test::UseThreads(threads)});
     for (int tick = 0; tick < 5; ++tick) (void)solver.Solve({}, {.gravity = {0, 0, -3}}, state);
     base::StateHash fingerprint;
     for (const Vec3& p : state.position) fingerprint.Add(p.x), fingerprint.Add(p.y), fingerprint.Add(p.z);

@@ -14,7 +14,7 @@
 #include "local_solve.h"
 #include "solver_model.h"
 #include "test_systems.h"
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue {
@@ -192,7 +192,7 @@ TEST(LinkHierarchy, CoarseLevelsAreAsMadeAnewForAnyThreads) {
   const std::vector<float> expected = Values(anew.hierarchy);
   for (const int threads : {1, 2, 3, 4, 8}) {
     Evaluated again(model, {}, other, level);
-    Workers workers(host::UseThreads(threads));
+    Workers workers(test::UseThreads(threads));
     const Workers::Session session(workers);
     again.hierarchy.UpdateCoarse(*again.kernels, workers);
     ASSERT_NE(Values(again.hierarchy), expected);

@@ -12,6 +12,7 @@
 #include "link_hierarchy.h"
 #include "solver_model.h"
 #include "test_systems.h"
+#include "trocar_test/threads.h"
 #include "trocar/tissue/volume_constraint.h"
 
 namespace trocar::tissue {
@@ -62,7 +63,7 @@ struct Follower {
       : made(MakeSolverModel(from.model)),
         hierarchy(made.hierarchy, model.graph),
         pressure(model),
-        workers(threads),
+        workers(test::UseThreads(threads)),
         kernels(GetKernels(level)) {
     load.constant.resize(model.Size()), load.is_free.resize(model.Size());
     SetOrderedLoad(model, {}, from.state, load);

@@ -11,7 +11,7 @@
 #include "crumpled_sphere.h"
 #include "test_systems.h"
 #include "trocar/base/state_hash.h"
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue {
@@ -173,7 +173,7 @@ TEST_P(EverySolver, GivesTheSameBitsForAnyNumberOfThreads) {
     const Sheet sheet = MakeSheet(70, 0.01, is_shuffled);
     const auto hash = [&](int threads) {
       TissueState state = sheet.start;
-      EquilibriumSolver solver(sheet.model, {.threads = host::UseThreads(threads)});
+      EquilibriumSolver solver(sheet.model, {.threads = test::UseThreads(threads)});
       SolverSettings settings{GetParam(), 60, 0.0, 0.0};
       settings.max_error = 1e-9;
       settings.newton.max_steps = 2;
@@ -302,7 +302,7 @@ TEST(StructuredMesh, MayHaveAnyDiagonalsStiffnessAndPlace) {
   sheet.external[node(5, 6)] = {0.1, 0.2, 0.3};
   const TissueState truth = Relax(sheet);
   TissueState state = sheet.start;
-  EquilibriumSolver solver(sheet.model, {.threads = host::UseThreads(2)});
+  EquilibriumSolver solver(sheet.model, {.threads = test::UseThreads(2)});
   EXPECT_TRUE(solver.IsStructured());
   (void)solver.Solve(Exact(SolverKind::kAcceleratedDescent), sheet.Load(), state);
   EXPECT_LT(CalcError(sheet.model, state, truth), 2e-5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file spring_law_test.cpp  Springs that stiffen, are cut or tear: closed formulas, and every solver alike.
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 #include "trocar/tissue/spring_law.h"
 
 #include <gtest/gtest.h>
@@ -243,7 +243,7 @@ TEST_P(SpringLawSolvers, GivesTheSameBitsForAnyNumberOfThreads) {
   std::vector<Vec3> first;
   for (const int threads : {1, 2, 3, 4, 8}) {
     TissueState state = sheet.state;
-    EquilibriumSolver solver(sheet.model, {.threads = host::UseThreads(threads)});
+    EquilibriumSolver solver(sheet.model, {.threads = test::UseThreads(threads)});
     for (int tick = 0; tick < 3; ++tick) (void)solver.Solve(settings, {.gravity = {0, 0, -1}}, state);
     if (first.empty()) first = state.position;
     EXPECT_EQ(first, state.position) << threads << " threads";

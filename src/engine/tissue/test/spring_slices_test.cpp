@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {
@@ -155,7 +155,7 @@ TEST(SpringSlices, HaveTheSameBitsLookedUpOrNot) {
   Kernels single = GetKernels(base::SimdLevel::kAvx512);
   ASSERT_TRUE(single.looks_up);
   single.looks_up = false;
-  Workers workers(host::UseThreads(2));
+  Workers workers(test::UseThreads(2));
   const Workers::Session session(workers);
   for (int i = 0; i < 25; ++i) {
     const bool is_first = i == 0;
@@ -176,7 +176,7 @@ TEST(SpringSlices, IterateSeveralAtATimeToTheSameBits) {
     for (const int threads : {1, 2, 3}) {
       Sliced a(model), b(model);
       ASSERT_EQ(a.slices.CountRanges(threads), side == 120 ? threads : 0);
-      Workers workers(host::UseThreads(threads));
+      Workers workers(test::UseThreads(threads));
       const Workers::Session session(workers);
       const Kernels& kernels = GetKernels(base::FindSimdLevel());
       for (const bool is_first : {true, false}) {

@@ -14,7 +14,7 @@
 
 #include "test_systems.h"
 #include "trocar/base/state_hash.h"
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 #include "trocar/math/state_fields.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/damage.h"
@@ -199,7 +199,7 @@ class Tissue {
   }
   std::unique_ptr<EquilibriumSolver> MakeSolver() const {
     return std::make_unique<EquilibriumSolver>(model_,
-                                               SolverOptions{.threads = host::UseThreads(threads_), .spare_share = 0.5});
+                                               SolverOptions{.threads = test::UseThreads(threads_), .spare_share = 0.5});
   }
   void Visit(base::StateArchive& archive) {
     archive.Field("definition", system_.definition);

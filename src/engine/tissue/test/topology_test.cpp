@@ -15,7 +15,7 @@
 #include "aggregation.h"
 #include "hierarchy_topology.h"
 #include "test_systems.h"
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
 
@@ -118,7 +118,7 @@ TEST_P(AfterACut, GoesOnAsIfMadeAnew) {
     Theatre theatre(seed);
     TissueModel model = MakeTissueModel(theatre.definition);
     const TissueModel whole = model;
-    EquilibriumSolver solver(model, {.threads = host::UseThreads(2), .spare_share = 0.5});
+    EquilibriumSolver solver(model, {.threads = test::UseThreads(2), .spare_share = 0.5});
     for (int cut = 0; cut < 6; ++cut) {
       theatre.Cut();
       model = MakeTissueModel(theatre.definition);

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "trocar/host/threads.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {
@@ -19,7 +19,7 @@ TEST(Workers, DoEachChunkOnceHoweverLateAWorkerIs) {
   constexpr std::uint32_t kFew = 2, kMany = 4;
   constexpr int kLoops = 2'000'000;
   for (const int threads : {2, 3}) {
-    Workers workers(host::UseThreads(threads));
+    Workers workers(test::UseThreads(threads));
     const Workers::Session session(workers);
     std::array<std::atomic<int>, kMany> times{};
     for (int loop = 0; loop < kLoops; ++loop) {
@@ -40,7 +40,7 @@ TEST(Workers, DoEachChunkOnceHoweverLateAWorkerIs) {
 // Without a session no worker is awake: the caller takes everybody's share.
 TEST(Workers, TheCallerDoesWhatNobodyHasBegun) {
   for (const int threads : {2, 3, 8}) {
-    Workers workers(host::UseThreads(threads));
+    Workers workers(test::UseThreads(threads));
     for (const std::uint32_t count : {2u, 5u, Workers::kMaxChunks}) {
       std::vector<int> times(count);
       workers.Run(count, [&](std::uint32_t chunk) { ++times[chunk]; });

@@ -20,6 +20,8 @@ class TbbCrew final : public base::Crew {
     arena_.initialize();
   }
 
+  ~TbbCrew() noexcept override = default;
+
   void Begin(Serve serve, void* context) noexcept override {
     arena_.execute([&] {
       for (int member = 1; member < count_; ++member) group_.run([=] { serve(context, member); });
