@@ -132,7 +132,7 @@ TEST(GpuOrCpuSolver, CallsTheConstraintsBetweenTheSameIterationsAsTheProcessor) 
       for (const bool forbid_resident : {false, true}) {
         const StandIn stand_in;
         GpuOrCpuSolver solver(
-            model, 1,
+            model, base::Threads{},
             MakeGpuSolver(model, {Layout::kTiled, Precision::kDouble, forbid_resident}, StandIn::Source()));
         ASSERT_NE(solver.Gpu(), nullptr);
         tissue::EquilibriumSolver cpu(model);
