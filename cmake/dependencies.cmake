@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # The only place that finds packages. tools/install-packages installs each of them.
+if(EMSCRIPTEN)
+  include(${CMAKE_CURRENT_LIST_DIR}/browser.cmake)
+  return()
+endif()
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED)

@@ -18,13 +18,21 @@ endfunction()
 #   DEPENDS base math ...                        modules above this one
 #   LIBRARIES Eigen3::Eigen ...                  third-party, private
 #   TESTS test/a_test.cpp ...                    one executable NAME_tests, each case a ctest
-#   TEST_DEPENDS files ...)                      modules that the tests use besides
+#   FILE_TESTS test/b_test.cpp ...               tests that use modules besides, left out where those are not built
+#   TEST_DEPENDS files ...)                      those modules
 function(trocar_module name)
-  cmake_parse_arguments(arg "" "" "PUBLIC_HEADERS;SOURCES;DEPENDS;LIBRARIES;TESTS;TEST_DEPENDS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "PUBLIC_HEADERS;SOURCES;DEPENDS;LIBRARIES;TESTS;FILE_TESTS;TEST_DEPENDS" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "trocar_module(${name}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()
   list(TRANSFORM arg_DEPENDS PREPEND trocar_)
+  set(missing ${arg_TEST_DEPENDS})
+  list(REMOVE_ITEM missing ${TROCAR_MODULES})
+  if(missing)
+    set(arg_TEST_DEPENDS)
+  else()
+    list(APPEND arg_TESTS ${arg_FILE_TESTS})
+  endif()
   list(TRANSFORM arg_TEST_DEPENDS PREPEND trocar_)
   cmake_language(DEFER CALL trocar_unity_builds)
   if(name IN_LIST TROCAR_SHOWING_MODULES)

@@ -88,7 +88,7 @@ for processor in "${wanted[@]}"; do
     wasm)
       for vectors in "" -msimd128; do
         link=(-sALLOW_MEMORY_GROWTH -sENVIRONMENT=node -sSINGLE_FILE)
-        build "$scratch/wasm$vectors" .js em++ $vectors "${one_thread[@]}" -isystem "$source_folder/tests/bits/older_libcxx"
+        build "$scratch/wasm$vectors" .js em++ $vectors "${one_thread[@]}" -isystem "$source_folder/cmake/older_libcxx"
         compare "WebAssembly${vectors:+ with vectors}" "$scratch/wasm$vectors" .js node
       done
       ;;

@@ -60,7 +60,7 @@ make_build() {
   compile=
   if [ "$library" = libc++ ]; then
     find_libcxx || { echo "skipped: there is no libc++ here, and apt-get cannot fetch it ($scratch/libcxx_log)"; return 77; }
-    compile="-isystem $source_folder/tests/bits/older_libcxx $libcxx_compile" link=$libcxx_link
+    compile="-isystem $source_folder/cmake/older_libcxx $libcxx_compile" link=$libcxx_link
     options+=(-DTROCAR_HEADER_ONLY_SPDLOG=ON)
   fi
   cmake -S "${3:-$source_folder}" -B "$2" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \

@@ -77,8 +77,8 @@ TEST(RealTime, SearchesAndUpdatesAllocateNothing) {
   EXPECT_TRUE(nearest.Found() && contact.Found());
   EXPECT_GT(count, 0u);
   EXPECT_GT(side.distance, 0.0);
-  // the counter itself works
-  const std::vector<int> memory(10);
+  // the counter itself works; a compiler may leave out what only a vector asks for
+  operator delete(operator new(10));
   EXPECT_GT(allocations, before);
 }
 
