@@ -9,7 +9,7 @@ namespace trocar::host {
 namespace {
 
 TEST(Program, KnowsItselfAndWhatLiesBesideIt) {
-  EXPECT_EQ(FindProgram().filename(), "core_tests");
+  EXPECT_EQ(FindProgram().filename(), "host_tests");
   EXPECT_EQ(FindProgram().parent_path(), FindProgramFolder());
   EXPECT_EQ(FindCompanionProgram("trocar-nobody"), FindProgramFolder() / "trocar-nobody");
 }

@@ -22,6 +22,7 @@
 #include "trocar/files/scene_file.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/log.h"
+#include "trocar/host/threads.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/base/statistics.h"
 #include "trocar/net/igtl_server.h"
@@ -80,9 +81,9 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   if (!read) return read.error();
   auto scene = std::make_shared<scene::Scene>(std::move(read).value());
   if (options.has_seed) scene->seed = options.seed;
-  simulation::Services services{.now = host::NowNanoseconds};
+  simulation::Services services{.threads = host::UseThreads(options.threads), .now = host::NowNanoseconds};
   if (options.uses_gpu) services.make_device_solver = tissue_cuda::MakeGpuOrCpuSolver;
-  base::Result<simulation::Simulation> made = simulation::Simulation::Make(scene, options.threads, services);
+  base::Result<simulation::Simulation> made = simulation::Simulation::Make(scene, services);
   if (!made) return made.error();
   simulation::Simulation simulation = std::move(made).value();
   if (!options.restore.empty()) {
