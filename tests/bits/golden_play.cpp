@@ -6,13 +6,15 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "trocar/anatomy/generate_patient.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/files/task_file.h"
-#include "trocar/host/threads.h"
 #include "trocar/patient/patient.h"
 #include "trocar/scene/task.h"
+#if !defined(__EMSCRIPTEN__)
+#include "trocar/anatomy/generate_patient.h"
+#include "trocar/host/threads.h"
+#endif
 
 namespace trocar::bits {
 namespace {
@@ -30,6 +32,18 @@ base::Error NotUnderstood(const std::string& golden) {
           "golden " + golden + ": scene_bits plays neither such a command nor such a name"};
 }
 
+#if defined(__EMSCRIPTEN__)
+base::Result<fs::path> WriteGeneratedPatient(std::uint64_t, const fs::path&) {
+  return base::Error{base::ErrorCode::kUsage, "no patient is made in a page; leave this golden out"};
+}
+base::Threads ThreadsOf(int) {
+  return {};
+}
+#else
+base::Threads ThreadsOf(int count) {
+  return host::UseThreads(count);
+}
+
 /// The folder of a patient that is generated, written as `trocar anatomy generate` writes it.
 base::Result<fs::path> WriteGeneratedPatient(std::uint64_t seed, const fs::path& scratch) {
   const auto patient = anatomy::GeneratePatient(seed);
@@ -40,6 +54,7 @@ base::Result<fs::path> WriteGeneratedPatient(std::uint64_t seed, const fs::path&
   if (const auto written = files::WritePatient(folder, *patient); !written.ok()) return written.error();
   return folder;
 }
+#endif
 
 base::Result<scene::Scene> ReadGoldenScene(const Golden& golden, const fs::path& repository,
                                            const fs::path& patient_folder) {
@@ -103,7 +118,7 @@ base::Result<GoldenPlay> GoldenPlay::Make(const Golden& golden, const fs::path& 
     if (!made.ok()) return made.error();
     surgeon = std::move(*made);
   }
-  auto simulation = simulation::Simulation::Make(shared, {.threads = host::UseThreads(threads)});
+  auto simulation = simulation::Simulation::Make(shared, {.threads = ThreadsOf(threads)});
   if (!simulation.ok()) return simulation.error();
   GoldenPlay play(std::move(shared), std::move(*simulation), std::move(surgeon));
   if (golden.ticks > 0) play.most_ticks_ = golden.ticks;

@@ -21,6 +21,7 @@
 #include "trocar/host/safe_file.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/patient/patient.h"
+#include "trocar/files/operation_level_file.h"
 #include "trocar/files/operation_parameters_file.h"
 
 namespace trocar::files {

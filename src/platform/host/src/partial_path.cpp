@@ -48,6 +48,13 @@ bool IsDots(const char* name) noexcept {
   return std::strcmp(name, ".") == 0 || std::strcmp(name, "..") == 0;
 }
 
+#if defined(__EMSCRIPTEN__)
+// no signal ends a page, so that this need not be system calls alone
+void RemoveTree(int /*folder*/, const char* name, int /*depth*/) noexcept {
+  std::error_code ignored;
+  fs::remove_all(name, ignored);
+}
+#else
 /// rm -r with system calls alone. Links are removed, never followed.
 void RemoveTree(int folder, const char* name, int depth) noexcept {
   if (::unlinkat(folder, name, 0) == 0 || errno != EISDIR || depth > kDeepest) return;
@@ -70,6 +77,8 @@ void RemoveTree(int folder, const char* name, int depth) noexcept {
   }
   ::close(inside);
 }
+
+#endif
 
 void OnSignal(int signal) {
   RemovePartialPaths();
