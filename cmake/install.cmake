@@ -69,10 +69,23 @@ endforeach()
 add_custom_target(libraries DEPENDS ${exported_targets})
 set_target_properties(trocar_compile_options PROPERTIES EXPORT_NAME compile_options)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Trocar)
-install(TARGETS trocar_compile_options ${exported_targets} EXPORT TrocarTargets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
-  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
-install(EXPORT TrocarTargets NAMESPACE Trocar:: DESTINATION ${package_folder} COMPONENT development)
+# the engine in a list of its own: whoever uses it alone needs no other library than its own
+set(engine_targets trocar_compile_options)
+set(other_targets)
+foreach(module IN LISTS exported)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/src/engine/${module} OR EXISTS ${PROJECT_SOURCE_DIR}/src/procedure/${module})
+    list(APPEND engine_targets trocar_${module})
+  elseif(TARGET trocar_${module})
+    list(APPEND other_targets trocar_${module})
+  endif()
+endforeach()
+foreach(list Engine Other)
+  string(TOLOWER ${list} name)
+  install(TARGETS ${${name}_targets} EXPORT Trocar${list}Targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+  install(EXPORT Trocar${list}Targets NAMESPACE Trocar:: DESTINATION ${package_folder} COMPONENT development)
+endforeach()
 configure_package_config_file(cmake/TrocarConfig.cmake.in ${PROJECT_BINARY_DIR}/TrocarConfig.cmake
   INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/TrocarConfigVersion.cmake COMPATIBILITY SameMinorVersion)

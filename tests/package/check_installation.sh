@@ -40,4 +40,15 @@ hash=$("$work/outside/outside_program" "$root/share/trocar/scenes/retraction.jso
 "$root/bin/trocar" simulate "$root/share/trocar/scenes/retraction.json" --ticks 20 --json >simulated.json
 grep -q "\"hash\": \"$hash\"" simulated.json ||
   { echo "its state hash $hash is not the program's"; exit 1; }
+
+echo "-- a program that links the engine alone"
+"$cmake" -G Ninja -S "$repository/tests/outside_program" -B "$work/engine" -DCMAKE_PREFIX_PATH="$root" -DENGINE_ALONE=ON \
+  -DCMAKE_BUILD_TYPE=Release >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
+"$cmake" --build "$work/engine" -v >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
+"$work/engine/engine_program"
+allowed='linux-vdso|ld-linux|libBullet|libLinearMath|libstdc\+\+|libm\.|libgcc_s|libc\.'
+! ldd "$work/engine/engine_program" | grep -vE "$allowed" || { echo "the engine needs these libraries, too"; exit 1; }
+! grep -oE '(-l|lib)(ITK|itk|gdcm|gtk|sqlite|spdlog|fmt|tbb|sodium|png|zstd)[^ ]*' "$work/log" ||
+  { echo "the engine is linked with these libraries"; exit 1; }
+
 echo "check_installation: whole; state hash $hash"
