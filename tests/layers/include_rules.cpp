@@ -83,8 +83,8 @@ class FileCheck {
       : rules_(rules), wings_(std::move(wings)) {}
 
   /// \param name  of the file in complaints and debts
-  void Check(const fs::path& path, const std::string& name, const std::string& wing, const std::string& module,
-             std::vector<Breach>& breaches) {
+  void Check(const fs::path& path, const std::string& name, const std::string& wing,
+             const std::string& module, std::vector<Breach>& breaches) {
     const auto seen = rules_.modules.find(module);
     const auto seen_wings = rules_.wings.find(wing);
     if (seen == rules_.modules.end())
@@ -106,12 +106,14 @@ class FileCheck {
           continue;
         }
         const auto other_wing = wings_.find(other);
-        if (is_tested || other_wing == wings_.end() || seen_wings->second.contains(other_wing->second)) continue;
+        if (is_tested || other_wing == wings_.end() || seen_wings->second.contains(other_wing->second))
+          continue;
         if (rules_.debts.contains({name, header})) {
           paid_.insert({name, header});
         } else {
-          breaches.push_back({name, number, "the wing " + wing + " must not see " + other_wing->second + " (" +
-                                                header + ")"});
+          breaches.push_back(
+              {name, number,
+               "the wing " + wing + " must not see " + other_wing->second + " (" + header + ")"});
         }
       } else if (include.find("../") != std::string_view::npos) {
         breaches.push_back({name, number, "an include that climbs out of its folder"});
@@ -134,9 +136,8 @@ class FileCheck {
             const std::string& other) const {
     const auto named = tests.find(module);
     if (named == tests.end()) return false;
-    return std::any_of(named->second.begin(), named->second.end(), [&](const std::string& one) {
-      return rules_.modules.at(one).contains(other);
-    });
+    return std::any_of(named->second.begin(), named->second.end(),
+                       [&](const std::string& one) { return rules_.modules.at(one).contains(other); });
   }
 
   const Rules& rules_;
@@ -236,6 +237,24 @@ std::vector<Breach> FindBreaches(const Restriction& restriction, const fs::path&
       const bool is_own = own.starts_with(restriction.folder + "/");
       if (include.starts_with("trocar/") ? !is_named : !is_own)
         breaches.push_back({name, number, restriction.folder + " must not see " + std::string(include)});
+    }
+  }
+  return breaches;
+}
+
+std::vector<Breach> FindIncludes(const std::vector<std::string>& prefixes, const fs::path& folder) {
+  std::vector<Breach> breaches;
+  for (const fs::path& file : FindSources(folder)) {
+    const std::string name = fs::relative(file, folder).generic_string();
+    if (name.find("/test/") != std::string::npos) continue;
+    int number = 0;
+    for (const std::string& line : ReadLines(file, name, breaches)) {
+      ++number;
+      const std::string_view include = FindInclude(line);
+      const bool is_meant = std::any_of(prefixes.begin(), prefixes.end(), [&](const std::string& prefix) {
+        return prefix.ends_with('/') ? include.starts_with(prefix) : include == prefix;
+      });
+      if (is_meant) breaches.push_back({name, number, std::string(include)});
     }
   }
   return breaches;

@@ -66,6 +66,10 @@ std::vector<Breach> FindBreachesOfModule(const Rules& rules, const std::filesyst
 /// restriction names, or a file of the folder itself. A folder without files is a breach, too.
 std::vector<Breach> FindBreaches(const Restriction& restriction, const std::filesystem::path& source);
 
+/// Includes that begin with one of the prefixes, in every .h and .cpp below `folder` but for tests; Breach::what is the include.
+std::vector<Breach> FindIncludes(const std::vector<std::string>& prefixes,
+                                 const std::filesystem::path& folder);
+
 /// Calls of a function without arguments in every .h and .cpp below `folder`.
 std::vector<Breach> FindCalls(const std::string& function, const std::filesystem::path& folder);
 
