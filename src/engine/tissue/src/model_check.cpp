@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/tissue/model_check.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -87,11 +85,6 @@ std::size_t HoldIsolatedNodes(TissueDefinition& definition) {
   return count;
 }
 
-std::size_t FindPhysicalMemory() noexcept {
-  const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
-  return pages > 0 && size > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(size) : SIZE_MAX;
-}
-
 }  // namespace
 
 std::string TissueRepairs::Text() const {
@@ -116,12 +109,11 @@ base::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_
     return Invalid("there must be one mass and one virtual spring for each of the " + std::to_string(n) +
                    " nodes");
   const std::size_t needed = CalcTissueMemory(definition);
-  const std::size_t allowed = memory_bytes > 0 ? memory_bytes : FindPhysicalMemory();
-  if (needed > allowed || n >= UINT32_MAX / 64) {
+  if (needed > memory_bytes || n >= UINT32_MAX / 64) {
     return base::Error{base::ErrorCode::kOutOfMemory,
                        "a model of " + std::to_string(n) + " nodes needs about " +
                            std::to_string(needed >> 20) + " MiB and may take " +
-                           std::to_string(allowed >> 20) + "; decimate the mesh"};
+                           std::to_string(memory_bytes >> 20) + "; decimate the mesh"};
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (!math::IsFinite(definition.rest[i]))

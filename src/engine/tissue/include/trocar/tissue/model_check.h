@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "trocar/base/result.h"
@@ -26,12 +27,12 @@ struct TissueRepairs {
 /// k l = k1 l1 + k2 l2; a node that nothing holds is fixed, because it has no equilibrium.
 ///
 /// \param[in,out] definition
-/// \param memory_bytes  what model and solvers may take; 0 takes the machine's physical memory
+/// \param memory_bytes  what model and solvers may take, of the memory that the program finds
 /// \return kTissueInvalid: sizes that differ, an index out of range, a link from a node to itself, a number
 /// that is
 ///         negative or not finite, a spring whose ends lie in one point at rest although its length is not
 ///         zero; kOutOfMemory
-base::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_t memory_bytes = 0);
+base::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_t memory_bytes = SIZE_MAX);
 
 /// Memory of a model and an EquilibriumSolver, estimated from above [bytes].
 std::size_t CalcTissueMemory(const TissueDefinition& definition) noexcept;
