@@ -11,7 +11,7 @@ TABLE = "src/engine/roles/include/trocar/roles/roles.h"
 
 # Tables of other people's words that contain the same ones. Nothing is compared with an organ's name there.
 OTHER_TABLES = {
-    "src/platform/files/src/operation_parameters.cpp": "fields of an operation's parameters: what liver and gallbladder give and take",
+    "src/platform/files/src/operation_parameters_file.cpp": "fields of an operation's parameters: what liver and gallbladder give and take",
     "src/learn/dataset/src/class_tables.cpp": "classes of public data sets as those write them",
     "src/picture/view/src/labels.cpp": "classes of segmentation as files and Python write them",
     "src/procedure/cholecystectomy/src/triplet.cpp": "targets as CholecT50 writes them",

@@ -37,14 +37,14 @@ const std::map<std::string, std::string> kNoDoors = {
 
 std::set<std::string> FindAllDoors() {
   std::set<std::string> doors;
-  for (const char* folder : {"src", "bench", "python"}) {
+  for (const char* folder : {"src", "python"}) {
     for (const auto& [name, text] : ReadSources(kRepository, folder)) doors.merge(FindDoors(name, text));
   }
   return doors;
 }
 
 TEST(JsonDoors, NothingButTheReaderParsesJson) {
-  for (const char* folder : {"src", "bench", "python", "samples", "fuzz"}) {
+  for (const char* folder : {"src", "python", "samples", "fuzz"}) {
     for (const auto& [name, text] : ReadSources(kRepository, folder)) {
       if (name == "src/platform/host/src/json.cpp") continue;
       for (const std::string& parser : FindOwnParsers(name, text))
