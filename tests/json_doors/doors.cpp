@@ -368,7 +368,7 @@ std::vector<Door> MakeDoors() {
        OfFile(anatomy::ReadLabelNames),
        R"({"labels": {"background": 0, "liver": 1, "gallbladder": [1, 2]}, "regions": {}})"},
       {"patient",
-       {"src/platform/files/src/patient.cpp ReadPatientUnchecked"},
+       {"src/platform/files/src/patient_file.cpp ReadPatientUnchecked"},
        OpenPatient,
        "assets/patients/visible-human-male/patient/patient.json",
        false,
@@ -499,10 +499,10 @@ std::vector<Door> MakeDoors() {
          return files::ParseScene(text, kRoot / "scenes/given.json");
        })},
       {"scene of a file",
-       {"src/platform/files/src/operation_level.cpp ParsePatched"},
+       {"src/platform/files/src/operation_level_file.cpp ParsePatched"},
        OfFile([](const fs::path& path) { return files::ReadScene(path); })},
       {"operation of a file",
-       {"src/platform/files/src/scene.cpp FindOperation"},
+       {"src/platform/files/src/scene_file.cpp FindOperation"},
        OfFile([](const fs::path& path) -> base::Status {
          const auto found = files::FindOperation(path.string(), {}, 1, "normal");
          if (!found.ok()) return found.error();
@@ -513,15 +513,15 @@ std::vector<Door> MakeDoors() {
        OfFile(ReadMaterialOf),
        "assets/materials/liver.json"},
       {"levels of operations",
-       {"src/platform/files/src/operation_level.cpp ReadOperationLevels"},
+       {"src/platform/files/src/operation_level_file.cpp ReadOperationLevels"},
        OfFile(files::ReadOperationLevels),
        "assets/operation/levels.json"},
       {"parameters of operations",
-       {"src/platform/files/src/operation_level.cpp ParsePatched"},
+       {"src/platform/files/src/operation_level_file.cpp ParsePatched"},
        OfFile([](const fs::path& path) { return files::ReadOperationParameters(path, "{}"); }),
        "assets/operation/parameters.json"},
       {"what a level changes",
-       {"src/platform/files/src/operation_level.cpp ParsePatched"},
+       {"src/platform/files/src/operation_level_file.cpp ParsePatched"},
        OfText([](const string& text) {
          return files::ReadOperationParameters(kRoot / "assets/operation/parameters.json",
                                                text.empty() ? " " : text);
