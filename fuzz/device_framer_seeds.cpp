@@ -6,9 +6,9 @@
 
 #include "haply/haply_messages.h"
 #include "haply/web_socket.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/emulator.h"
+#include "trocar/host/safe_file.h"
 
 namespace {
 

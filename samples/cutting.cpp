@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "trocar/files/patient_file.h"
-#include "trocar/patient/patient.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/openings.h"
+#include "trocar/patient/patient.h"
 #include "trocar/render/figure_picture.h"
 #include "trocar/surgery/cuttable_organ.h"
 #include "trocar/tissue/equilibrium.h"

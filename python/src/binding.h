@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "guard.h"
-#include "trocar/host/printable_output.h"
 #include "trocar/base/result.h"
+#include "trocar/host/printable_output.h"
 #include "trocar/math/pose.h"
 
 namespace trocar::python {

@@ -15,8 +15,8 @@
 #include "trocar/files/find_scene.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/files/task_file.h"
-#include "trocar/patient/patient.h"
 #include "trocar/host/safe_file.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::python {
 namespace {

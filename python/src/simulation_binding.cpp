@@ -15,12 +15,12 @@
 #include "running.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/files/state_file.h"
 #include "trocar/files/task_file.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/threads.h"
 #include "trocar/record/input_codec.h"
 #include "trocar/scene/task.h"
-#include "trocar/files/state_file.h"
 
 namespace trocar::python {
 namespace {
@@ -288,10 +288,9 @@ py::list DescribeEvents(const Running& running, std::uint64_t since) {
     entry["surface"] = SurfaceName(running, event.organ);
     entry["object"] = ObjectName(running, event.object);
     entry["force"] = event.force;
-    entry["error"] =
-        event.error < 0
-            ? py::object(py::none())
-            : py::str(std::string(cholecystectomy::NameOf(static_cast<cholecystectomy::OperationError>(event.error))));
+    entry["error"] = event.error < 0 ? py::object(py::none())
+                                     : py::str(std::string(cholecystectomy::NameOf(
+                                           static_cast<cholecystectomy::OperationError>(event.error))));
     out.append(entry);
   }
   return out;

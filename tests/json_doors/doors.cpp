@@ -12,20 +12,14 @@
 #include <span>
 #include <system_error>
 
-#include "imaging/anatomy/src/label_names.h"
 #include "hands/device/src/haply/haply_messages.h"
+#include "imaging/anatomy/src/label_names.h"
 #include "judge/record/src/chunk.h"
 #include "judge/record/src/recording_json.h"
+#include "judge/store/src/database.h"
 #include "platform/files/src/material_file.h"
 #include "platform/files/src/script.h"
-#include "judge/store/src/database.h"
 #include "program/study/src/study_folder.h"
-#include "trocar/files/operation_level_file.h"
-#include "trocar/files/operation_parameters_file.h"
-#include "trocar/files/patient_file.h"
-#include "trocar/files/scene_file.h"
-#include "trocar/files/task_file.h"
-#include "trocar/patient/patient.h"
 #include "trocar/assessment/attempt.h"
 #include "trocar/assessment/certificate.h"
 #include "trocar/assessment/course.h"
@@ -35,9 +29,16 @@
 #include "trocar/centre/judged_attempt.h"
 #include "trocar/cli/run_command.h"
 #include "trocar/contours/control_points.h"
+#include "trocar/device/device_store.h"
+#include "trocar/files/find_scene.h"
+#include "trocar/files/operation_level_file.h"
+#include "trocar/files/operation_parameters_file.h"
+#include "trocar/files/patient_file.h"
+#include "trocar/files/scene_file.h"
+#include "trocar/files/task_file.h"
 #include "trocar/host/json.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/device/device_store.h"
+#include "trocar/patient/patient.h"
 #include "trocar/presenter/task_page.h"
 #include "trocar/presenter/window_settings.h"
 #include "trocar/presenter/window_sound.h"
@@ -46,7 +47,6 @@
 #include "trocar/render/looks.h"
 #include "trocar/report/rating.h"
 #include "trocar/report/xapi.h"
-#include "trocar/files/find_scene.h"
 #include "trocar/scene/operation_level.h"
 #include "trocar/scene/operation_parameters.h"
 #include "trocar/store/attempts.h"
@@ -377,9 +377,9 @@ std::vector<Door> MakeDoors() {
        {"src/judge/assessment/src/attempt.cpp ReadAttempts"},
        OfFile(assessment::ReadAttempts),
        assessment::FormatAttempts({MakeExpertsAttempt()})},
-      {"certificate", {"src/judge/assessment/src/certificate.cpp ReadCertificate"}, OfText([](const string& text) {
-         return assessment::ReadCertificate(text, "given", "");
-       })},
+      {"certificate",
+       {"src/judge/assessment/src/certificate.cpp ReadCertificate"},
+       OfText([](const string& text) { return assessment::ReadCertificate(text, "given", ""); })},
       {"course",
        {"src/judge/assessment/src/course_file.cpp ReadCourse"},
        OfFile([](const fs::path& path) { return assessment::ReadCourse(path); }),
@@ -391,9 +391,9 @@ std::vector<Door> MakeDoors() {
        OfData("scenes/cholecystectomy.json",
               [] { return assessment::ReadCourse(kRoot / "assets/courses/cholecystectomy.json"); })},
       {"exam", {"src/judge/assessment/src/exam.cpp ReadExam"}, OfFile(assessment::ReadExam)},
-      {"published exam", {"src/judge/assessment/src/exam.cpp CheckPublished"}, OfFile([](const fs::path& path) {
-         return assessment::CheckPublished(path, {});
-       })},
+      {"published exam",
+       {"src/judge/assessment/src/exam.cpp CheckPublished"},
+       OfFile([](const fs::path& path) { return assessment::CheckPublished(path, {}); })},
       {"thresholds",
        {"src/judge/assessment/src/proficiency_file.cpp ReadProficiency"},
        OfFile(assessment::ReadProficiency),
@@ -495,9 +495,9 @@ std::vector<Door> MakeDoors() {
        {"src/judge/report/src/xapi.cpp ReadStatement", "src/judge/report/src/xapi.cpp FindAccountName"},
        OpenQueue,
        R"({"id": "given", "actor": {"account": {"name": "nobody"}}})"},
-      {"scene of a text", {"src/platform/files/src/find_scene.cpp ParseScene"}, OfText([](const string& text) {
-         return files::ParseScene(text, kRoot / "scenes/given.json");
-       })},
+      {"scene of a text",
+       {"src/platform/files/src/find_scene.cpp ParseScene"},
+       OfText([](const string& text) { return files::ParseScene(text, kRoot / "scenes/given.json"); })},
       {"scene of a file",
        {"src/platform/files/src/operation_level_file.cpp ParsePatched"},
        OfFile([](const fs::path& path) { return files::ReadScene(path); })},

@@ -44,7 +44,8 @@ scene::Scene MakeScene() {
     setup.tool = *instrument::FindTool("grasper");
     setup.tray = {setup.tool};
     setup.p_world_port = {hand == 0 ? -0.03 : 0.03, 0.1, 0};
-    setup.home = instrument::FindJoints(setup.p_world_port, front + math::Vec3{hand == 0 ? 0.0 : 0.04, 0, 0}, 0, 0);
+    setup.home =
+        instrument::FindJoints(setup.p_world_port, front + math::Vec3{hand == 0 ? 0.0 : 0.04, 0, 0}, 0, 0);
   }
   scene.laparoscope.p_world_port = {0, 0, 0};
   scene.laparoscope.home = instrument::FindJoints({0, 0, 0}, {0, 0.05, -0.05}, 0, 0);
@@ -74,6 +75,7 @@ int main() {
     simulation->Step(input);
   }
   const double given_way = before - FrontOf(simulation->GetSnapshot());
-  std::printf("%.1f mm, state %016llx\n", 1e3 * given_way, static_cast<unsigned long long>(simulation->Hash()));
+  std::printf("%.1f mm, state %016llx\n", 1e3 * given_way,
+              static_cast<unsigned long long>(simulation->Hash()));
   return given_way > 0 ? 0 : 1;
 }

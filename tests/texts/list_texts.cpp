@@ -18,11 +18,12 @@
 #include "trocar/assessment/course.h"
 #include "trocar/assessment/learning.h"
 #include "trocar/assessment/milestone.h"
+#include "trocar/base/error_codes.h"
 #include "trocar/bench/benchmark.h"
 #include "trocar/centre/centre_commands.h"
+#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cli/run_command.h"
 #include "trocar/contours/contour_fit.h"
-#include "trocar/base/error_codes.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/doctor/doctor_checks.h"
 #include "trocar/editor/contour_commands.h"
@@ -42,7 +43,6 @@
 #include "trocar/scene/task.h"
 #include "trocar/simulation/snapshot.h"
 #include "trocar/training/metric_definition.h"
-#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/view/picture_series.h"
 
 namespace {
@@ -191,7 +191,8 @@ void PrintMedicine() {
     PrintWords(std::string(cholecystectomy::NameOf(one)));
   }
   for (const cholecystectomy::Severity severity :
-       {cholecystectomy::Severity::kMinor, cholecystectomy::Severity::kMajor, cholecystectomy::Severity::kCritical})
+       {cholecystectomy::Severity::kMinor, cholecystectomy::Severity::kMajor,
+        cholecystectomy::Severity::kCritical})
     Print(cholecystectomy::NameOf(severity));
   for (const char* tool :
        {"grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag"}) {

@@ -16,8 +16,7 @@ class StandardCrew final : public base::Crew {
   explicit StandardCrew(int count) : count_(count) {}
 
   void Begin(Serve serve, void* context) noexcept override {
-    for (int member = 1; member < count_; ++member)
-      members_.emplace_back([=] { serve(context, member); });
+    for (int member = 1; member < count_; ++member) members_.emplace_back([=] { serve(context, member); });
   }
 
   void End() noexcept override {
@@ -35,7 +34,8 @@ inline base::Threads UseThreads([[maybe_unused]] int count) {
 #if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)
   return {};
 #else
-  return {count, [](int members) -> std::unique_ptr<base::Crew> { return std::make_unique<StandardCrew>(members); }};
+  return {count,
+          [](int members) -> std::unique_ptr<base::Crew> { return std::make_unique<StandardCrew>(members); }};
 #endif
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "trocar/collision/triangle_tree.h"
 #include "trocar/base/assert.h"
+#include "trocar/collision/triangle_tree.h"
 #include "wide_search.h"
 
 namespace trocar::collision {

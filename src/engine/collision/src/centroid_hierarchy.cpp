@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "branch_and_bound.h"
-#include "trocar/collision/farthest_pair.h"
 #include "trocar/base/assert.h"
+#include "trocar/collision/farthest_pair.h"
 
 namespace trocar::collision {
 namespace {

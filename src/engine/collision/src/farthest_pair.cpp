@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/collision/brute_force.h"
 #include "trocar/base/assert.h"
+#include "trocar/collision/brute_force.h"
 #include "trocar/geometry/triangle_mesh.h"
 
 namespace trocar::collision {

@@ -36,8 +36,7 @@ base::Status CheckSize(const Organ& organ) {
     }
   }
   const double size = math::Norm(high - low), reach = std::max(math::Norm(low), math::Norm(high));
-  if (size >= kSmallestOrgan && size <= kLargestOrgan && reach <= kFarthest)
-    return {};
+  if (size >= kSmallestOrgan && size <= kLargestOrgan && reach <= kFarthest) return {};
   char text[240];
   std::snprintf(
       text, sizeof text,

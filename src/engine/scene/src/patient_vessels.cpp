@@ -14,12 +14,12 @@ namespace trocar::scene {
 using math::Vec3;
 namespace {
 
+using cholecystectomy::VesselRole;
 using roles::OrganRole;
 using surgery::FlowJunction;
 using surgery::FlowVessel;
 using surgery::Fluid;
 using surgery::VesselMap;
-using cholecystectomy::VesselRole;
 
 constexpr double kShortestVessel = 1e-4;  // [m]
 

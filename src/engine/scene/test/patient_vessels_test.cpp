@@ -65,7 +65,8 @@ TEST(PatientVessels, WhatHasNoRoleMustStay) {
   // whatever its name contains
   EXPECT_EQ(role_of(roles::TubeRole::kCysticDuct, "no_cystic_duct"),
             cholecystectomy::VesselRole::kCommonHepaticDuct);
-  EXPECT_EQ(role_of(roles::TubeRole::kCysticArtery, "branch"), cholecystectomy::VesselRole::kRightHepaticArtery);
+  EXPECT_EQ(role_of(roles::TubeRole::kCysticArtery, "branch"),
+            cholecystectomy::VesselRole::kRightHepaticArtery);
   EXPECT_FALSE(cholecystectomy::MayBeDivided(role_of(roles::TubeRole::kCysticArtery, "branch")));
 }
 

@@ -10,9 +10,9 @@
 
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
-#include "trocar/patient/patient.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/geometry/primitives.h"
+#include "trocar/host/safe_file.h"
+#include "trocar/patient/patient.h"
 #include "trocar/scene/scene.h"
 #include "trocar_test/temporary_folder.h"
 

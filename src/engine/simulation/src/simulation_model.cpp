@@ -43,7 +43,8 @@ WallSprings MakeWalls(const patient::Patient& patient, const PatientTissue& tiss
 }
 
 /// Rest, with tense organs filled.
-base::Status Fill(const tissue::TissueModel& tissue_model, const base::Threads& threads, SimulationModel& model) {
+base::Status Fill(const tissue::TissueModel& tissue_model, const base::Threads& threads,
+                  SimulationModel& model) {
   tissue::SolverOptions options;
   options.threads = threads;
   if (model.scene->operation) options.spare_share = kSpareShareForCuts;
@@ -112,8 +113,7 @@ base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::sh
   model->walls = MakeWalls(model->scene->patient, *model->tissue);
   model->walls_tear = tissue::HasTearingSprings(tissue_model);
   model->hollow_organ = model->scene->patient.OrganOf(roles::OrganRole::kGallbladder);
-  if (const auto filled = Fill(tissue_model, threads, *model); !filled.ok())
-    return filled.error();
+  if (const auto filled = Fill(tissue_model, threads, *model); !filled.ok()) return filled.error();
   model->fingerprint = CalcFingerprint(*model);
   return std::shared_ptr<const SimulationModel>(std::move(model));
 }

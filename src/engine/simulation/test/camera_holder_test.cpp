@@ -16,11 +16,11 @@
 
 namespace trocar::simulation {
 
+using files::ReadScene;
 using scene::CalcLaparoscopePose;
 using scene::CalcScriptInput;
 using scene::FindView;
 using scene::kRight;
-using files::ReadScene;
 using scene::SmallScene;
 using scene::ViewRequest;
 namespace {

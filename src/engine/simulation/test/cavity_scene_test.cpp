@@ -12,9 +12,9 @@
 
 namespace trocar::simulation {
 
-using scene::CalcScriptInput;
-using host::FindDataFolder;
 using files::ReadScene;
+using host::FindDataFolder;
+using scene::CalcScriptInput;
 namespace {
 
 /// The cavity as the simulation fits it, and how far each organ's vertices may lie beyond it.

@@ -7,8 +7,8 @@
 
 #include "operation/gallbladder_anatomy.h"
 #include "operation_harness.h"
-#include "trocar/scene/patient_vessels.h"
 #include "trocar/cholecystectomy/vessel_judgement.h"
+#include "trocar/scene/patient_vessels.h"
 
 namespace trocar::simulation {
 namespace {

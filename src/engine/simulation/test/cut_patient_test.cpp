@@ -18,9 +18,9 @@
 
 namespace trocar::simulation {
 
+using files::ReadScene;
 using scene::MakePatientTissue;
 using scene::PatientTissue;
-using files::ReadScene;
 namespace {
 
 using geometry::BladeEdge;

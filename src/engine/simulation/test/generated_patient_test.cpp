@@ -15,9 +15,9 @@
 
 namespace trocar::simulation {
 
+using files::ReadScene;
 using scene::CalcScriptInput;
 using scene::EventKind;
-using files::ReadScene;
 namespace {
 
 namespace fs = std::filesystem;

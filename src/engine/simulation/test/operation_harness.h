@@ -18,10 +18,10 @@
 
 namespace trocar::simulation {
 
+using files::ReadScene;
 using scene::CalcScriptInput;
 using scene::kRight;
 using scene::MakePatientTissue;
-using files::ReadScene;
 
 inline std::shared_ptr<const Scene> OperationScene() {
   static const std::shared_ptr<const Scene> scene = [] {

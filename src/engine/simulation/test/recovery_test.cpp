@@ -12,9 +12,9 @@
 
 namespace trocar::simulation {
 
-using scene::CalcScriptInput;
-using host::FindDataFolder;
 using files::ReadScene;
+using host::FindDataFolder;
+using scene::CalcScriptInput;
 namespace {
 
 // The demonstration grasps the fundus, lifts it, strokes the body, pulls the infundibulum, and lets go of

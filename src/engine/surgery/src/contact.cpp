@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "trocar/collision/queries.h"
 #include "trocar/base/assert.h"
+#include "trocar/collision/queries.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trocar/collision/segment_distance.h"
 #include "trocar/base/assert.h"
+#include "trocar/collision/segment_distance.h"
 
 namespace trocar::surgery {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <optional>
 
-#include "trocar/collision/queries.h"
 #include "trocar/base/assert.h"
+#include "trocar/collision/queries.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/math/elementary.h"
 #include "trocar/math/random.h"

@@ -37,8 +37,8 @@ math::Symmetric3 CalcNodeBlock(const PatchSource& source, std::uint32_t node) no
   for (auto h = model.spring_starts[node]; h < model.spring_starts[node + 1]; ++h) {
     const auto& half = model.half_springs[h];
     const math::Vec3 along = source.state.position[half.other] - here;
-    const LinkStiffness link = CalcLinkStiffness(along, math::Norm(along), source.load.stiffness_scale * half.stiffness,
-                                     half.rest_length);
+    const LinkStiffness link = CalcLinkStiffness(
+        along, math::Norm(along), source.load.stiffness_scale * half.stiffness, half.rest_length);
     math::AddIsotropic(block, link.isotropic);
     math::AddDirection(block, link.direction, link.axial);
   }
@@ -56,7 +56,7 @@ bool IsMine(const PatchSource& source, std::size_t contact) noexcept {
 
 /// Point of the tool that presses [m].
 math::Vec3 CalcPressingPoint(const ContactSpring& contact, std::span<const math::Vec3> position,
-                       double depth) noexcept {
+                             double depth) noexcept {
   math::Vec3 point = depth * contact.normal;
   for (int i = 0; i < 3; ++i) point += contact.weights[i] * position[contact.nodes[i]];
   return point;

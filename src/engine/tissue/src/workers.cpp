@@ -38,7 +38,8 @@ Workers::Workers(const base::Threads& threads)
 Workers::Session::Session(Workers& workers) noexcept : workers_(workers) {
   if (workers_.threads_ == 1) return;
   workers_.is_open_.store(true);
-  workers_.crew_->Begin([](void* workers, int slot) { static_cast<Workers*>(workers)->Serve(slot); }, &workers_);
+  workers_.crew_->Begin([](void* workers, int slot) { static_cast<Workers*>(workers)->Serve(slot); },
+                        &workers_);
 }
 
 Workers::Session::~Session() {

@@ -10,8 +10,8 @@
 
 #include "sac.h"
 #include "trocar/base/state_hash.h"
-#include "trocar_test/threads.h"
 #include "trocar/tissue/conserved_equilibrium.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "sac.h"
-#include "trocar_test/threads.h"
 #include "trocar/tissue/conserved_equilibrium.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {

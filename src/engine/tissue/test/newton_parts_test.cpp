@@ -14,8 +14,8 @@
 #include "local_solve.h"
 #include "solver_model.h"
 #include "test_systems.h"
-#include "trocar_test/threads.h"
 #include "trocar/tissue/equilibrium.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {
@@ -245,7 +245,8 @@ TEST(Linearisation, AgreesWithThePlainResidualAndEnergy) {
       const Float4& found = here.balance.residual[i];
       const Vec3 force{found.x, found.y, found.z};
       const Vec3 wanted = state.condition[old] == NodeCondition::kPrescribed ? Vec3{} : expected[old];
-      ASSERT_LT(math::Distance(force, wanted), 1e-6 * largest) << base::SimdLevelName(level) << " node " << old;
+      ASSERT_LT(math::Distance(force, wanted), 1e-6 * largest)
+          << base::SimdLevelName(level) << " node " << old;
     }
     const double change = CalcEnergy(model, state, load) - CalcEnergy(model, rest, load);
     EXPECT_NEAR(here.balance.energy - before.balance.energy, change, 1e-9 * std::fabs(change))
@@ -284,7 +285,8 @@ TEST(Linearisation, StiffnessIsTheDerivativeOfTheResidual) {
       if (!here.load.is_free[i]) continue;
       const Vec3 wanted = (before[old] - after[old]) / by;
       const Vec3 found{product[i].x, product[i].y, product[i].z};
-      ASSERT_LT(math::Distance(found, wanted), 1e-4 * largest) << base::SimdLevelName(level) << " node " << old;
+      ASSERT_LT(math::Distance(found, wanted), 1e-4 * largest)
+          << base::SimdLevelName(level) << " node " << old;
     }
   }
 }

@@ -12,8 +12,8 @@
 #include "link_hierarchy.h"
 #include "solver_model.h"
 #include "test_systems.h"
-#include "trocar_test/threads.h"
 #include "trocar/tissue/volume_constraint.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {
@@ -132,7 +132,8 @@ TEST(PressureStiffness, IsTheDerivativeOfWhatPressuresDo) {
     for (std::size_t i = 0; i < product.size(); ++i) {
       const bool is_held = spheres.state.condition[i] == NodeCondition::kPrescribed;
       const Vec3 wanted = is_held ? Vec3{} : (before[i] - after[i]) / (2 * by);
-      ASSERT_LT(math::Distance(product[i], wanted), 1e-5 * largest) << base::SimdLevelName(level) << " node " << i;
+      ASSERT_LT(math::Distance(product[i], wanted), 1e-5 * largest)
+          << base::SimdLevelName(level) << " node " << i;
     }
   }
 }

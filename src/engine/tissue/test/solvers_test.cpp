@@ -11,8 +11,8 @@
 #include "crumpled_sphere.h"
 #include "test_systems.h"
 #include "trocar/base/state_hash.h"
-#include "trocar_test/threads.h"
 #include "trocar/tissue/equilibrium.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {
@@ -252,7 +252,8 @@ TEST(SimdLevels, GiveTheSameBits) {
     for (const SolverKind kind : kSolverKinds) {
       const std::uint64_t baseline = Hash(solve(base::SimdLevel::kBaseline, kind));
       for (const base::SimdLevel level : Levels())
-        EXPECT_EQ(Hash(solve(level, kind)), baseline) << SolverName(kind) << ", " << base::SimdLevelName(level);
+        EXPECT_EQ(Hash(solve(level, kind)), baseline)
+            << SolverName(kind) << ", " << base::SimdLevelName(level);
     }
   }
 }

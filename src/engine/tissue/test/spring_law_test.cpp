@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file spring_law_test.cpp  Springs that stiffen, are cut or tear: closed formulas, and every solver alike.
-#include "trocar_test/threads.h"
 #include "trocar/tissue/spring_law.h"
+#include "trocar_test/threads.h"
 
 #include <gtest/gtest.h>
 

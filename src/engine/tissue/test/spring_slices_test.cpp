@@ -120,7 +120,8 @@ TEST(SpringSlices, IterateAsThePlainFormulaSays) {
       {}, {.is_shuffled = true}, {.long_springs = 12}, {.flipped_share = 0.5, .is_shuffled = true}};
   for (const MeshSettings& settings : meshes) {
     const TissueModel model = MakeMesh(settings);
-    for (const base::SimdLevel level : {base::SimdLevel::kBaseline, base::SimdLevel::kAvx2, base::SimdLevel::kAvx512}) {
+    for (const base::SimdLevel level :
+         {base::SimdLevel::kBaseline, base::SimdLevel::kAvx2, base::SimdLevel::kAvx512}) {
       if (!base::HasSimdLevel(level)) continue;
       Sliced sliced(model);
       Workers workers;
@@ -159,7 +160,8 @@ TEST(SpringSlices, HaveTheSameBitsLookedUpOrNot) {
   const Workers::Session session(workers);
   for (int i = 0; i < 25; ++i) {
     const bool is_first = i == 0;
-    const double here = a.slices.Step(GetKernels(base::SimdLevel::kAvx512), workers, 1.2f, 0.9f, is_first, true);
+    const double here =
+        a.slices.Step(GetKernels(base::SimdLevel::kAvx512), workers, 1.2f, 0.9f, is_first, true);
     ASSERT_EQ(here, b.slices.Step(single, workers, 1.2f, 0.9f, is_first, true));
     ASSERT_GT(here, 0.0);
   }
@@ -201,7 +203,8 @@ TEST(SpringSlices, ReportAResidualThatIsNotANumber) {
   Sliced sliced(model);
   sliced.slices.SetDisplacement(sliced.ordered.Size() / 2, {NAN, 0, 0});
   Workers workers;
-  EXPECT_TRUE(std::isnan(sliced.slices.Step(GetKernels(base::FindSimdLevel()), workers, 1.0f, 0.9f, true, true)));
+  EXPECT_TRUE(
+      std::isnan(sliced.slices.Step(GetKernels(base::FindSimdLevel()), workers, 1.0f, 0.9f, true, true)));
 }
 
 }  // namespace

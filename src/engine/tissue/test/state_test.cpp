@@ -14,12 +14,12 @@
 
 #include "test_systems.h"
 #include "trocar/base/state_hash.h"
-#include "trocar_test/threads.h"
 #include "trocar/math/state_fields.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/damage.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/state_guard.h"
+#include "trocar_test/threads.h"
 
 namespace trocar::tissue {
 namespace {
@@ -198,8 +198,8 @@ class Tissue {
     return settings;
   }
   std::unique_ptr<EquilibriumSolver> MakeSolver() const {
-    return std::make_unique<EquilibriumSolver>(model_,
-                                               SolverOptions{.threads = test::UseThreads(threads_), .spare_share = 0.5});
+    return std::make_unique<EquilibriumSolver>(
+        model_, SolverOptions{.threads = test::UseThreads(threads_), .spare_share = 0.5});
   }
   void Visit(base::StateArchive& archive) {
     archive.Field("definition", system_.definition);

@@ -2,11 +2,11 @@
 /// \file test_systems.h  Small systems whose equilibrium is known.
 #pragma once
 
+#include "trocar/base/simd_level.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/tissue/material.h"
-#include "trocar/base/simd_level.h"
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::tissue {
@@ -42,7 +42,8 @@ inline TissueDefinition MakeHangingSpring(double stiffness, double length, doubl
 /// All that this processor has.
 inline std::vector<base::SimdLevel> Levels() {
   std::vector<base::SimdLevel> levels;
-  for (const base::SimdLevel level : {base::SimdLevel::kBaseline, base::SimdLevel::kAvx2, base::SimdLevel::kAvx512}) {
+  for (const base::SimdLevel level :
+       {base::SimdLevel::kBaseline, base::SimdLevel::kAvx2, base::SimdLevel::kAvx512}) {
     if (base::HasSimdLevel(level)) levels.push_back(level);
   }
   return levels;

@@ -15,9 +15,9 @@
 #include "aggregation.h"
 #include "hierarchy_topology.h"
 #include "test_systems.h"
-#include "trocar_test/threads.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
+#include "trocar_test/threads.h"
 
 namespace {
 std::atomic<int> allocations{0};

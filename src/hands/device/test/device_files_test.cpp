@@ -7,9 +7,9 @@
 #include <functional>
 
 #include "emulated_line.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/device/hand_recording.h"
+#include "trocar/host/safe_file.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::device {

@@ -14,9 +14,9 @@
 #include "haply/haply_messages.h"
 #include "haply/web_socket.h"
 #include "stand_in_gate.h"
-#include "trocar/host/clock.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/device/emulator.h"
+#include "trocar/host/clock.h"
 #include "trocar/math/rotation_angle.h"
 #include "wait_for.h"
 

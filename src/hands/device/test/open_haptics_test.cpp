@@ -14,9 +14,9 @@
 #include "openhaptics/hd_devices.h"
 #include "stand_in_gate.h"
 #include "stand_in_hd.h"
-#include "trocar/host/clock.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/device/ports.h"
+#include "trocar/host/clock.h"
 #include "trocar/math/rotation_angle.h"
 #include "wait_for.h"
 

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "trocar/host/clock.h"
 #include "trocar/device/ports.h"
+#include "trocar/host/clock.h"
 
 namespace trocar::device {
 

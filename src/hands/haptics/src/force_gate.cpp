@@ -32,7 +32,8 @@ bool AreUsable(const GateSettings& settings) noexcept {
 }
 
 /// Share that is left of a force that drives a fast device on.
-double CalcSpeedShare(const GateSettings& settings, const math::Vec3& force, const math::Vec3& velocity) noexcept {
+double CalcSpeedShare(const GateSettings& settings, const math::Vec3& force,
+                      const math::Vec3& velocity) noexcept {
   if (math::Dot(force, velocity) <= 0.0) return 1.0;
   const double speed = math::Norm(velocity);
   return std::clamp((settings.max_speed - speed) / (settings.max_speed - settings.guard_speed), 0.0, 1.0);
@@ -73,7 +74,8 @@ std::string_view ArmStateName(ArmState state) noexcept {
   return "unknown";
 }
 
-bool MaySend(const GateSettings& settings, ArmState state, const math::Vec3& force, const math::Vec3& sent) noexcept {
+bool MaySend(const GateSettings& settings, ArmState state, const math::Vec3& force,
+             const math::Vec3& sent) noexcept {
   if (force == math::Vec3{}) return true;
   return state != ArmState::kUnarmed &&
          math::Norm(force) <= settings.max_force * (1.0 + device::kForceRounding) &&

@@ -72,8 +72,8 @@ double LocalModel::Content::CalcLinearEnergy(const math::Vec3& hand, const math:
   return energy;
 }
 
-void LocalModel::Content::CalcLinearSlope(const math::Vec3& hand, const math::Vec3& moved, math::Vec3& gradient,
-                                          Matrix3& stiffness) const noexcept {
+void LocalModel::Content::CalcLinearSlope(const math::Vec3& hand, const math::Vec3& moved,
+                                          math::Vec3& gradient, Matrix3& stiffness) const noexcept {
   const double k = settings.coupling_stiffness;
   stiffness = k * Matrix3::Identity() - jacobian;
   gradient = k * (p_world_cut + moved - hand) - force - FromEigen(jacobian * ToEigen(moved));

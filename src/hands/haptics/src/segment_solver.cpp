@@ -97,7 +97,8 @@ math::Vec3 SegmentSolver::AddLinkForce(std::size_t node, Matrix3& block) const n
       continue;
     }
     const double length = math::Norm(along);
-    const tissue::LinkStiffness stiffness = tissue::CalcLinkStiffness(along, length, link.stiffness, link.rest_length);
+    const tissue::LinkStiffness stiffness =
+        tissue::CalcLinkStiffness(along, length, link.stiffness, link.rest_length);
     force += (link.stiffness * (length - link.rest_length)) * stiffness.direction;
     AddLink(block, stiffness);
   }
@@ -144,7 +145,7 @@ void SegmentSolver::RelaxPressed(std::size_t node) noexcept {
   AddIsotropic(block, patch_.own_stiffness[node] + kLeastStiffness);
   // what acts beside links and contacts is what balanced them at the cut
   math::Vec3 force = AddLinkForce(node, block) - force_at_cut_[node] +
-               patch_.own_stiffness[node] * (patch_.position[node] - position_[node]);
+                     patch_.own_stiffness[node] * (patch_.position[node] - position_[node]);
   for (std::size_t k = contact_starts_[node]; k < contact_starts_[node + 1]; ++k) {
     const tissue::LocalPatch::Contact& contact = patch_.contacts[node_contacts_[k].contact];
     const double weight = contact.weights[node_contacts_[k].corner];

@@ -20,7 +20,8 @@ class SegmentSolver {
   void SetDirection(const math::Quaternion& hand) noexcept;
   /// One sweep over the nodes, outwards or inwards, and then the tool. The first of a tick renews the blocks of
   /// nodes that nothing presses; the others use them again.
-  void Sweep(const math::Vec3& p_world_hand, double coupling_stiffness, bool is_outwards, bool is_first) noexcept;
+  void Sweep(const math::Vec3& p_world_hand, double coupling_stiffness, bool is_outwards,
+             bool is_first) noexcept;
   /// The same for the derivatives, with the blocks of the tick; positions stay.
   void SweepDerivative(double coupling_stiffness) noexcept;
 
@@ -53,12 +54,13 @@ class SegmentSolver {
 
   tissue::LocalPatch patch_;
   math::Quaternion turn_;  // from the cut's tool to the hand's
-  math::Vec3 tool_;              // [m]
+  math::Vec3 tool_;        // [m]
   Matrix3 tool_derivative_ = Matrix3::Identity();
-  std::array<math::Vec3, tissue::LocalPatch::kMaxNodes> position_;       // [m]
-  std::array<math::Vec3, tissue::LocalPatch::kMaxNodes> force_at_cut_;   // of the links, free and held [N]
-  std::array<Matrix3, tissue::LocalPatch::kMaxNodes> derivative_;  // d(node) / d(hand)
-  std::array<Matrix3, tissue::LocalPatch::kMaxNodes> inverse_;   // of the blocks of nodes that nothing presses [m/N]
+  std::array<math::Vec3, tissue::LocalPatch::kMaxNodes> position_;      // [m]
+  std::array<math::Vec3, tissue::LocalPatch::kMaxNodes> force_at_cut_;  // of the links, free and held [N]
+  std::array<Matrix3, tissue::LocalPatch::kMaxNodes> derivative_;       // d(node) / d(hand)
+  std::array<Matrix3, tissue::LocalPatch::kMaxNodes>
+      inverse_;  // of the blocks of nodes that nothing presses [m/N]
   std::array<double, tissue::LocalPatch::kMaxContacts> turned_;  // depth that the hand's turning adds [m]
   std::array<std::uint16_t, tissue::LocalPatch::kMaxNodes + 1> contact_starts_;
   std::array<NodeContact, 3 * tissue::LocalPatch::kMaxContacts> node_contacts_;

@@ -86,7 +86,8 @@ std::string Clamp() {
     limits.max_force = limits.max_continuous_force = nominal;
     HapticRig rig(limits);
     // into the clamp along each axis and askew; the rig watches that nothing above it is ever sent
-    for (const math::Vec3& way : {math::Vec3{1, 0, 0}, math::Vec3{0, -1, 0}, math::Vec3{0, 0, 1}, math::Vec3{-0.6, 0.64, -0.48}}) {
+    for (const math::Vec3& way :
+         {math::Vec3{1, 0, 0}, math::Vec3{0, -1, 0}, math::Vec3{0, 0, 1}, math::Vec3{-0.6, 0.64, -0.48}}) {
       if (rig.output.gate.state != ArmState::kArmed) rig.ArmAndPress(0.5 * nominal);
       rig.patch.force = 15.0 * nominal * way;
       rig.is_patch_new = true;

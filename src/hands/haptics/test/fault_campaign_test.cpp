@@ -58,7 +58,8 @@ TEST(ForceCheck, LetsOutWhatAGateLetsOutAndNothingElse) {
   EXPECT_FALSE(check.HasRefused());
   EXPECT_EQ(check.Pass({}), math::Vec3{}) << "a fall is free";
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
-  for (const math::Vec3& bad : {math::Vec3{nan, 0, 0}, math::Vec3{0, 0, -inf}, math::Vec3{0, 3.31, 0}, math::Vec3{1e200, 1e200, 0}}) {
+  for (const math::Vec3& bad :
+       {math::Vec3{nan, 0, 0}, math::Vec3{0, 0, -inf}, math::Vec3{0, 3.31, 0}, math::Vec3{1e200, 1e200, 0}}) {
     ForceCheck strict(3.3);
     strict.Pass({0.2, 0, 0});
     EXPECT_EQ(strict.Pass(bad), math::Vec3{});

@@ -47,7 +47,9 @@ struct Rendering {
         encoder_step(step) {
     model.Take(patch);
   }
-  math::Vec3 Render(const math::Vec3& device) { return model.Step({{}, Quantise(device, encoder_step)}).force; }
+  math::Vec3 Render(const math::Vec3& device) {
+    return model.Step({{}, Quantise(device, encoder_step)}).force;
+  }
 };
 
 /// Smooth closed path: still at both ends.
@@ -122,8 +124,9 @@ double FindLeastWorkOn(PatchOf&& patch_of, int paths, double stiffness, const de
 /// The same, soft and hard tissue in turn.
 double FindLeastWork(int paths, double stiffness, const device::ForceLimits& device, int rings = 1) {
   const tissue::LocalPatch soft = MakePatch(false, 0.003, rings), hard = MakePatch(true, 0.0005, rings);
-  return FindLeastWorkOn([&](int i, math::Random&) -> const tissue::LocalPatch& { return i % 2 == 0 ? soft : hard; },
-                         paths, stiffness, device);
+  return FindLeastWorkOn(
+      [&](int i, math::Random&) -> const tissue::LocalPatch& { return i % 2 == 0 ? soft : hard; }, paths,
+      stiffness, device);
 }
 
 /// What takes over where a segment is too large: a round shaft that presses some tissue under it, its contacts up to 70
@@ -136,7 +139,8 @@ tissue::LocalPatch MakeLinear(math::Random& random) {
   const double stiffness = 5.0 * std::pow(100.0, random.Uniform());  // of one contact [N/m]
   for (int contact = 0; contact < 80; ++contact) {
     const double side = random.Uniform(-1.2, 1.2);
-    const math::Vec3 normal = math::Normalized(math::Vec3{0.2 * random.Uniform(-1, 1), std::sin(side), -std::cos(side)});
+    const math::Vec3 normal =
+        math::Normalized(math::Vec3{0.2 * random.Uniform(-1, 1), std::sin(side), -std::cos(side)});
     patch.presses[patch.press_count++] = {normal, stiffness * random.Uniform(0, 0.002), stiffness};
     patch.force -= patch.presses[patch.press_count - 1].force * normal;
   }

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "trocar/tissue/local_patch.h"
 #include "trocar/tissue/equilibrium.h"
+#include "trocar/tissue/local_patch.h"
 
 namespace trocar::haptics {
 

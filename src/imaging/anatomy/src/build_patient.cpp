@@ -92,7 +92,8 @@ base::Result<BuildReport> BuildPatient(const BuildOptions& options, const images
   if (options.stop.stop_requested()) return given_up;
 
   if (!options.output.empty()) {
-    if (const auto status = files::WritePatient(options.output, report.patient); !status.ok()) return status.error();
+    if (const auto status = files::WritePatient(options.output, report.patient); !status.ok())
+      return status.error();
   }
   if (options.overlays) {
     if (const auto status = WriteOverlays(*options.overlays, *images, built->overlays, progress);

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/files/patient_frame.h"
 #include "phantom_files.h"
 #include "phantom_tissue.h"
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/anatomy/phantom.h"
+#include "trocar/files/patient_frame.h"
 #include "trocar/meshing/volume.h"
 #include "trocar/patient/patient.h"
 
@@ -276,8 +276,9 @@ std::vector<std::pair<std::string, int>> VisibleHumanLabels() {
           {kHepaticVeins, 6}};
 }
 
-base::Result<images::LabelVolume> DrawLabels(const patient::Patient& patient, const images::Progress& progress,
-                                             double pixel_mm, double slice_mm) {
+base::Result<images::LabelVolume> DrawLabels(const patient::Patient& patient,
+                                             const images::Progress& progress, double pixel_mm,
+                                             double slice_mm) {
   PhantomOptions options;
   options.pixel_mm = pixel_mm, options.slice_mm = slice_mm;
   const auto phantom = Phantom::Make(patient, options);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "trocar/files/patient_frame.h"
 #include "trocar/base/assert.h"
+#include "trocar/files/patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/cubic_spline.h"
 #include "trocar/math/elementary.h"
@@ -309,8 +309,8 @@ class DuctTemplate {
     tubes_.push_back(MakeTubePoints(roles::TubeRole::kCysticDuct, NameOf(roles::OrganRole::kGallbladder),
                                     NameOf(roles::TubeRole::kCommonBileDuct), cystic, mouth, cystic_radius_));
     tubes_.push_back(MakeTubePoints(roles::TubeRole::kCommonHepaticDuct, NameOf(roles::OrganRole::kLiver),
-                                    NameOf(roles::TubeRole::kCommonBileDuct), hepatic_, 0.85 * hepatic_radius_,
-                                    hepatic_radius_));
+                                    NameOf(roles::TubeRole::kCommonBileDuct), hepatic_,
+                                    0.85 * hepatic_radius_, hepatic_radius_));
   }
 
   /// Common bile duct, with its gentle curve to the pancreas.
@@ -319,8 +319,9 @@ class DuctTemplate {
     const Vec3 end = junction_ + 0.96 * bile_length_ * kDownTheDuct;
     const auto bile =
         placer_.Route({junction_, math::Lerp(junction_, end, 0.5), end}, radius, bile_length_, kBehind);
-    tubes_.push_back(MakeTubePoints(roles::TubeRole::kCommonBileDuct, NameOf(roles::TubeRole::kCommonHepaticDuct), kOutside,
-                                    bile, radius, 0.85 * radius));
+    tubes_.push_back(MakeTubePoints(roles::TubeRole::kCommonBileDuct,
+                                    NameOf(roles::TubeRole::kCommonHepaticDuct), kOutside, bile, radius,
+                                    0.85 * radius));
   }
 
   /// Right hepatic artery: from the left, behind the common hepatic duct, through the triangle into the liver.
@@ -339,8 +340,8 @@ class DuctTemplate {
     });
     const Vec3 origin = placer_.PushOut(crossing + Vec3{26, -7, -3}, radius + kClearMm);
     artery_ = placer_.Route({origin, crossing, turn_, entry}, radius, 0.0, kBehind);
-    tubes_.push_back(MakeTubePoints(roles::TubeRole::kRightHepaticArtery, kOutside, NameOf(roles::OrganRole::kLiver),
-                                    artery_, radius, 0.8 * radius));
+    tubes_.push_back(MakeTubePoints(roles::TubeRole::kRightHepaticArtery, kOutside,
+                                    NameOf(roles::OrganRole::kLiver), artery_, radius, 0.8 * radius));
   }
 
   /// Cystic artery: from the hepatic artery's turn to a side of the gallbladder.
@@ -363,9 +364,10 @@ class DuctTemplate {
     });
     entries_.push_back(target);
     const Vec3 middle = placer_.PushOut(0.5 * (start + target), radius + kClearMm);
-    tubes_.push_back(MakeTubePoints(
-        roles::TubeRole::kCysticArtery, NameOf(roles::TubeRole::kRightHepaticArtery), NameOf(roles::OrganRole::kGallbladder),
-        placer_.Route({start, middle, target}, radius, length, side), radius, 0.85 * radius));
+    tubes_.push_back(
+        MakeTubePoints(roles::TubeRole::kCysticArtery, NameOf(roles::TubeRole::kRightHepaticArtery),
+                       NameOf(roles::OrganRole::kGallbladder),
+                       placer_.Route({start, middle, target}, radius, length, side), radius, 0.85 * radius));
     tubes_.back().name += name_ending;
   }
 
@@ -378,11 +380,12 @@ class DuctTemplate {
       const double away = placer_.Gallbladder().Find(p, outward);
       return std::fabs(away - 4.0) + 0.5 * std::fabs(Distance(p, neck_) - 28.0) - 0.2 * Dot(p - neck_, kLeft);
     });
-    tubes_.push_back(MakeTubePoints(
-        roles::TubeRole::kSubvesicalDuct, NameOf(roles::OrganRole::kLiver), NameOf(roles::TubeRole::kCommonHepaticDuct),
-        placer_.Route({start, placer_.PushOut(0.5 * (start + goal), radius + kClearMm), goal}, radius, 0.0,
-                      kLeft),
-        radius, radius));
+    tubes_.push_back(
+        MakeTubePoints(roles::TubeRole::kSubvesicalDuct, NameOf(roles::OrganRole::kLiver),
+                       NameOf(roles::TubeRole::kCommonHepaticDuct),
+                       placer_.Route({start, placer_.PushOut(0.5 * (start + goal), radius + kClearMm), goal},
+                                     radius, 0.0, kLeft),
+                       radius, radius));
   }
 
   Placer placer_;
@@ -401,12 +404,14 @@ class DuctTemplate {
 }  // namespace
 
 std::vector<contours::TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh& gallbladder,
-                                             const Vec3& neck, std::span<const patient::Parameter> parameters) {
+                                             const Vec3& neck,
+                                             std::span<const patient::Parameter> parameters) {
   return DuctTemplate(liver, gallbladder, neck, parameters).Place();
 }
 
 std::vector<patient::Tube> MakeTemplateTubes(const TriangleMesh& liver, const TriangleMesh& gallbladder,
-                                    const Vec3& neck, std::span<const patient::Parameter> parameters) {
+                                             const Vec3& neck,
+                                             std::span<const patient::Parameter> parameters) {
   constexpr double kSpacing = 0.002;  // m
   const auto in_mm = [](TriangleMesh mesh) {
     for (Vec3& p : mesh.positions) p *= files::kMmPerMetre;
@@ -425,11 +430,13 @@ std::vector<patient::Tube> MakeTemplateTubes(const TriangleMesh& liver, const Tr
   for (const contours::TubePoints& points : placed) {
     const auto name_of = [](const std::string& end) { return end == kOutside ? std::string() : end; };
     patient::Tube tube{points.name,
-              points.kind == patient::KindName(patient::TubeKind::kArtery) ? patient::TubeKind::kArtery : patient::TubeKind::kDuct,
-              name_of(points.from),
-              name_of(points.to),
-              {},
-              false};
+                       points.kind == patient::KindName(patient::TubeKind::kArtery)
+                           ? patient::TubeKind::kArtery
+                           : patient::TubeKind::kDuct,
+                       name_of(points.from),
+                       name_of(points.to),
+                       {},
+                       false};
     for (const contours::TubePoint& point : points.points) {
       tube.line.points.push_back(Vec3{point.pixel.x, point.pixel.y, point.slice} / files::kMmPerMetre);
       tube.line.radii.push_back(point.radius_mm / files::kMmPerMetre);
@@ -447,7 +454,8 @@ std::optional<Vec3> CalcTriangleMiddle(const patient::Patient& patient) {
     const auto& line = patient.tubes[static_cast<std::size_t>(tube)].line.points;
     return &line[line.size() / 2];
   };
-  const Vec3 *cystic = middle_of(roles::TubeRole::kCysticDuct), *hepatic = middle_of(roles::TubeRole::kCommonHepaticDuct);
+  const Vec3 *cystic = middle_of(roles::TubeRole::kCysticDuct),
+             *hepatic = middle_of(roles::TubeRole::kCommonHepaticDuct);
   if (cystic == nullptr || hepatic == nullptr) return std::nullopt;
   return 0.5 * (*cystic + *hepatic);
 }

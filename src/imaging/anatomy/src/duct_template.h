@@ -24,14 +24,16 @@ namespace trocar::anatomy {
 /// false
 std::vector<contours::TubePoints> PlaceDucts(const geometry::TriangleMesh& liver,
                                              const geometry::TriangleMesh& gallbladder,
-                                             const math::Vec3& neck, std::span<const patient::Parameter> parameters);
+                                             const math::Vec3& neck,
+                                             std::span<const patient::Parameter> parameters);
 
 /// The usual tubes for a patient whose pictures show none, in the world frame [m]; is_seen = false.
 /// \param neck  where the cystic duct leaves the gallbladder, world frame [m]
 /// \param parameters  as DrawParameters returns them; where one is missing the usual ones take their place
 std::vector<patient::Tube> MakeTemplateTubes(const geometry::TriangleMesh& liver,
-                                    const geometry::TriangleMesh& gallbladder, const math::Vec3& neck,
-                                    std::span<const patient::Parameter> parameters);
+                                             const geometry::TriangleMesh& gallbladder,
+                                             const math::Vec3& neck,
+                                             std::span<const patient::Parameter> parameters);
 
 /// Middle of the hepatocystic triangle: between the middles of the cystic and the common hepatic duct, world frame [m].
 /// \return nothing where one of them is missing

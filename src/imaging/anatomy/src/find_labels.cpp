@@ -256,14 +256,15 @@ class Decision {
       }
       if (!livers.empty()) livers = {*livers.begin()};
     }
-    for (const auto& [name, labels] :
-         {std::pair{NameOf(roles::OrganRole::kLiver), &livers}, {NameOf(roles::OrganRole::kGallbladder), &gallbladders}}) {
+    for (const auto& [name, labels] : {std::pair{NameOf(roles::OrganRole::kLiver), &livers},
+                                       {NameOf(roles::OrganRole::kGallbladder), &gallbladders}}) {
       if (labels->size() < 2 || may_join) continue;
       return Ask("labels " + std::to_string(*labels->begin()) + " and " + std::to_string(*labels->rbegin()) +
                  " are both called " + name);
     }
     if (livers.empty() || gallbladders.empty()) {
-      const std::string missing = NameOf(livers.empty() ? roles::OrganRole::kLiver : roles::OrganRole::kGallbladder);
+      const std::string missing =
+          NameOf(livers.empty() ? roles::OrganRole::kLiver : roles::OrganRole::kGallbladder);
       std::string lesion;
       for (const int part : parts) {
         if (seen.at(part) == Structure::kLiverLesion)

@@ -83,7 +83,8 @@ base::Result<meshing::StructureMesh> MakeStructure(const char* name, meshing::Sc
 
 }  // namespace
 
-base::Result<patient::Patient> GeneratePatient(std::uint64_t seed, std::span<const ParameterSetting> settings) {
+base::Result<patient::Patient> GeneratePatient(std::uint64_t seed,
+                                               std::span<const ParameterSetting> settings) {
   auto parameters = DrawParameters(seed, settings);
   if (!parameters.ok()) return parameters.error();
   const GeneratedBody body(*parameters, seed);

@@ -95,7 +95,8 @@ double Worm::Distance(const Vec3& p) const {
   return nearest;
 }
 
-GeneratedBody::GeneratedBody(std::span<const patient::Parameter> parameters, std::uint64_t seed) : seed_(seed) {
+GeneratedBody::GeneratedBody(std::span<const patient::Parameter> parameters, std::uint64_t seed)
+    : seed_(seed) {
   const auto number = [&](std::string_view name) { return NumberOf(parameters, name); };
   const double fat = number("steatosis");
   cirrhosis_ = number("cirrhosis");

@@ -17,7 +17,7 @@ using math::Vec3;
 /// How a map's axes lie. Vectors are (left, cranial, anterior), their zero is the centre of the first voxel.
 struct VoxelFrame {
   std::array<double, 3> step_mm{};  ///< distance of voxels along each axis
-  std::array<math::Vec3, 3> axes;         ///< unit vectors
+  std::array<math::Vec3, 3> axes;   ///< unit vectors
 
   math::Vec3 PlaceOf(double i, double j, double k) const {
     return i * step_mm[0] * axes[0] + j * step_mm[1] * axes[1] + k * step_mm[2] * axes[2];
@@ -37,8 +37,8 @@ struct CutSide {
 
 struct LabelMeasures {
   double volume_ml = 0;  ///< 0: the label does not occur, and nothing below means anything
-  math::Vec3 centre;           ///< [mm]
-  math::Vec3 min, max;         ///< of the voxels' centres [mm]
+  math::Vec3 centre;     ///< [mm]
+  math::Vec3 min, max;   ///< of the voxels' centres [mm]
   /// Of the voxels' distribution along left. A liver's long thin lobe lies to the left: about 0.6 to 0.8.
   double skewness_left = 0;
   std::vector<CutSide> cuts;

@@ -68,7 +68,7 @@ double GapOf(const LabelMeasures& a, const LabelMeasures& b) {
     return std::max({0.0, min_b - max_a, min_a - max_b});
   };
   return Norm(math::Vec3{along(a.min.x, a.max.x, b.min.x, b.max.x), along(a.min.y, a.max.y, b.min.y, b.max.y),
-                   along(a.min.z, a.max.z, b.min.z, b.max.z)});
+                         along(a.min.z, a.max.z, b.min.z, b.max.z)});
 }
 
 base::Status CheckSizes(const MeasuredLabels& measured) {

@@ -34,7 +34,9 @@ struct Lattice {
   std::size_t At(int i, int j, int k) const {
     return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;
   }
-  math::Vec3 PlaceOf(int i, int j, int k) const { return first + spacing * math::Vec3{double(i), double(j), double(k)}; }
+  math::Vec3 PlaceOf(int i, int j, int k) const {
+    return first + spacing * math::Vec3{double(i), double(j), double(k)};
+  }
 };
 
 /// \param numbers  (labels) in ascending order

@@ -65,8 +65,8 @@ class Obstacles {
       const auto near = surface.Find(p);
       const geometry::Triangle& t = mesh->triangles[near.triangle];
       const math::Vec3 a = mesh->positions[t[0]];
-      const math::Vec3 outward =
-          math::Normalized(math::Cross(mesh->positions[t[1]] - a, mesh->positions[t[2]] - a), math::Vec3{0, -1, 0});
+      const math::Vec3 outward = math::Normalized(
+          math::Cross(mesh->positions[t[1]] - a, mesh->positions[t[2]] - a), math::Vec3{0, -1, 0});
       const math::Vec3 to = p - near.at.point;
       const bool is_inside = math::Dot(to, outward) < 0;
       const double depth = radius + kGap + (is_inside ? near.distance : -near.distance);

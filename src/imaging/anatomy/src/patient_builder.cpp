@@ -77,10 +77,11 @@ math::Vec3 FindLongAxis(const TriangleMesh& mesh, math::Vec3& centre) {
 }
 
 /// Mean of the surface around the vertex that lies furthest along `direction`, put back onto the surface.
-math::Vec3 FindEnd(const TriangleMesh& mesh, const meshing::NearestSurface& surface, const math::Vec3& direction) {
-  const auto furthest =
-      std::max_element(mesh.positions.begin(), mesh.positions.end(),
-                       [&](const math::Vec3& a, const math::Vec3& b) { return Dot(a, direction) < Dot(b, direction); });
+math::Vec3 FindEnd(const TriangleMesh& mesh, const meshing::NearestSurface& surface,
+                   const math::Vec3& direction) {
+  const auto furthest = std::max_element(
+      mesh.positions.begin(), mesh.positions.end(),
+      [&](const math::Vec3& a, const math::Vec3& b) { return Dot(a, direction) < Dot(b, direction); });
   math::Vec3 mean;
   int count = 0;
   for (const math::Vec3& p : mesh.positions) {
@@ -89,10 +90,11 @@ math::Vec3 FindEnd(const TriangleMesh& mesh, const meshing::NearestSurface& surf
   return surface.Find(mean / count).at.point;
 }
 
-patient::Tube MakeTube(const contours::TubePoints& points, const ImageFrame& frame, const std::set<std::string>& known,
-              double spacing) {
+patient::Tube MakeTube(const contours::TubePoints& points, const ImageFrame& frame,
+                       const std::set<std::string>& known, double spacing) {
   patient::Tube tube{points.name};
-  tube.kind = points.kind == patient::KindName(patient::TubeKind::kArtery) ? patient::TubeKind::kArtery : patient::TubeKind::kDuct;
+  tube.kind = points.kind == patient::KindName(patient::TubeKind::kArtery) ? patient::TubeKind::kArtery
+                                                                           : patient::TubeKind::kDuct;
   // ends outside the scene have no name in a patient
   tube.from = known.contains(points.from) ? points.from : "";
   tube.to = known.contains(points.to) ? points.to : "";
@@ -123,7 +125,8 @@ base::Status MoveToOrigin(const contours::ControlPoints& points, patient::Patien
   const auto& place_mm = is_given    ? points.origin_mm
                          : is_placed ? std::array{0.0, 0.0, 0.0}
                                      : usual.origin_mm;
-  const math::Vec3 shift = kMetresPerMm * math::Vec3{place_mm[0], place_mm[1], place_mm[2]} - anchor->position;
+  const math::Vec3 shift =
+      kMetresPerMm * math::Vec3{place_mm[0], place_mm[1], place_mm[2]} - anchor->position;
   for (patient::Organ& organ : patient.organs) {
     for (math::Vec3& p : organ.mesh.positions) p += shift;
   }
@@ -139,8 +142,8 @@ base::Status MoveToOrigin(const contours::ControlPoints& points, patient::Patien
 }  // namespace
 
 base::Result<patient::Patient> AssemblePatient(const contours::ControlPoints& points,
-                                      const std::vector<meshing::StructureMesh>& structures,
-                                      const RegionSettings& settings) {
+                                               const std::vector<meshing::StructureMesh>& structures,
+                                               const RegionSettings& settings) {
   const ImageFrame frame(points);
   patient::Patient patient;
   patient.name = points.name;
@@ -177,7 +180,8 @@ base::Result<patient::Patient> AssemblePatient(const contours::ControlPoints& po
   math::Vec3 centre;
   math::Vec3 axis = FindLongAxis(gallbladder.mesh, centre);
   const int duct = patient.TubeOf(roles::TubeRole::kCysticDuct);
-  const math::Vec3 towards_fundus = duct >= 0 ? centre - patient.tubes[duct].line.points.front() : math::Vec3{0, -1, 1};
+  const math::Vec3 towards_fundus =
+      duct >= 0 ? centre - patient.tubes[duct].line.points.front() : math::Vec3{0, -1, 1};
   if (Dot(axis, towards_fundus) < 0) axis = -axis;
   const math::Vec3 fundus = FindEnd(gallbladder.mesh, gallbladder_surface, axis);
   const math::Vec3 infundibulum = FindEnd(gallbladder.mesh, gallbladder_surface, -axis);
@@ -188,7 +192,8 @@ base::Result<patient::Patient> AssemblePatient(const contours::ControlPoints& po
     JoinTubes(patient);
   }
 
-  const contours::LandmarkPoint* fissure = points.FindLandmark(NameOf(roles::LandmarkRole::kUmbilicalFissure));
+  const contours::LandmarkPoint* fissure =
+      points.FindLandmark(NameOf(roles::LandmarkRole::kUmbilicalFissure));
   const double falciform_x =
       fissure ? frame.FromPixel(fissure->slice, fissure->pixel).x : infundibulum.x + 0.02;
   const LiverRegions regions = FindLiverRegions(liver.mesh, gallbladder_surface, falciform_x, settings);
@@ -215,8 +220,8 @@ base::Result<patient::Patient> AssemblePatient(const contours::ControlPoints& po
                    {patient::kGallbladderBed, bed.liver}};
   gallbladder.regions = {{patient::kGallbladderBed, bed.gallbladder}};
   for (const auto& pair : bed.pairs) {
-    patient.attachments.push_back({patient::kGallbladderBed, static_cast<std::uint32_t>(gallbladder_index), pair[0],
-                                   static_cast<std::uint32_t>(liver_index), pair[1]});
+    patient.attachments.push_back({patient::kGallbladderBed, static_cast<std::uint32_t>(gallbladder_index),
+                                   pair[0], static_cast<std::uint32_t>(liver_index), pair[1]});
   }
   patient.landmarks = {{NameOf(roles::LandmarkRole::kFundus), fundus},
                        {NameOf(roles::LandmarkRole::kInfundibulum), infundibulum},

@@ -48,7 +48,8 @@ std::vector<double> CalcAway(const geometry::CentreLine& line, std::uint32_t poi
 
 /// Moves one point of a line by `shift`, its neighbours less and less.
 /// \return how far each moved
-std::vector<math::Vec3> Drag(geometry::CentreLine& line, std::uint32_t point, const math::Vec3& shift, double reach) {
+std::vector<math::Vec3> Drag(geometry::CentreLine& line, std::uint32_t point, const math::Vec3& shift,
+                             double reach) {
   const auto away = CalcAway(line, point);
   std::vector<math::Vec3> shifts(away.size());
   for (std::size_t i = 0; i < away.size(); ++i) {
@@ -93,8 +94,9 @@ void FollowBed(patient::Patient& patient, std::uint32_t gallbladder, const patie
   // one order whatever was painted first, in the place of the first strand
   const auto first = std::find_if(patient.attachments.begin(), patient.attachments.end(), is_strand);
   const auto last = std::stable_partition(first, patient.attachments.end(), is_strand);
-  std::stable_sort(first, last,
-                   [](const patient::Attachment& a, const patient::Attachment& b) { return a.vertex_a < b.vertex_a; });
+  std::stable_sort(first, last, [](const patient::Attachment& a, const patient::Attachment& b) {
+    return a.vertex_a < b.vertex_a;
+  });
 }
 
 }  // namespace
@@ -148,8 +150,8 @@ base::Status PaintRegion(patient::Patient& patient, std::string_view organ_name,
   return {};
 }
 
-base::Status MoveTubePoint(patient::Patient& patient, std::uint32_t tube, std::uint32_t point, const math::Vec3& position,
-                           double reach) {
+base::Status MoveTubePoint(patient::Patient& patient, std::uint32_t tube, std::uint32_t point,
+                           const math::Vec3& position, double reach) {
   if (const auto status = CheckPoint(patient, tube, point); !status) return status;
   if (!math::IsFinite(position) || !(reach >= 0)) return Invalid("the place is not finite");
   const TubeGraph graph = MakeTubeGraph(patient);
@@ -192,8 +194,8 @@ base::Status DeleteTubePoint(patient::Patient& patient, std::uint32_t tube, std:
   return {};
 }
 
-base::Status ScaleTubeRadius(patient::Patient& patient, std::uint32_t tube, std::uint32_t point, double factor,
-                             double reach) {
+base::Status ScaleTubeRadius(patient::Patient& patient, std::uint32_t tube, std::uint32_t point,
+                             double factor, double reach) {
   if (const auto status = CheckPoint(patient, tube, point); !status) return status;
   if (!(factor > 0) || !std::isfinite(factor) || !(reach >= 0))
     return Invalid("a radius grows by a factor above 0");
@@ -244,7 +246,8 @@ base::Status AddTube(patient::Patient& patient, patient::Tube tube) {
   const auto& line = tube.line;
   const bool is_usable =
       line.points.size() >= 2 && line.points.size() == line.radii.size() &&
-      std::all_of(line.points.begin(), line.points.end(), [](const math::Vec3& p) { return math::IsFinite(p); }) &&
+      std::all_of(line.points.begin(), line.points.end(),
+                  [](const math::Vec3& p) { return math::IsFinite(p); }) &&
       std::all_of(line.radii.begin(), line.radii.end(), [](double r) { return r > 0 && std::isfinite(r); });
   if (!is_usable) return Invalid("a duct or artery needs two points or more, each with a radius");
   patient.tubes.push_back(std::move(tube));
@@ -264,8 +267,9 @@ base::Status RemoveTube(patient::Patient& patient, std::uint32_t tube) {
 
 std::vector<std::string> FindMissingTubes(const patient::Patient& patient) {
   std::vector<std::string> missing;
-  for (const roles::TubeRole role : {roles::TubeRole::kCysticDuct, roles::TubeRole::kCommonHepaticDuct, roles::TubeRole::kCommonBileDuct,
-                              roles::TubeRole::kRightHepaticArtery, roles::TubeRole::kCysticArtery}) {
+  for (const roles::TubeRole role :
+       {roles::TubeRole::kCysticDuct, roles::TubeRole::kCommonHepaticDuct, roles::TubeRole::kCommonBileDuct,
+        roles::TubeRole::kRightHepaticArtery, roles::TubeRole::kCysticArtery}) {
     if (patient.TubeOf(role) < 0) missing.emplace_back(roles::NameOf(role));
   }
   return missing;
@@ -280,7 +284,8 @@ std::string FindOwnName(const patient::Patient& patient, const std::string& conv
   if (organ != roles::OrganRole::kOther && patient.OrganOf(organ) >= 0)
     return patient.organs[patient.OrganOf(organ)].name;
   const roles::TubeRole tube = roles::ConventionalRole<roles::TubeRole>(conventional);
-  if (tube != roles::TubeRole::kOther && patient.TubeOf(tube) >= 0) return patient.tubes[patient.TubeOf(tube)].name;
+  if (tube != roles::TubeRole::kOther && patient.TubeOf(tube) >= 0)
+    return patient.tubes[patient.TubeOf(tube)].name;
   return conventional;
 }
 
@@ -322,8 +327,8 @@ base::Status PlaceLandmark(patient::Patient& patient, std::string_view name, con
   const roles::LandmarkRole role =
       known == patient.landmarks.end() ? roles::ConventionalRole<roles::LandmarkRole>(name) : known->role;
   const int gallbladder = patient.OrganOf(roles::OrganRole::kGallbladder);
-  if ((role == roles::LandmarkRole::kFundus || role == roles::LandmarkRole::kInfundibulum) && gallbladder >= 0 &&
-      !patient.organs[gallbladder].mesh.triangles.empty()) {
+  if ((role == roles::LandmarkRole::kFundus || role == roles::LandmarkRole::kInfundibulum) &&
+      gallbladder >= 0 && !patient.organs[gallbladder].mesh.triangles.empty()) {
     place = meshing::NearestSurface(patient.organs[gallbladder].mesh).Find(position).at.point;
   }
   if (known == patient.landmarks.end()) {

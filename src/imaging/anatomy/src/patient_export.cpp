@@ -5,12 +5,12 @@
 #include <system_error>
 #include <utility>
 
-#include "trocar/files/patient_frame.h"
 #include "trocar/base/assert.h"
-#include "trocar/host/partial_path.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/files/mesh_export.h"
 #include "trocar/files/mesh_file.h"
+#include "trocar/files/patient_frame.h"
+#include "trocar/host/partial_path.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
@@ -33,7 +33,9 @@ constexpr std::array<double, 3> kLiver = {0.31, 0.07, 0.05}, kGallbladder = {0.3
                                 kOther = {0.60, 0.38, 0.32};
 
 std::array<double, 3> ColourOf(roles::OrganRole organ) {
-  return organ == roles::OrganRole::kLiver ? kLiver : organ == roles::OrganRole::kGallbladder ? kGallbladder : kOther;
+  return organ == roles::OrganRole::kLiver         ? kLiver
+         : organ == roles::OrganRole::kGallbladder ? kGallbladder
+                                                   : kOther;
 }
 
 /// Everything that has a surface, in the world frame.

@@ -14,8 +14,8 @@
 #include "surround_patient.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/files/patient_file.h"
-#include "trocar/host/printable.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/host/printable.h"
 #include "trocar/meshing/label_volume.h"
 #include "trocar/meshing/volume.h"
 #include "trocar/meshing/volume_mesher.h"
@@ -66,10 +66,10 @@ base::Result<std::vector<meshing::StructureMesh>> MeshOrgans(
     int label, triangles;
     const std::vector<CutSide>& cuts;
   };
-  const Part parts[] = {
-      {NameOf(roles::OrganRole::kLiver), measured.labels.liver, meshing::kLiverTriangles, measured.liver.cuts},
-      {NameOf(roles::OrganRole::kGallbladder), measured.labels.gallbladder, meshing::kGallbladderTriangles,
-       measured.gallbladder.cuts}};
+  const Part parts[] = {{NameOf(roles::OrganRole::kLiver), measured.labels.liver, meshing::kLiverTriangles,
+                         measured.liver.cuts},
+                        {NameOf(roles::OrganRole::kGallbladder), measured.labels.gallbladder,
+                         meshing::kGallbladderTriangles, measured.gallbladder.cuts}};
   std::vector<meshing::ScalarVolume> volumes;
   for (const Part& part : parts) {
     if (options.stop.stop_requested()) return GivenUp();
@@ -201,7 +201,8 @@ base::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   AddSurroundings(*volume, *labels, *frame, shift, report_progress, report);
   if (options.stop.stop_requested()) return GivenUp();
   if (!options.output.empty()) {
-    if (const auto status = files::WritePatient(options.output, report.patient); !status.ok()) return status.error();
+    if (const auto status = files::WritePatient(options.output, report.patient); !status.ok())
+      return status.error();
   }
   report_progress("done", 1.0);
   return report;

@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "trocar/files/patient_frame.h"
 #include "patient_linter.h"
 #include "trocar/files/patient_file.h"
+#include "trocar/files/patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/patient/patient.h"
 
@@ -101,7 +101,8 @@ void Linter::LintNames() {
   look_at_roles(patient_.organs, "", "organ");
   look_at_roles(patient_.landmarks, "", "landmark");
   look_at_roles(patient_.neighbours, "", "neighbour");
-  for (const patient::Organ& organ : patient_.organs) look_at_roles(organ.regions, organ.name + "/", "region");
+  for (const patient::Organ& organ : patient_.organs)
+    look_at_roles(organ.regions, organ.name + "/", "region");
   for (const patient::Tube& tube : patient_.tubes) {
     if (patient_.FindOrgan(tube.name) >= 0)
       Add("L-NAME-TWICE", tube.name, "an organ and a tube have this name; rename one");

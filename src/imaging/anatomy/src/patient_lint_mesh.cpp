@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trocar/files/patient_frame.h"
 #include "patient_linter.h"
+#include "trocar/files/patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/elementary.h"
 #include "trocar/patient/patient.h"
@@ -58,9 +58,10 @@ void Linter::LintMesh(std::size_t index) {
   MeshSummary summary{organ.name, organ.mesh.triangles.size(), false, false, 0, 0.0};
   const bool is_unread = index < mesh_errors_.size() && mesh_errors_[index].code != ErrorCode::kNone;
   const auto status = geometry::CheckMesh(organ.mesh);
-  const auto vast = std::find_if(organ.mesh.positions.begin(), organ.mesh.positions.end(), [](const math::Vec3& p) {
-    return math::IsFinite(p) && std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kVast;
-  });
+  const auto vast =
+      std::find_if(organ.mesh.positions.begin(), organ.mesh.positions.end(), [](const math::Vec3& p) {
+        return math::IsFinite(p) && std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > kVast;
+      });
   const bool is_vast = vast != organ.mesh.positions.end();
   is_usable_.push_back(!is_unread && status.ok() && !is_vast && !organ.mesh.triangles.empty());
   if (is_unread) {

@@ -89,7 +89,8 @@ void Linter::LintSides() {
 }
 
 void Linter::LintDepth() {
-  const patient::Organ *liver = FindUsable(roles::OrganRole::kLiver), *gallbladder = FindUsable(roles::OrganRole::kGallbladder);
+  const patient::Organ *liver = FindUsable(roles::OrganRole::kLiver),
+                       *gallbladder = FindUsable(roles::OrganRole::kGallbladder);
   if (liver == nullptr || gallbladder == nullptr || !is_unit_right_) return;
   const TriangleMesh mesh = Outward(liver->mesh);
   const meshing::NearestSurface surface(mesh);

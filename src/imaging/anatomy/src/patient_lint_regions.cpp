@@ -23,8 +23,8 @@ void Linter::LintRegions(std::size_t index) {
   const patient::Organ& organ = patient_.organs[index];
   std::vector<roles::RegionRole> wanted;
   if (organ.role == roles::OrganRole::kLiver)
-    wanted = {roles::RegionRole::kDiaphragmaticFace, roles::RegionRole::kFalciform, roles::RegionRole::kCoronary,
-              roles::RegionRole::kGallbladderBed};
+    wanted = {roles::RegionRole::kDiaphragmaticFace, roles::RegionRole::kFalciform,
+              roles::RegionRole::kCoronary, roles::RegionRole::kGallbladderBed};
   if (organ.role == roles::OrganRole::kGallbladder) wanted = {roles::RegionRole::kGallbladderBed};
   for (const roles::RegionRole role : wanted) {
     if (organ.RegionOf(role) == nullptr)

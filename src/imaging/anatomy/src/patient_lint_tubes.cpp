@@ -5,9 +5,9 @@
 #include <limits>
 #include <string_view>
 
-#include "trocar/files/patient_frame.h"
 #include "patient_linter.h"
 #include "trocar/anatomy/tube_graph.h"
+#include "trocar/files/patient_frame.h"
 #include "trocar/meshing/nearest_surface.h"
 #include "trocar/patient/patient.h"
 
@@ -35,7 +35,8 @@ constexpr TubeRange kTubeRanges[] = {
 
 const TubeRange& FindRange(const patient::Tube& tube) {
   for (const TubeRange& range : kTubeRanges) {
-    if (range.role == roles::TubeRole::kOther ? range.kind == tube.kind : range.role == tube.role) return range;
+    if (range.role == roles::TubeRole::kOther ? range.kind == tube.kind : range.role == tube.role)
+      return range;
   }
   return *std::prev(std::end(kTubeRanges));
 }
@@ -81,7 +82,8 @@ void Linter::LintTubeEnd(const patient::Tube& tube, const std::string& target, c
     const meshing::NearestSurface surface(mesh);
     distance = surface.Find(end).distance;
     // ducts and arteries of the liver run on inside it
-    if (organ->role == roles::OrganRole::kLiver && distance > kJoinReach && surface.IsInside(end)) distance = 0;
+    if (organ->role == roles::OrganRole::kLiver && distance > kJoinReach && surface.IsInside(end))
+      distance = 0;
   } else if (other != nullptr && IsWellFormed(*other)) {
     distance = DistanceToTube(end, other->line);
   }
@@ -117,15 +119,17 @@ void Linter::LintTubeLinks(const patient::Tube& tube) {
         "it ends nowhere: a cystic duct joins the gallbladder to a duct and never leaves the scene");
     return;
   }
-  if (tube.role == roles::TubeRole::kCysticArtery && patient_.FindOrganRole(tube.from) != roles::OrganRole::kGallbladder &&
+  if (tube.role == roles::TubeRole::kCysticArtery &&
+      patient_.FindOrganRole(tube.from) != roles::OrganRole::kGallbladder &&
       patient_.FindOrganRole(tube.to) != roles::OrganRole::kGallbladder) {
     Add("L-TUBE-END", tube.name, "it ends nowhere: a cystic artery leads to the gallbladder");
     return;
   }
   if (!tube.from.empty() || !tube.to.empty()) return;
-  const bool is_joined = std::any_of(patient_.tubes.begin(), patient_.tubes.end(), [&](const patient::Tube& other) {
-    return &other != &tube && (other.from == tube.name || other.to == tube.name);
-  });
+  const bool is_joined =
+      std::any_of(patient_.tubes.begin(), patient_.tubes.end(), [&](const patient::Tube& other) {
+        return &other != &tube && (other.from == tube.name || other.to == tube.name);
+      });
   if (!is_joined) Add("L-TUBE-END", tube.name, "it ends nowhere: it joins nothing, and nothing joins it");
 }
 

@@ -45,7 +45,8 @@ class Linter {
   void LintAttachments();
   // patient_lint_tubes.cpp
   void LintTubes();
-  void LintTubeEnd(const patient::Tube& tube, const std::string& target, const math::Vec3& end, const std::string& where);
+  void LintTubeEnd(const patient::Tube& tube, const std::string& target, const math::Vec3& end,
+                   const std::string& where);
   void LintTubeLinks(const patient::Tube& tube);
   void LintTubeSize(const patient::Tube& tube);
   void LintTubeGraph();

@@ -309,15 +309,17 @@ std::vector<ParameterSetting> MakeUsualSettings() {
 }
 
 double NumberOf(std::span<const patient::Parameter> parameters, std::string_view name) {
-  const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                  [&](const patient::Parameter& parameter) { return parameter.name == name; });
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(),
+                   [&](const patient::Parameter& parameter) { return parameter.name == name; });
   TROCAR_ASSERT(found != parameters.end() && std::holds_alternative<double>(found->value));
   return std::get<double>(found->value);
 }
 
 const std::string& TextOf(std::span<const patient::Parameter> parameters, std::string_view name) {
-  const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                  [&](const patient::Parameter& parameter) { return parameter.name == name; });
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(),
+                   [&](const patient::Parameter& parameter) { return parameter.name == name; });
   TROCAR_ASSERT(found != parameters.end() && std::holds_alternative<std::string>(found->value));
   return std::get<std::string>(found->value);
 }
@@ -354,7 +356,8 @@ ParameterRule RuleFor(const ParameterRule& rule, bool is_ideal) {
 }
 
 /// \param drawn  the parameters before this one
-patient::Parameter DrawOne(std::uint64_t seed, const ParameterRule& rule, std::span<const patient::Parameter> drawn) {
+patient::Parameter DrawOne(std::uint64_t seed, const ParameterRule& rule,
+                           std::span<const patient::Parameter> drawn) {
   math::Random random = MakeStream(seed, rule.name, 0);
   patient::Parameter parameter{std::string(rule.name), 0.0, std::string(rule.unit), std::string(rule.source)};
   if (rule.name == "cystic_duct_series" || rule.name == kPopulation) {
@@ -390,7 +393,7 @@ struct VolumeLimits {
 }  // namespace
 
 base::Result<std::vector<patient::Parameter>> DrawParameters(std::uint64_t seed,
-                                                    std::span<const ParameterSetting> settings) {
+                                                             std::span<const ParameterSetting> settings) {
   const auto set = ReadSettings(settings);
   if (!set.ok()) return set.error();
   const auto find_set = [&](std::string_view name) -> const patient::Parameter* {

@@ -25,8 +25,8 @@ namespace {
 constexpr std::string_view kInsertion = "cystic_duct_insertion", kSeries = "cystic_duct_series";
 
 const patient::Parameter* Find(const std::vector<patient::Parameter>& parameters, std::string_view name) {
-  const auto found =
-      std::find_if(parameters.begin(), parameters.end(), [&](const patient::Parameter& p) { return p.name == name; });
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const patient::Parameter& p) { return p.name == name; });
   return found == parameters.end() ? nullptr : &*found;
 }
 
@@ -54,8 +54,8 @@ VariationCount StartCount(std::string name, std::span<const Choice> choices) {
 
 /// Counts one parameter over the patients that `belongs` accepts.
 template <typename Belongs>
-void CountOne(std::span<const std::vector<patient::Parameter>> patients, std::string_view name, VariationCount count,
-              const Belongs& belongs, std::vector<VariationCount>& variations) {
+void CountOne(std::span<const std::vector<patient::Parameter>> patients, std::string_view name,
+              VariationCount count, const Belongs& belongs, std::vector<VariationCount>& variations) {
   for (const auto& parameters : patients) {
     const patient::Parameter* parameter = Find(parameters, name);
     if (parameter == nullptr || !IsDrawn(*parameter) || !belongs(parameters)) continue;

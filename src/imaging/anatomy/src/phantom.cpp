@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "trocar/files/patient_frame.h"
 #include "phantom_tissue.h"
 #include "trocar/base/assert.h"
+#include "trocar/files/patient_frame.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
@@ -355,8 +355,8 @@ contours::ControlPoints Phantom::MakeControlPoints() const {
     return role != roles::OrganRole::kOther ? NameOf(role) : end.empty() ? "outside" : end;
   };
   for (const patient::Tube& tube : c.patient.tubes) {
-    contours::TubePoints placed{tube.name, patient::KindName(tube.kind), end_name(tube.from), end_name(tube.to), true,
-                                {}};
+    contours::TubePoints placed{
+        tube.name, patient::KindName(tube.kind), end_name(tube.from), end_name(tube.to), true, {}};
     const auto line = geometry::Resample(tube.line, kTubeSpacing);
     for (std::size_t i = 0; i < line.points.size(); ++i) {
       const Vec3 p = c.ToPicture(line.points[i]);
@@ -369,7 +369,8 @@ contours::ControlPoints Phantom::MakeControlPoints() const {
   }
   for (const patient::Landmark& landmark : c.patient.landmarks) {
     // the others are found again from the meshes
-    if (landmark.role != roles::LandmarkRole::kUmbilicalFissure && landmark.role != roles::LandmarkRole::kUmbilicus)
+    if (landmark.role != roles::LandmarkRole::kUmbilicalFissure &&
+        landmark.role != roles::LandmarkRole::kUmbilicus)
       continue;
     const Vec3 p = c.ToPicture(landmark.position);
     const double slice = p.z / c.options.slice_mm;

@@ -105,8 +105,8 @@ base::Status WriteNewFolder(const fs::path& folder,
   return status;
 }
 
-base::Status WritePhantom(const fs::path& folder, const patient::Patient& patient, const PhantomOptions& options,
-                          const images::Progress& progress) {
+base::Status WritePhantom(const fs::path& folder, const patient::Patient& patient,
+                          const PhantomOptions& options, const images::Progress& progress) {
   const auto phantom = Phantom::Make(patient, options);
   if (!phantom) return phantom.error();
   return WriteNewFolder(

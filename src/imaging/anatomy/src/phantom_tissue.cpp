@@ -88,7 +88,8 @@ BodyPlan PlanBody(const patient::Patient& patient) {
   const auto box = [&](roles::OrganRole role) {
     return geometry::CalcBox(patient.organs[patient.OrganOf(role)].mesh.positions);
   };
-  const geometry::Box liver = box(roles::OrganRole::kLiver), gallbladder = box(roles::OrganRole::kGallbladder);
+  const geometry::Box liver = box(roles::OrganRole::kLiver),
+                      gallbladder = box(roles::OrganRole::kGallbladder);
   const patient::Landmark* fundus = patient.LandmarkOf(roles::LandmarkRole::kFundus);
   const patient::Landmark* neck = patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
   BodyPlan plan;
@@ -142,7 +143,8 @@ double PhantomBody::Ball::Distance(const Vec3& p) const {
   return slope > 0 ? length * (length - 1.0) / slope : -std::min({radii.x, radii.y, radii.z});
 }
 
-PhantomBody::PhantomBody(const patient::Patient& patient, std::uint64_t seed) : PhantomBody(PlanBody(patient), seed) {}
+PhantomBody::PhantomBody(const patient::Patient& patient, std::uint64_t seed)
+    : PhantomBody(PlanBody(patient), seed) {}
 
 PhantomBody::PhantomBody(const BodyPlan& plan, std::uint64_t seed) : noise_(seed), liver_(plan.liver) {
   const Vec3 &fundus = plan.fundus, &porta = plan.porta;

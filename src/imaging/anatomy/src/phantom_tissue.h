@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/geometry/triangle_mesh.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 

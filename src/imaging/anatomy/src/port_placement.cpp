@@ -22,8 +22,9 @@ using math::Hypot;
 
 // The usual patient: fundus from the navel on the insufflated wall, ports as in scenes/cholecystectomy.json [m].
 constexpr math::Vec3 kUsualFundus{-0.075, 0.095, -0.070};
-constexpr std::array<math::Vec3, patient::kPortUseCount> kUsualPorts = {math::Vec3{0, 0, 0}, math::Vec3{-0.090, 0.045, -0.015},
-                                                         math::Vec3{0, 0.080, -0.003}, math::Vec3{-0.140, 0.060, -0.040}};
+constexpr std::array<math::Vec3, patient::kPortUseCount> kUsualPorts = {
+    math::Vec3{0, 0, 0}, math::Vec3{-0.090, 0.045, -0.015}, math::Vec3{0, 0.080, -0.003},
+    math::Vec3{-0.140, 0.060, -0.040}};
 // The insufflated wall as surgery/cavity.h has it: how it falls away from its top, across and along the body [1/m].
 constexpr double kAcross = 2.3, kAlong = 0.27;
 constexpr double kLift = 0.040;           // of the wall by the gas [m]
@@ -203,10 +204,10 @@ patient::Port PlaceLaparoscope(const Navel& navel, const math::Vec3& neck, const
 }
 
 /// A working port: its usual place beside the gallbladder, as far as this body allows.
-patient::Port PlaceWorking(patient::PortUse use, const patient::Patient& patient, double midline, const Wall& wall,
-                  const std::vector<patient::Port>& others) {
+patient::Port PlaceWorking(patient::PortUse use, const patient::Patient& patient, double midline,
+                           const Wall& wall, const std::vector<patient::Port>& others) {
   const math::Vec3 fundus = PlaceOf(patient, roles::LandmarkRole::kFundus),
-             neck = PlaceOf(patient, roles::LandmarkRole::kInfundibulum);
+                   neck = PlaceOf(patient, roles::LandmarkRole::kInfundibulum);
   const math::Vec3 usual = kUsualPorts[static_cast<std::size_t>(use)] - kUsualFundus;
   constexpr std::array<const char*, patient::kPortUseCount> kSites = {
       "", "Right subcostal in the midclavicular line, for the left hand",
@@ -296,7 +297,8 @@ struct Breach {
   }
 };
 
-Breach FindBreach(const patient::Patient& patient, const Wall& wall, patient::PortUse use, const math::Vec3& place) {
+Breach FindBreach(const patient::Patient& patient, const Wall& wall, patient::PortUse use,
+                  const math::Vec3& place) {
   Breach breach;
   const double distance = math::Distance(place, PlaceOf(patient, roles::LandmarkRole::kInfundibulum));
   const bool is_laparoscope = use == patient::PortUse::kLaparoscope;
@@ -318,7 +320,8 @@ Breach FindBreach(const patient::Patient& patient, const Wall& wall, patient::Po
 
 }  // namespace
 
-base::Result<patient::Port> MovePort(const patient::Patient& patient, patient::PortUse use, double x, double y) {
+base::Result<patient::Port> MovePort(const patient::Patient& patient, patient::PortUse use, double x,
+                                     double y) {
   const patient::Port* now = patient.PortOf(use);
   if (now == nullptr || patient.LandmarkOf(roles::LandmarkRole::kInfundibulum) == nullptr)
     return base::Error{base::ErrorCode::kEditRefused,
@@ -360,7 +363,8 @@ void PlacePorts(const BodyShape& body, patient::Patient& patient) {
   const Wall wall(navel.place, patient);
   const math::Vec3 neck = PlaceOf(patient, roles::LandmarkRole::kInfundibulum);
   patient.ports.push_back(PlaceLaparoscope(navel, neck, wall));
-  for (const patient::PortUse use : {patient::PortUse::kLeftHand, patient::PortUse::kRightHand, patient::PortUse::kAssistant})
+  for (const patient::PortUse use :
+       {patient::PortUse::kLeftHand, patient::PortUse::kRightHand, patient::PortUse::kAssistant})
     patient.ports.push_back(PlaceWorking(use, patient, midline, wall, patient.ports));
   for (patient::Landmark& landmark : patient.landmarks) {
     if (landmark.role == roles::LandmarkRole::kUmbilicus) landmark.position = navel.place;
@@ -371,8 +375,9 @@ std::vector<std::string> SinkUnderGas(patient::Patient& patient) {
   // ways that must be free: from each port to the gallbladder, the wider the farther from it
   constexpr double kWide = 0.016, kFade = 0.050, kNarrowFrom = 0.045, kMostSinking = 0.070, kCell = 0.004;
   std::vector<math::Vec3> targets;
-  for (const roles::LandmarkRole role : {roles::LandmarkRole::kFundus, roles::LandmarkRole::kGallbladderBody,
-                                  roles::LandmarkRole::kInfundibulum, roles::LandmarkRole::kHepatocysticTriangle}) {
+  for (const roles::LandmarkRole role :
+       {roles::LandmarkRole::kFundus, roles::LandmarkRole::kGallbladderBody,
+        roles::LandmarkRole::kInfundibulum, roles::LandmarkRole::kHepatocysticTriangle}) {
     if (const patient::Landmark* landmark = patient.LandmarkOf(role)) targets.push_back(landmark->position);
   }
   // how far each column of the body must sink

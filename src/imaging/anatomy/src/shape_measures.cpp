@@ -93,7 +93,7 @@ class Slabs {
   double Bend() const {
     constexpr std::size_t kThird = kSlabs / 3;
     const math::Vec3 first = math::Normalized(CentreAt(kThird) - CentreAt(1)),
-               last = math::Normalized(CentreAt(kSlabs - 2) - CentreAt(kSlabs - 1 - kThird));
+                     last = math::Normalized(CentreAt(kSlabs - 2) - CentreAt(kSlabs - 1 - kThird));
     return math::Acos(std::clamp(Dot(first, last), -1.0, 1.0));
   }
 
@@ -122,7 +122,8 @@ double CalcRegionArea(const TriangleMesh& mesh, const std::vector<std::uint8_t>&
 
 /// How deep the gallbladder lies in its fossa: the farthest of its bed behind the bed's border, along the bed's mean
 /// direction [m].
-double CalcFossaDepth(const TriangleMesh& mesh, const std::vector<std::uint8_t>& is_bed, const math::Vec3& axis) {
+double CalcFossaDepth(const TriangleMesh& mesh, const std::vector<std::uint8_t>& is_bed,
+                      const math::Vec3& axis) {
   math::Vec3 into_liver;
   std::vector<std::uint8_t> is_border(mesh.positions.size(), 0);
   for (const geometry::Triangle& t : mesh.triangles) {
@@ -165,7 +166,7 @@ base::Result<std::vector<ShapeMeasure>> MeasureShapes(const patient::Patient& pa
   const int liver_index = patient.OrganOf(roles::OrganRole::kLiver),
             gallbladder_index = patient.OrganOf(roles::OrganRole::kGallbladder);
   const patient::Landmark *infundibulum = patient.LandmarkOf(roles::LandmarkRole::kInfundibulum),
-                 *fundus = patient.LandmarkOf(roles::LandmarkRole::kFundus);
+                          *fundus = patient.LandmarkOf(roles::LandmarkRole::kFundus);
   const Error lacks{
       ErrorCode::kPatientInvalid,
       "liver, gallbladder, its bed, infundibulum and fundus are measured; the patient lacks one of "
@@ -228,7 +229,8 @@ base::Result<std::vector<ShapeMeasure>> MeasureShapes(const patient::Patient& pa
             hepatic = patient.TubeOf(roles::TubeRole::kCommonHepaticDuct);
   if (cystic >= 0) {
     const patient::Tube& duct = patient.tubes[static_cast<std::size_t>(cystic)];
-    const math::Vec3& origin = duct.to == gallbladder.name ? duct.line.points.back() : duct.line.points.front();
+    const math::Vec3& origin =
+        duct.to == gallbladder.name ? duct.line.points.back() : duct.line.points.front();
     double beyond = 0;
     for (const math::Vec3& p : mesh.positions) beyond = std::max(beyond, Dot(origin - p, axis));
     add("wall_beyond_duct", files::kMmPerMetre * beyond, "mm",

@@ -29,9 +29,9 @@ const std::string& EndName(const patient::Tube& tube, TubeEnd end) {
 }
 
 std::uint32_t FindNearestPoint(const geometry::CentreLine& line, const math::Vec3& p) {
-  const auto nearest =
-      std::min_element(line.points.begin(), line.points.end(),
-                       [&](const math::Vec3& a, const math::Vec3& b) { return Distance(a, p) < Distance(b, p); });
+  const auto nearest = std::min_element(
+      line.points.begin(), line.points.end(),
+      [&](const math::Vec3& a, const math::Vec3& b) { return Distance(a, p) < Distance(b, p); });
   return static_cast<std::uint32_t>(nearest - line.points.begin());
 }
 

@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "duct_template.h"
-#include "trocar/files/patient_frame.h"
 #include "trocar/anatomy/tube_graph.h"
 #include "trocar/base/assert.h"
+#include "trocar/files/patient_frame.h"
 #include "trocar/math/elementary.h"
 #include "trocar/patient/patient.h"
 
@@ -168,7 +168,8 @@ std::string WithShare(const std::string& source, double probability) {
 
 /// Keeps what is not seen, and says of each variation how likely it is.
 std::vector<patient::Parameter> KeepUnseen(std::vector<patient::Parameter> parameters) {
-  std::erase_if(parameters, [](const patient::Parameter& parameter) { return FindUnseen(parameter.name) == nullptr; });
+  std::erase_if(parameters,
+                [](const patient::Parameter& parameter) { return FindUnseen(parameter.name) == nullptr; });
   return parameters;
 }
 
@@ -195,8 +196,9 @@ base::Status ReplaceTubes(patient::Patient& patient, std::span<const patient::Pa
   auto all = DrawParameters(0, settings);
   if (!all.ok()) return all.error();
   for (patient::Parameter& parameter : *all) {
-    const auto given = std::find_if(parameters.begin(), parameters.end(),
-                                    [&](const patient::Parameter& other) { return other.name == parameter.name; });
+    const auto given =
+        std::find_if(parameters.begin(), parameters.end(),
+                     [&](const patient::Parameter& other) { return other.name == parameter.name; });
     if (given != parameters.end()) parameter = *given;
   }
   const std::string& liver_name = patient.organs[static_cast<std::size_t>(liver)].name;
@@ -211,8 +213,9 @@ base::Status ReplaceTubes(patient::Patient& patient, std::span<const patient::Pa
     }
   }
   JoinTubes(patient);
-  std::erase_if(patient.landmarks,
-                [](const patient::Landmark& it) { return it.role == roles::LandmarkRole::kHepatocysticTriangle; });
+  std::erase_if(patient.landmarks, [](const patient::Landmark& it) {
+    return it.role == roles::LandmarkRole::kHepatocysticTriangle;
+  });
   if (const auto middle = CalcTriangleMiddle(patient))
     patient.landmarks.push_back({NameOf(roles::LandmarkRole::kHepatocysticTriangle), *middle});
   return {};
@@ -266,8 +269,9 @@ bool IsUnseenParameter(std::string_view name) {
   return FindUnseen(name) != nullptr;
 }
 
-Result<std::vector<patient::Parameter>> MakeUnseenParameters(const UnseenVariant& variant, UnseenNumbers numbers,
-                                                    std::span<const ParameterSetting> settings) {
+Result<std::vector<patient::Parameter>> MakeUnseenParameters(const UnseenVariant& variant,
+                                                             UnseenNumbers numbers,
+                                                             std::span<const ParameterSetting> settings) {
   std::vector<ParameterSetting> all = MakeUsualSettings();
   if (const std::string* series = FindSetting(settings, kSeries)) all.emplace_back(kSeries, *series);
   std::string length_class = "normal";
@@ -312,7 +316,7 @@ Result<std::vector<patient::Parameter>> MakeUnseenParameters(const UnseenVariant
 }
 
 Result<std::vector<patient::Parameter>> DrawUnseenParameters(std::uint64_t seed,
-                                                    std::span<const ParameterSetting> settings) {
+                                                             std::span<const ParameterSetting> settings) {
   auto drawn = DrawParameters(seed, settings);
   if (!drawn.ok()) return drawn.error();
   auto variants = RankUnseenVariants(settings);
@@ -328,7 +332,8 @@ Result<std::vector<patient::Parameter>> DrawUnseenParameters(std::uint64_t seed,
   return parameters;
 }
 
-UnseenVariant FindVariant(std::span<const UnseenVariant> variants, std::span<const patient::Parameter> parameters) {
+UnseenVariant FindVariant(std::span<const UnseenVariant> variants,
+                          std::span<const patient::Parameter> parameters) {
   const auto found = std::find_if(variants.begin(), variants.end(), [&](const UnseenVariant& variant) {
     return std::all_of(variant.shares.begin(), variant.shares.end(), [&](const VariationShare& share) {
       return TextOf(parameters, share.name) == share.value;
@@ -343,8 +348,9 @@ bool HasSeenTubes(const patient::Patient& patient) {
                      [](const patient::Tube& tube) { return tube.is_seen; });
 }
 
-Result<patient::Patient> CompletePatient(const patient::Patient& patient, std::string_view what, const UnseenVariant& variant,
-                                std::span<const patient::Parameter> parameters) {
+Result<patient::Patient> CompletePatient(const patient::Patient& patient, std::string_view what,
+                                         const UnseenVariant& variant,
+                                         std::span<const patient::Parameter> parameters) {
   patient::Patient completed = patient;
   const bool keeps_tubes = HasSeenTubes(patient);
   constexpr std::string_view kMeasured = "measured_", kVariant = "unseen_variant";
@@ -362,8 +368,8 @@ Result<patient::Patient> CompletePatient(const patient::Patient& patient, std::s
       double length = 0;
       for (std::size_t i = 1; i < tube.line.points.size(); ++i)
         length += Distance(tube.line.points[i - 1], tube.line.points[i]);
-      completed.parameters.push_back({std::string(kMeasured) + tube.name + "_length", files::kMmPerMetre * length,
-                                      "mm", "measured on the result"});
+      completed.parameters.push_back({std::string(kMeasured) + tube.name + "_length",
+                                      files::kMmPerMetre * length, "mm", "measured on the result"});
     }
     completed.parameters.push_back({std::string(kVariant) + "_probability", variant.probability, "",
                                     "product of its variations' shares, taken as independent"});

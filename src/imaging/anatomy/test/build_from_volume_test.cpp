@@ -98,7 +98,8 @@ TEST_F(BuildFromVolume, ContoursAloneMakeAPatientThatTheScenesCanUse) {
   // liver and gallbladder are outlined, everything round them is the template's, and the ports say so
   EXPECT_GE(patient.neighbours.size(), 8u);
   EXPECT_EQ(patient.neighbours.size(), report->neighbours.size());
-  for (const patient::Neighbour& neighbour : patient.neighbours) EXPECT_FALSE(neighbour.is_seen) << neighbour.name;
+  for (const patient::Neighbour& neighbour : patient.neighbours)
+    EXPECT_FALSE(neighbour.is_seen) << neighbour.name;
   ASSERT_EQ(patient.ports.size(), patient::kPortUseCount);
   EXPECT_NE(patient.ports[1].reason.find("say nothing of this body"), std::string::npos);
   EXPECT_TRUE(patient.table.has_value());

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "trocar/files/patient_file.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/meshing/nearest_surface.h"
 #include "trocar/patient/patient.h"
 #include "trocar_test/temporary_folder.h"
@@ -49,7 +49,8 @@ void ExpectUsablePatient(const patient::Patient& patient) {
   }
 
   // the four rules, and what they must leave free
-  for (const char* name : {patient::kDiaphragmaticFace, patient::kFalciform, patient::kCoronary, patient::kGallbladderBed}) {
+  for (const char* name :
+       {patient::kDiaphragmaticFace, patient::kFalciform, patient::kCoronary, patient::kGallbladderBed}) {
     ASSERT_NE(FindRegion(liver, name), nullptr);
     EXPECT_GE(FindRegion(liver, name)->vertices.size(), 8u) << name;
   }

@@ -36,7 +36,8 @@ Structure StructureAt(double r, double a, double s) {
   };
   const auto tube = [&](std::vector<Place> way, double radius) {
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-      const math::Vec3 p{r, a, s}, from{way[i].r, way[i].a, way[i].s}, to{way[i + 1].r, way[i + 1].a, way[i + 1].s};
+      const math::Vec3 p{r, a, s}, from{way[i].r, way[i].a, way[i].s},
+          to{way[i + 1].r, way[i + 1].a, way[i + 1].s};
       const double t = std::clamp(math::Dot(p - from, to - from) / math::SquaredNorm(to - from), 0.0, 1.0);
       if (math::Distance(p, from + t * (to - from)) <= radius) return true;
     }

@@ -60,7 +60,7 @@ void ExpectSound(const patient::Patient& patient, const std::string& what) {
   for (const patient::Tube& tube : patient.tubes) EXPECT_FALSE(tube.is_seen) << tube.name;
   // fundus in front of and below the neck
   const math::Vec3 fundus = patient.FindLandmark("fundus")->position,
-             neck = patient.FindLandmark("infundibulum")->position;
+                   neck = patient.FindLandmark("infundibulum")->position;
   EXPECT_GT(fundus.z, neck.z + 0.01);
   EXPECT_LT(fundus.y, neck.y);
 }
@@ -168,7 +168,7 @@ TEST(GeneratePatient, VariationsAreThereWhenTheyAreSet) {
   }
   EXPECT_GE(beside, 6) << "points 2 mm apart";
   const patient::Patient brief = make({{"cystic_duct_class", "short"}}),
-                lengthy = make({{"cystic_duct_class", "long"}});
+                         lengthy = make({{"cystic_duct_class", "long"}});
   EXPECT_LT(Millimetres(brief, "cystic_duct"), 22);
   EXPECT_GT(Millimetres(lengthy, "cystic_duct"), 40);
 
@@ -261,7 +261,8 @@ TEST(GeneratePatient, AHartmannPouchSagsFromTheFreeWallAlone) {
   const patient::Organ& gallbladder = OrganOf(pouched, "gallbladder");
   std::set<std::uint32_t> in_bed;
   for (const patient::Region& region : gallbladder.regions) {
-    if (region.name == patient::kGallbladderBed) in_bed.insert(region.vertices.begin(), region.vertices.end());
+    if (region.name == patient::kGallbladderBed)
+      in_bed.insert(region.vertices.begin(), region.vertices.end());
   }
   ASSERT_FALSE(in_bed.empty());
   double free_wall = 0, liver_side = 0;  // most, and mean [mm]

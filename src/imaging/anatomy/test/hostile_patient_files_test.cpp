@@ -7,10 +7,10 @@
 #include <string>
 
 #include "trocar/anatomy/generate_patient.h"
-#include "trocar/files/patient_file.h"
-#include "trocar/patient/patient.h"
 #include "trocar/contours/control_points.h"
+#include "trocar/files/patient_file.h"
 #include "trocar/host/safe_file.h"
+#include "trocar/patient/patient.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::anatomy {

@@ -79,7 +79,7 @@ math::Vec3 AsVector(const std::array<double, 3>& v) {
 /// voxels.
 LabelVolume Draw(const LabelVolume& body, const Variation& variation) {
   const math::Vec3 steps[3] = {AsVector(body.direction[0]), AsVector(body.direction[1]),
-                         AsVector(body.direction[2])};
+                               AsVector(body.direction[2])};
   const math::Vec3 origin = AsVector(body.origin);
   const auto label_at = [&](const math::Vec3& place) -> std::int32_t {
     std::array<long, 3> index{};
@@ -93,8 +93,8 @@ LabelVolume Draw(const LabelVolume& body, const Variation& variation) {
   };
   const double a = variation.tilt_deg * M_PI / 180, b = 0.5 * a;
   const math::Vec3 axes[3] = {{std::cos(b), std::sin(b), 0},
-                        {-std::sin(b) * std::cos(a), std::cos(b) * std::cos(a), std::sin(a)},
-                        {std::sin(b) * std::sin(a), -std::cos(b) * std::sin(a), std::cos(a)}};
+                              {-std::sin(b) * std::cos(a), std::cos(b) * std::cos(a), std::sin(a)},
+                              {std::sin(b) * std::sin(a), -std::cos(b) * std::sin(a), std::cos(a)}};
   // the box of the body along the new axes
   math::Vec3 low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = -1.0 * low;
   std::size_t at = 0;
@@ -111,7 +111,8 @@ LabelVolume Draw(const LabelVolume& body, const Variation& variation) {
   }
   const double margin = 6.0 + variation.warp_mm;
   const math::Vec3 begin = low - math::Vec3{margin, margin, margin};
-  const math::Vec3 end = high + math::Vec3{margin, margin, variation.cropped_mm > 0 ? -variation.cropped_mm : margin};
+  const math::Vec3 end =
+      high + math::Vec3{margin, margin, variation.cropped_mm > 0 ? -variation.cropped_mm : margin};
   const double step[3] = {variation.step_mm.x, variation.step_mm.y, variation.step_mm.z};
   const math::Vec3 side = end - begin;
   LabelVolume drawn;
@@ -125,7 +126,8 @@ LabelVolume Draw(const LabelVolume& body, const Variation& variation) {
   for (int k = 0; k < drawn.size[2]; ++k) {
     for (int j = 0; j < drawn.size[1]; ++j) {
       for (int i = 0; i < drawn.size[0]; ++i) {
-        const math::Vec3 place = first + i * step[0] * axes[0] + j * step[1] * axes[1] + k * step[2] * axes[2];
+        const math::Vec3 place =
+            first + i * step[0] * axes[0] + j * step[1] * axes[1] + k * step[2] * axes[2];
         drawn.labels.push_back(label_at(place + warp.At(place)));
       }
     }

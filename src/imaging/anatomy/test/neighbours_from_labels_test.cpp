@@ -16,9 +16,9 @@
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/files/patient_file.h"
+#include "trocar/geometry/mesh_measures.h"
 #include "trocar/host/json.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/geometry/mesh_measures.h"
 #include "trocar/meshing/nearest_surface.h"
 #include "trocar/patient/patient.h"
 #include "trocar_test/temporary_folder.h"
@@ -191,10 +191,14 @@ TEST_F(NeighboursFromLabels, HaveTheVolumeOfTheirVoxelsAndNoSlivers) {
   const TrunkMap body;
   const BuildReport report = Build(body);
   const std::map<roles::NeighbourRole, std::vector<int>> wanted = {
-      {roles::NeighbourRole::kStomach, {kTotalStomach}}, {roles::NeighbourRole::kDuodenum, {kTotalDuodenum}},
-      {roles::NeighbourRole::kColon, {kTotalColon}},     {roles::NeighbourRole::kRightKidney, {kTotalKidney}},
-      {roles::NeighbourRole::kAorta, {kTotalAorta}},     {roles::NeighbourRole::kVenaCava, {kTotalCava}},
-      {roles::NeighbourRole::kRibs, {kTotalRib}},        {roles::NeighbourRole::kSpine, {kTotalL2, kTotalL3, kTotalL4}}};
+      {roles::NeighbourRole::kStomach, {kTotalStomach}},
+      {roles::NeighbourRole::kDuodenum, {kTotalDuodenum}},
+      {roles::NeighbourRole::kColon, {kTotalColon}},
+      {roles::NeighbourRole::kRightKidney, {kTotalKidney}},
+      {roles::NeighbourRole::kAorta, {kTotalAorta}},
+      {roles::NeighbourRole::kVenaCava, {kTotalCava}},
+      {roles::NeighbourRole::kRibs, {kTotalRib}},
+      {roles::NeighbourRole::kSpine, {kTotalL2, kTotalL3, kTotalL4}}};
   for (const auto& [role, labels] : wanted) {
     SCOPED_TRACE(roles::NameOf(role));
     const patient::Neighbour* neighbour = report.patient.NeighbourOf(role);
@@ -271,7 +275,8 @@ TEST_F(NeighboursFromLabels, AreATemplateWhereTheMapHasNone) {
     const auto inspected = geometry::InspectMesh(neighbour->mesh);
     EXPECT_TRUE(inspected.closed && inspected.manifold && inspected.outward);
     EXPECT_GE(inspected.min_angle * 180 / M_PI, 5.0);
-    for (const patient::Organ& organ : report.patient.organs) EXPECT_LT(DepthIn(neighbour->mesh, organ.mesh), 0.002);
+    for (const patient::Organ& organ : report.patient.organs)
+      EXPECT_LT(DepthIn(neighbour->mesh, organ.mesh), 0.002);
   }
   EXPECT_TRUE(report.patient.NeighbourOf(roles::NeighbourRole::kColon)->is_seen);
   EXPECT_EQ(report.patient.NeighbourOf(roles::NeighbourRole::kSmallBowel), nullptr);
@@ -306,7 +311,8 @@ TEST_F(NeighboursFromLabels, PortsFollowTheBodyAndSayWhy) {
       }
     }
     // in front of everything there, and below the rib
-    for (const patient::Organ& organ : patient.organs) EXPECT_EQ(DepthIn({{port.position}, {}}, organ.mesh), 0.0);
+    for (const patient::Organ& organ : patient.organs)
+      EXPECT_EQ(DepthIn({{port.position}, {}}, organ.mesh), 0.0);
   }
   EXPECT_THAT(FormatSurroundings(report), HasSubstr("Port for right hand"));
   ASSERT_TRUE(patient.table.has_value());
@@ -324,14 +330,16 @@ TEST_F(NeighboursFromLabels, APortMovesOnTheWallAsFarAsTheRulesAllow) {
   EXPECT_THAT(moved->reason, HasSubstr("by hand"));
   // each rule refuses with its reason
   const patient::Port& camera = *patient.PortOf(patient::PortUse::kLaparoscope);
-  const auto close = MovePort(patient, patient::PortUse::kLeftHand, camera.position.x - 0.01, camera.position.y);
+  const auto close =
+      MovePort(patient, patient::PortUse::kLeftHand, camera.position.x - 0.01, camera.position.y);
   ASSERT_FALSE(close.ok());
   EXPECT_EQ(close.error().code, base::ErrorCode::kEditRefused);
   EXPECT_THAT(close.error().message, HasSubstr("another port"));
   const auto far = MovePort(patient, patient::PortUse::kLeftHand, hand.position.x, hand.position.y - 0.3);
   ASSERT_FALSE(far.ok());
   EXPECT_THAT(far.error().message, HasSubstr("more than 220 mm"));
-  const auto high = MovePort(patient, patient::PortUse::kLeftHand, hand.position.x - 0.03, hand.position.y + 0.08);
+  const auto high =
+      MovePort(patient, patient::PortUse::kLeftHand, hand.position.x - 0.03, hand.position.y + 0.08);
   ASSERT_FALSE(high.ok());
   EXPECT_THAT(high.error().message, HasSubstr("ribs"));
   // where the present place breaks a rule, a better one is taken though it breaks it, too
@@ -378,8 +386,8 @@ TEST_F(NeighboursFromLabels, WithoutABodyPortsAreTheUsualOnesAndSayThat) {
       {patient::PortUse::kAssistant, root.Object("operation").Object("assistant")}};
   for (const auto& [use, view] : usual) {
     const auto mm = view.Numbers("port_mm", 3, {-3000, 3000});
-    EXPECT_NEAR(math::Distance(report.patient.PortOf(use)->position, 0.001 * math::Vec3{mm[0], mm[1], mm[2]}), 0,
-                1e-9)
+    EXPECT_NEAR(math::Distance(report.patient.PortOf(use)->position, 0.001 * math::Vec3{mm[0], mm[1], mm[2]}),
+                0, 1e-9)
         << NameOf(use);
   }
   EXPECT_THAT(report.patient.PortOf(patient::PortUse::kAssistant)->reason,
@@ -405,13 +413,14 @@ TEST_F(NeighboursFromLabels, AreFoundByNamesAndByTheFirstVersionsNumbers) {
   first.Rename(kTotalL4, 19), first.Rename(kTotalL3, 20), first.Rename(kTotalL2, 21),
       first.Rename(kTotalRib, 76);
   const BuildReport by_numbers = Build(first);
-  for (const roles::NeighbourRole role : {roles::NeighbourRole::kColon, roles::NeighbourRole::kDuodenum, roles::NeighbourRole::kAorta,
-                                   roles::NeighbourRole::kVenaCava, roles::NeighbourRole::kSpine, roles::NeighbourRole::kRibs})
+  for (const roles::NeighbourRole role :
+       {roles::NeighbourRole::kColon, roles::NeighbourRole::kDuodenum, roles::NeighbourRole::kAorta,
+        roles::NeighbourRole::kVenaCava, roles::NeighbourRole::kSpine, roles::NeighbourRole::kRibs})
     EXPECT_TRUE(by_numbers.patient.NeighbourOf(role)->is_seen) << roles::NameOf(role);
-  EXPECT_NEAR(1e6 *
-                  geometry::InspectMesh(by_numbers.patient.NeighbourOf(roles::NeighbourRole::kColon)->mesh).volume /
-                  first.VolumeOf(57),
-              1.0, 0.02);
+  EXPECT_NEAR(
+      1e6 * geometry::InspectMesh(by_numbers.patient.NeighbourOf(roles::NeighbourRole::kColon)->mesh).volume /
+          first.VolumeOf(57),
+      1.0, 0.02);
 }
 
 // What TotalSegmentator writes without --ml: a folder of masks.
@@ -434,8 +443,8 @@ TEST_F(NeighboursFromLabels, ComeFromAFolderOfMasks) {
   options.spacing_mm = 2.0;
   const auto report = BuildPatientFromLabels(options);
   ASSERT_TRUE(report.ok()) << report.error().Text();
-  for (const roles::NeighbourRole role :
-       {roles::NeighbourRole::kStomach, roles::NeighbourRole::kColon, roles::NeighbourRole::kRightKidney, roles::NeighbourRole::kSpine})
+  for (const roles::NeighbourRole role : {roles::NeighbourRole::kStomach, roles::NeighbourRole::kColon,
+                                          roles::NeighbourRole::kRightKidney, roles::NeighbourRole::kSpine})
     EXPECT_TRUE(report->patient.NeighbourOf(role)->is_seen) << roles::NameOf(role);
   EXPECT_FALSE(report->patient.NeighbourOf(roles::NeighbourRole::kDuodenum)->is_seen);
   EXPECT_THAT(report->patient.PortOf(patient::PortUse::kLaparoscope)->reason,
@@ -500,7 +509,8 @@ TEST(PatientSurroundings, AreLeftOutOfAFileThatHasNone) {
 }
 
 TEST(PatientSurroundings, ThatAreInconsistentAreRefused) {
-  patient::Patient patient = *files::ReadPatient(fs::path(TROCAR_SOURCE_DIR) / "assets/patients/visible-human-male/patient");
+  patient::Patient patient =
+      *files::ReadPatient(fs::path(TROCAR_SOURCE_DIR) / "assets/patients/visible-human-male/patient");
   const auto why = [&] { return patient::CheckPatient(patient).error().message; };
   patient.ports = {{patient::PortUse::kAssistant, {}, "a"}, {patient::PortUse::kAssistant, {0.1, 0, 0}, "b"}};
   EXPECT_THAT(why(), HasSubstr("two ports for assistant"));

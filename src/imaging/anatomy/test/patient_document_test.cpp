@@ -40,7 +40,8 @@ PatientDocument OpenBuiltIn() {
 }
 
 base::Status MoveFundus(patient::Patient& patient) {
-  return PlaceLandmark(patient, "fundus", patient.FindLandmark("fundus")->position + math::Vec3{0.003, 0, 0.002});
+  return PlaceLandmark(patient, "fundus",
+                       patient.FindLandmark("fundus")->position + math::Vec3{0.003, 0, 0.002});
 }
 
 /// One random edit; many fail, as a person's do.

@@ -18,7 +18,8 @@ namespace {
 
 const patient::Patient& BuiltIn() {
   static const patient::Patient patient = [] {
-    auto read = files::ReadPatient(std::string(TROCAR_SOURCE_DIR) + "/assets/patients/visible-human-male/patient");
+    auto read =
+        files::ReadPatient(std::string(TROCAR_SOURCE_DIR) + "/assets/patients/visible-human-male/patient");
     EXPECT_TRUE(read.ok()) << read.error().Text();
     return *read;
   }();
@@ -29,7 +30,8 @@ std::uint32_t TubeIndex(const patient::Patient& patient, std::string_view name) 
       std::find_if(patient.tubes.begin(), patient.tubes.end(), [&](auto& t) { return t.name == name; });
   return static_cast<std::uint32_t>(found - patient.tubes.begin());
 }
-const patient::Region& RegionOf(const patient::Patient& patient, std::string_view organ, std::string_view name) {
+const patient::Region& RegionOf(const patient::Patient& patient, std::string_view organ,
+                                std::string_view name) {
   const auto& regions = patient.organs[patient.FindOrgan(organ)].regions;
   return *std::find_if(regions.begin(), regions.end(), [&](auto& r) { return r.name == name; });
 }

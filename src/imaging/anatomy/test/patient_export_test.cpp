@@ -13,9 +13,9 @@
 #include <sstream>
 #include <string>
 
+#include "trocar/files/mesh_file.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/files/mesh_file.h"
 #include "trocar/patient/patient.h"
 #include "trocar_test/temporary_folder.h"
 

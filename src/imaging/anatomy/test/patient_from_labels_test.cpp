@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "trocar/files/patient_file.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/patient/patient.h"
 #include "trocar_test/temporary_folder.h"
 

@@ -14,9 +14,9 @@
 #include <string>
 
 #include "trocar/files/patient_file.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/patient/patient.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -59,7 +59,8 @@ patient::Organ& Gallbladder(patient::Patient& p) {
   return p.organs[p.FindOrgan("gallbladder")];
 }
 patient::Tube& TubeOf(patient::Patient& p, std::string_view name) {
-  return *std::find_if(p.tubes.begin(), p.tubes.end(), [&](const patient::Tube& t) { return t.name == name; });
+  return *std::find_if(p.tubes.begin(), p.tubes.end(),
+                       [&](const patient::Tube& t) { return t.name == name; });
 }
 patient::Region& RegionOf(patient::Organ& organ, std::string_view name) {
   return *std::find_if(organ.regions.begin(), organ.regions.end(),
@@ -221,8 +222,16 @@ const Wrong kWrongs[] = {
      "vertex 7"},
     {"MeshEmpty", [](patient::Patient& p) { Liver(p).mesh = {}; }, {"L-MESH-EMPTY"}, "liver", "no triangle"},
     {"Metres", [](patient::Patient& p) { Scale(p, 1e-3); }, {"L-UNIT"}, "liver", "looks like metres"},
-    {"Centimetres", [](patient::Patient& p) { Scale(p, 0.1); }, {"L-UNIT"}, "liver", "looks like centimetres"},
-    {"Millimetres", [](patient::Patient& p) { Scale(p, 1e3); }, {"L-UNIT"}, "liver", "looks like millimetres"},
+    {"Centimetres",
+     [](patient::Patient& p) { Scale(p, 0.1); },
+     {"L-UNIT"},
+     "liver",
+     "looks like centimetres"},
+    {"Millimetres",
+     [](patient::Patient& p) { Scale(p, 1e3); },
+     {"L-UNIT"},
+     "liver",
+     "looks like millimetres"},
     {"UnitUnknown", [](patient::Patient& p) { Scale(p, 2.3); }, {"L-UNIT"}, "liver", "check the unit"},
     {"LeftRight",
      [](patient::Patient& p) {
@@ -279,8 +288,9 @@ const Wrong kWrongs[] = {
        organ.mesh = geometry::MakeSphere(middle, 0.005, 3);
        organ.regions[0].vertices = {0};
        p.attachments.clear();
-       std::erase_if(p.tubes,
-                     [](const patient::Tube& t) { return t.name == "cystic_duct" || t.name == "cystic_artery"; });
+       std::erase_if(p.tubes, [](const patient::Tube& t) {
+         return t.name == "cystic_duct" || t.name == "cystic_artery";
+       });
        for (auto& l : p.landmarks) {
          if (l.name == "fundus") l.position = middle + math::Vec3{0, -0.0035, 0.0035};
          if (l.name == "infundibulum") l.position = middle + math::Vec3{0, 0.0035, -0.0035};
@@ -290,7 +300,9 @@ const Wrong kWrongs[] = {
      "gallbladder",
      "plausible is 4.5"},
     {"RegionMissing",
-     [](patient::Patient& p) { std::erase_if(Liver(p).regions, [](auto& r) { return r.name == patient::kCoronary; }); },
+     [](patient::Patient& p) {
+       std::erase_if(Liver(p).regions, [](auto& r) { return r.name == patient::kCoronary; });
+     },
      {"L-REGION-MISSING"},
      "liver/coronary",
      "no such region"},
@@ -320,13 +332,16 @@ const Wrong kWrongs[] = {
      "visceral face"},
     {"RegionOnBed",
      [](patient::Patient& p) {
-       RegionOf(Liver(p), patient::kGallbladderBed).vertices = {RegionOf(Liver(p), patient::kCoronary).vertices.front()};
+       RegionOf(Liver(p), patient::kGallbladderBed).vertices = {
+           RegionOf(Liver(p), patient::kCoronary).vertices.front()};
      },
      {"L-REGION-VISCERAL"},
      "liver/coronary",
      "gallbladder bed"},
     {"AttachmentFar",
-     [](patient::Patient& p) { p.attachments[5].vertex_b = RegionOf(Liver(p), patient::kCoronary).vertices.front(); },
+     [](patient::Patient& p) {
+       p.attachments[5].vertex_b = RegionOf(Liver(p), patient::kCoronary).vertices.front();
+     },
      {"L-ATTACHMENT-FAR"},
      "gallbladder_bed",
      "1 of 832"},
@@ -379,8 +394,12 @@ const Wrong kWrongs[] = {
      "leads to the gallbladder"},
     {"TubeAlone",
      [](patient::Patient& p) {
-       p.tubes.push_back(
-           {"loose_duct", patient::TubeKind::kDuct, "", "", {{{0, 0, 0}, {0, 0.02, 0}}, {0.001, 0.001}}, true});
+       p.tubes.push_back({"loose_duct",
+                          patient::TubeKind::kDuct,
+                          "",
+                          "",
+                          {{{0, 0, 0}, {0, 0.02, 0}}, {0.001, 0.001}},
+                          true});
      },
      {"L-TUBE-END"},
      "loose_duct",
@@ -435,7 +454,9 @@ const Wrong kWrongs[] = {
      "fundus",
      "place it"},
     {"InfundibulumMissing",
-     [](patient::Patient& p) { std::erase_if(p.landmarks, [](auto& l) { return l.name == "infundibulum"; }); },
+     [](patient::Patient& p) {
+       std::erase_if(p.landmarks, [](auto& l) { return l.name == "infundibulum"; });
+     },
      {"L-LANDMARK-MISSING"},
      "infundibulum",
      "place it"},

@@ -28,7 +28,7 @@ TEST(CalcBinomialDeviation, IsInStandardDeviations) {
 }
 
 std::vector<std::vector<patient::Parameter>> DrawMany(std::size_t count,
-                                             const std::vector<ParameterSetting>& settings) {
+                                                      const std::vector<ParameterSetting>& settings) {
   std::vector<std::vector<patient::Parameter>> all;
   for (std::size_t seed = 0; seed < count; ++seed) all.push_back(*DrawParameters(seed, settings));
   return all;

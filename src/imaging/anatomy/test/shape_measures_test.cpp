@@ -70,7 +70,8 @@ patient::Patient MakePear(const math::Vec3& axis, Profile radius) {
 
 TEST(ShapeMeasures, OfACylinderHalfInTheLiverAreKnown) {
   const double tilt = 0.5, turn = 0.3;
-  const math::Vec3 axis = {-std::cos(tilt) * std::sin(turn), -std::sin(tilt), std::cos(tilt) * std::cos(turn)};
+  const math::Vec3 axis = {-std::cos(tilt) * std::sin(turn), -std::sin(tilt),
+                           std::cos(tilt) * std::cos(turn)};
   const auto measures = MeasureShapes(MakePear(axis, [](double) { return 0.015; }));
   ASSERT_TRUE(measures.ok()) << measures.error().Text();
   EXPECT_NEAR(ValueOf(*measures, "liver_transverse"), 200, 1e-9);

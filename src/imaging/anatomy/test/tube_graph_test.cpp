@@ -13,8 +13,8 @@
 namespace trocar::anatomy {
 namespace {
 
-patient::Tube MakeTube(const char* name, patient::TubeKind kind, const char* from, const char* to, const math::Vec3& a,
-              const math::Vec3& b) {
+patient::Tube MakeTube(const char* name, patient::TubeKind kind, const char* from, const char* to,
+                       const math::Vec3& a, const math::Vec3& b) {
   patient::Tube tube{name, kind, from, to, {}, true};
   constexpr int kParts = 10;
   for (int i = 0; i <= kParts; ++i) {
@@ -53,7 +53,8 @@ TEST(TubeGraph, FindsJointsOrgansAndOpenEnds) {
   EXPECT_EQ(graph.pieces[2].first, 5u);
   EXPECT_EQ(graph.pieces[1].to, graph.pieces[2].from);
   EXPECT_EQ(graph.pieces[0].to, graph.pieces[1].to);
-  EXPECT_EQ(FindEnteringTubes(patient, graph, roles::OrganRole::kGallbladder), (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(FindEnteringTubes(patient, graph, roles::OrganRole::kGallbladder),
+            (std::vector<std::uint32_t>{0, 2}));
   EXPECT_TRUE(FindEnteringTubes(patient, graph, roles::OrganRole::kLiver).empty());
   EXPECT_EQ(FindConnectedTubes(patient, graph, 0), (std::vector<std::uint32_t>{0, 1}));
   EXPECT_EQ(FindConnectedTubes(patient, graph, 2), (std::vector<std::uint32_t>{2}));
@@ -81,8 +82,8 @@ TEST(TubeGraph, FindsCyclesOfOneKindOnly) {
   EXPECT_TRUE(FindCycleTubes(patient, MakeTubeGraph(patient)).empty());
   // two ducts between the gallbladder and the main duct: through an organ, so no cycle
   patient = MakePatient();
-  patient.tubes.push_back(
-      MakeTube("second", patient::TubeKind::kDuct, "gallbladder", "main", {0.0199, 0.002, 0}, {0.0495, 0.02, 0}));
+  patient.tubes.push_back(MakeTube("second", patient::TubeKind::kDuct, "gallbladder", "main",
+                                   {0.0199, 0.002, 0}, {0.0495, 0.02, 0}));
   EXPECT_TRUE(FindCycleTubes(patient, MakeTubeGraph(patient)).empty());
   // a duct that hangs on the cycle is not part of it
   patient.tubes.push_back(
@@ -137,7 +138,8 @@ TEST(TubeGraph, GeneratedPatientIsOneTreeOfDuctsAndOneOfArteries) {
     (patient->tubes[t].kind == patient::TubeKind::kDuct ? ducts : arteries) += 1;
   }
   EXPECT_EQ(FindConnectedTubes(*patient, graph, static_cast<std::uint32_t>(cystic)).size(), ducts);
-  EXPECT_EQ(FindEnteringTubes(*patient, graph, roles::OrganRole::kGallbladder).size(), 3u);  // duct and two arteries
+  EXPECT_EQ(FindEnteringTubes(*patient, graph, roles::OrganRole::kGallbladder).size(),
+            3u);  // duct and two arteries
   // joints are exact: every node's vertices share one place
   for (const TubeNode& node : graph.nodes) {
     EXPECT_NE(node.kind, TubeNode::Kind::kNowhere);

@@ -97,9 +97,9 @@ TEST(UnseenAnatomy, NumbersAreTheMiddleOrTheHarderEndAndSayTheirSource) {
   EXPECT_DOUBLE_EQ(NumberOf(*middle, "gallstone_count"), 1.0) << "whole";
   EXPECT_DOUBLE_EQ(NumberOf(*middle, "adhesions"), 0.0);
   EXPECT_DOUBLE_EQ(NumberOf(*hard, "adhesions"), 0.5);
-  const auto& insertion = *std::find_if(middle->begin(), middle->end(), [](const patient::Parameter& parameter) {
-    return parameter.name == "cystic_duct_insertion";
-  });
+  const auto& insertion = *std::find_if(
+      middle->begin(), middle->end(),
+      [](const patient::Parameter& parameter) { return parameter.name == "cystic_duct_insertion"; });
   EXPECT_THAT(insertion.source, HasSubstr("n = 198; 56.4 % of people"));
   for (const patient::Parameter& parameter : *middle) {
     EXPECT_TRUE(IsUnseenParameter(parameter.name)) << parameter.name;
@@ -170,7 +170,8 @@ TEST(UnseenAnatomy, KeepsDuctsAndArteriesThatAreSeen) {
 
 TEST(UnseenAnatomy, NeedsOrgansAndANeck) {
   patient::Patient patient = SomePatient();
-  std::erase_if(patient.landmarks, [](const patient::Landmark& it) { return it.role == roles::LandmarkRole::kInfundibulum; });
+  std::erase_if(patient.landmarks,
+                [](const patient::Landmark& it) { return it.role == roles::LandmarkRole::kInfundibulum; });
   const auto variants = RankUnseenVariants();
   const auto parameters = MakeUnseenParameters(variants->front(), UnseenNumbers::kMiddle);
   const auto completed = CompletePatient(patient, "", variants->front(), *parameters);

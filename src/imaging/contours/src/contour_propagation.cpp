@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "edge_strip.h"
-#include "trocar/contours/contour_spline.h"
 #include "trocar/base/assert.h"
+#include "trocar/contours/contour_spline.h"
 
 namespace trocar::contours {
 namespace {

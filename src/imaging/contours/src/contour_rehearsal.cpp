@@ -8,9 +8,9 @@
 #include <set>
 
 #include "edge_strip.h"
+#include "trocar/base/assert.h"
 #include "trocar/contours/build_organs.h"
 #include "trocar/contours/contour_spline.h"
-#include "trocar/base/assert.h"
 #include "trocar/images/png_file.h"
 #include "trocar/math/elementary.h"
 

@@ -9,9 +9,9 @@
 #include <stop_token>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/contours/build_organs.h"
 #include "trocar/contours/control_points.h"
-#include "trocar/base/result.h"
 #include "trocar/meshing/volume.h"
 
 namespace trocar::contours {

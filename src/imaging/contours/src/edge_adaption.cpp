@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "trocar/contours/contour_spline.h"
 #include "trocar/base/assert.h"
+#include "trocar/contours/contour_spline.h"
 
 namespace trocar::contours {
 namespace {

@@ -7,10 +7,10 @@
 #include <map>
 #include <utility>
 
+#include "trocar/base/assert.h"
 #include "trocar/contours/contour_fill.h"
 #include "trocar/contours/contour_spline.h"
 #include "trocar/contours/reference_contours.h"
-#include "trocar/base/assert.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::contours {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "trocar/contours/edge_field.h"
 #include "trocar/base/assert.h"
+#include "trocar/contours/edge_field.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::contours {

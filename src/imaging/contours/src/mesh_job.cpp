@@ -7,8 +7,8 @@
 
 #include "trocar/contours/contour_fill.h"
 #include "trocar/contours/contour_morph.h"
-#include "trocar/host/clock.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/host/clock.h"
 #include "trocar/meshing/volume.h"
 #include "trocar/meshing/volume_mesher.h"
 

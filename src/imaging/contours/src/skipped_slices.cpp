@@ -9,9 +9,9 @@
 #include "edge_path.h"
 #include "even_places.h"
 #include "tissue_colours.h"
+#include "trocar/base/assert.h"
 #include "trocar/contours/contour_fill.h"
 #include "trocar/contours/contour_spline.h"
-#include "trocar/base/assert.h"
 
 namespace trocar::contours {
 namespace {

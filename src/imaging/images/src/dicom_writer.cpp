@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/images/ct_render.h"
 
 namespace trocar::images {

@@ -7,15 +7,15 @@
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/anatomy/generate_patient.h"
-#include "trocar/files/patient_file.h"
-#include "trocar/files/scene_file.h"
-#include "trocar/host/threads.h"
-#include "trocar/patient/patient.h"
 #include "trocar/assessment/play_state.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/files/patient_file.h"
+#include "trocar/files/scene_file.h"
 #include "trocar/host/text_table.h"
+#include "trocar/host/threads.h"
 #include "trocar/host/user_folder.h"
 #include "trocar/host/version.h"
+#include "trocar/patient/patient.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::assessment {

@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "trocar/host/json.h"
-#include "trocar/host/json_text.h"
-#include "trocar/simulation/attempt_end.h"
 #include "trocar/cholecystectomy/critical_view.h"
 #include "trocar/cholecystectomy/injury.h"
 #include "trocar/cholecystectomy/operation_error.h"
+#include "trocar/host/json.h"
+#include "trocar/host/json_text.h"
+#include "trocar/simulation/attempt_end.h"
 
 namespace trocar::record {
 namespace {

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "trocar/host/json.h"
-#include "trocar/host/json_text.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/cholecystectomy/operation_error.h"
+#include "trocar/host/json.h"
+#include "trocar/host/json_text.h"
 
 namespace trocar::record {
 namespace {

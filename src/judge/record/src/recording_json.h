@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/record/recording.h"
 #include "trocar/scene/event.h"
 #include "trocar/scene/task.h"
-#include "trocar/cholecystectomy/triplet.h"
 
 namespace trocar::record {
 

@@ -57,9 +57,11 @@ base::Result<Replay> Replay::Open(Recording recording, const ReplaySettings& set
   }
   auto scene = MakeScene(recording.description);
   if (!scene.ok()) return scene.error();
-  auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*scene)), host::UseThreads(settings.threads));
+  auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*scene)),
+                                               host::UseThreads(settings.threads));
   if (!model.ok()) return model.error();
-  auto made = Simulation::Make(*model, {.threads = host::UseThreads(settings.threads), .now = host::NowNanoseconds});
+  auto made =
+      Simulation::Make(*model, {.threads = host::UseThreads(settings.threads), .now = host::NowNanoseconds});
   if (!made.ok()) return made.error();
   const Description& d = recording.description;
   if (made->ModelFingerprint() != d.model) {

@@ -9,23 +9,23 @@
 #include <utility>
 #include <vector>
 
+#include "trocar/cholecystectomy/injury.h"
+#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/math/elementary.h"
 #include "trocar/record/replay.h"
 #include "trocar/simulation/attempt_end.h"
-#include "trocar/cholecystectomy/injury.h"
-#include "trocar/cholecystectomy/operation_error.h"
 
 namespace trocar::record {
 namespace {
 
+using cholecystectomy::OperationError;
 using math::Vec3;
 using scene::EventKind;
 using scene::SurfaceInfo;
 using simulation::InstrumentSnapshot;
 using simulation::Snapshot;
 using training::AttemptTrace;
-using cholecystectomy::OperationError;
 
 /// Between samples of what ran out [s].
 constexpr double kFluidSeconds = 1.0;

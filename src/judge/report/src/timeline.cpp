@@ -23,7 +23,8 @@ struct Lane {
   MarkKind kind;
 };
 constexpr std::array<Lane, 3> kLanes = {
-    {{cholecystectomy::Severity::kCritical, host::Mark("Critical errors"), Ink::kCritical, MarkKind::kDiamond},
+    {{cholecystectomy::Severity::kCritical, host::Mark("Critical errors"), Ink::kCritical,
+      MarkKind::kDiamond},
      {cholecystectomy::Severity::kMajor, host::Mark("Major errors"), Ink::kMajor, MarkKind::kTriangle},
      {cholecystectomy::Severity::kMinor, host::Mark("Minor errors"), Ink::kMinor, MarkKind::kDot}}};
 
@@ -81,9 +82,10 @@ void AddForce(Drawing& drawing, const AttemptReport& report, std::size_t hand, c
   }
   for (const ErrorRow& error : report.errors) {
     if (error.severity == cholecystectomy::Severity::kMinor) continue;
-    drawing.shapes.emplace_back(Line{
-        frame.Map(std::vector<Vec2>{{error.time, frame.y.low}, {error.time, frame.y.high}}),
-        error.severity == cholecystectomy::Severity::kCritical ? Ink::kCritical : Ink::kMajor, 0.8, Dash::kDotted});
+    drawing.shapes.emplace_back(
+        Line{frame.Map(std::vector<Vec2>{{error.time, frame.y.low}, {error.time, frame.y.high}}),
+             error.severity == cholecystectomy::Severity::kCritical ? Ink::kCritical : Ink::kMajor, 0.8,
+             Dash::kDotted});
   }
   drawing.shapes.emplace_back(
       Line{frame.Map(report.hands[hand].force), hand == 0 ? Ink::kLeft : Ink::kRight, 1.3});

@@ -38,7 +38,8 @@ inline training::AttemptTrace MakeTrace(double seconds, bool is_operation) {
   }
   trace.is_operation = is_operation;
   training::AttemptEvent error;
-  const auto add = [&](double time, cholecystectomy::Severity severity, int hand, int organ, const char* text) {
+  const auto add = [&](double time, cholecystectomy::Severity severity, int hand, int organ,
+                       const char* text) {
     error.time = time, error.kind = "an_error", error.hand = hand, error.organ = organ;
     error.is_error = true, error.severity = severity, error.text = text;
     trace.events.push_back(error);

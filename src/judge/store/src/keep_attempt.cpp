@@ -11,8 +11,8 @@
 
 #include "attempt_rows.h"
 #include "sql.h"
-#include "trocar/host/log.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/host/log.h"
 #include "trocar/host/version.h"
 #include "trocar/record/outcome.h"
 #include "trocar/record/replay.h"

@@ -15,10 +15,10 @@
 #include "database.h"
 #include "private_file.h"
 #include "sql.h"
+#include "trocar/base/state_hash.h"
 #include "trocar/host/json.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/base/state_hash.h"
 
 namespace trocar::store {
 namespace {

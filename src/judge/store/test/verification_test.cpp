@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "store_test.h"
+#include "trocar/files/find_scene.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/host/version.h"
 #include "trocar/record/recorder.h"
-#include "trocar/files/find_scene.h"
 #include "trocar/store/keep_attempt.h"
 #include "trocar/store/maintenance.h"
 

@@ -165,7 +165,9 @@ std::vector<ToolSample> ReadHand(const JsonView& view, std::size_t ticks, std::s
 
 cholecystectomy::Severity ReadSeverity(const JsonView& view) {
   const std::string text = view.Text("severity");
-  for (const cholecystectomy::Severity severity : {cholecystectomy::Severity::kMinor, cholecystectomy::Severity::kMajor, cholecystectomy::Severity::kCritical}) {
+  for (const cholecystectomy::Severity severity :
+       {cholecystectomy::Severity::kMinor, cholecystectomy::Severity::kMajor,
+        cholecystectomy::Severity::kCritical}) {
     if (text == cholecystectomy::NameOf(severity)) return severity;
   }
   view.Complain("severity must be minor, major or critical");

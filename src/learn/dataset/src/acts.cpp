@@ -8,9 +8,9 @@
 namespace trocar::dataset {
 namespace {
 
-using instrument::ToolKind;
 using cholecystectomy::Target;
 using cholecystectomy::Verb;
+using instrument::ToolKind;
 
 constexpr double kRetraction = 0.3;  // N; what holds harder retracts
 constexpr double kMoment = 1.0;      // s for which a cut or a clip is seen as one

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/scene/input.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/snapshot.h"
-#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/view/labels.h"
 
 namespace trocar::dataset {

@@ -26,7 +26,8 @@ class Cholec80Writer : public VideoWriter {
   void Look(const simulation::Simulation& simulation, const scene::Input& /*input*/) override {
     const simulation::Snapshot& now = simulation.GetSnapshot();
     for (; static_cast<double>(frames_) <= kFramesPerSecond * (now.time - begin_) + 1e-6; ++frames_)
-      phases_ += std::to_string(frames_) + "\t" + std::string(cholecystectomy::NameOf(now.operation.phase)) + "\n";
+      phases_ +=
+          std::to_string(frames_) + "\t" + std::string(cholecystectomy::NameOf(now.operation.phase)) + "\n";
   }
 
   base::Status Add(const Frame& frame, const simulation::Simulation& /*simulation*/) override {

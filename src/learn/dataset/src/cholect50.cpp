@@ -10,11 +10,11 @@
 namespace trocar::dataset {
 namespace {
 
-using nlohmann::ordered_json;
 using cholecystectomy::InstrumentKind;
 using cholecystectomy::Target;
 using cholecystectomy::Triplet;
 using cholecystectomy::Verb;
+using nlohmann::ordered_json;
 
 constexpr int kInstruments = 6, kVerbs = 10, kTargets = 15;
 

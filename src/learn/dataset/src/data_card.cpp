@@ -5,11 +5,11 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "trocar/base/state_hash.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/printable_output.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/host/sha256.h"
-#include "trocar/base/state_hash.h"
 #include "trocar/host/version.h"
 
 namespace trocar::dataset {

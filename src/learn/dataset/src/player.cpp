@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "trocar/agent/surgeon.h"
-#include "trocar/record/replay.h"
 #include "trocar/files/find_scene.h"
+#include "trocar/record/replay.h"
 
 namespace trocar::dataset {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "layout_set.h"
-#include "trocar/host/json_text.h"
 #include "trocar/dataset/hdf5_file.h"
 #include "trocar/environment/demonstration.h"
+#include "trocar/host/json_text.h"
 #include "trocar/roles/roles.h"
 #include "trocar/view/labels.h"
 

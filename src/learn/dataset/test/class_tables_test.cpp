@@ -44,7 +44,8 @@ TEST(ClassTables, NumberTheTripletsOfCholecT50AsPublished) {
   EXPECT_EQ(find(InstrumentKind::kIrrigator, Verb::kNullVerb, Target::kNullTarget), 99);
   EXPECT_EQ(find(InstrumentKind::kHook, Verb::kPack, Target::kLiver), -1);
   std::set<std::string> names;
-  for (const cholecystectomy::Triplet& triplet : CholecT50Triplets()) names.insert(cholecystectomy::NameOf(triplet));
+  for (const cholecystectomy::Triplet& triplet : CholecT50Triplets())
+    names.insert(cholecystectomy::NameOf(triplet));
   EXPECT_EQ(names.size(), 100U);
 }
 

@@ -12,9 +12,9 @@
 #include "reward.h"
 #include "state_layout.h"
 #include "trocar/base/assert.h"
+#include "trocar/files/find_scene.h"
 #include "trocar/files/task_file.h"
 #include "trocar/math/random.h"
-#include "trocar/files/find_scene.h"
 #include "trocar/simulation/attempt_end.h"
 
 namespace trocar::environment {

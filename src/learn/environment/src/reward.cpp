@@ -84,8 +84,8 @@ void StandInTask(const scene::Scene& scene, const Snapshot& now, Standing& stand
   standing.goals = static_cast<double>(goals) / static_cast<double>(task.goals.size());
   standing.steps = static_cast<double>(steps) / static_cast<double>(std::max<std::size_t>(all_steps, 1));
   for (std::size_t i = 0; i < task.errors.size(); ++i) {
-    auto& count =
-        task.errors[i].severity == cholecystectomy::Severity::kCritical ? standing.critical_errors : standing.errors;
+    auto& count = task.errors[i].severity == cholecystectomy::Severity::kCritical ? standing.critical_errors
+                                                                                  : standing.errors;
     count += now.task.errors[i];
   }
 }

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "trocar/cholecystectomy/triangle_sight.h"
 #include "trocar/collision/triangle_tree.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
 #include "trocar/simulation/model_description.h"
-#include "trocar/cholecystectomy/triangle_sight.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::view {

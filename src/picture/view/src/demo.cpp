@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "trocar/host/clock.h"
 #include "trocar/base/statistics.h"
+#include "trocar/host/clock.h"
 #include "trocar/host/threads.h"
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"

@@ -12,10 +12,10 @@
 
 namespace trocar::view {
 
+using render::SrgbColour;
 using roles::OrganRole;
 using roles::RegionRole;
 using roles::TubeRole;
-using render::SrgbColour;
 namespace {
 
 void ReadColour(const host::JsonView& view, std::string_view key, SrgbColour& colour) {

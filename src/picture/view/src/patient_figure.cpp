@@ -8,8 +8,8 @@
 
 namespace trocar::view {
 
-using roles::OrganRole;
 using render::SrgbColour;
+using roles::OrganRole;
 namespace {
 
 constexpr int kTubeSides = 14;

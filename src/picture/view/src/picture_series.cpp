@@ -9,21 +9,21 @@
 #include <utility>
 
 #include "trocar/agent/surgeon.h"
-#include "trocar/host/clock.h"
 #include "trocar/base/state_archive.h"
 #include "trocar/base/statistics.h"
+#include "trocar/files/find_scene.h"
+#include "trocar/files/state_file.h"
+#include "trocar/host/clock.h"
 #include "trocar/host/threads.h"
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
-#include "trocar/files/find_scene.h"
-#include "trocar/files/state_file.h"
 
 namespace trocar::view {
 namespace {
 
-using simulation::Snapshot;
 using cholecystectomy::Phase;
+using simulation::Snapshot;
 
 constexpr double kLongestSitting = 900.0;  // s; no scripted attempt takes as long
 constexpr std::uint64_t kSeed = 1;

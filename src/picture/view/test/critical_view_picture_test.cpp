@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The doublet: two pictures of one state, from two sides of the cystic duct, drawn without changing anything.
+#include "trocar/view/critical_view_picture.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/files/task_file.h"
-#include "trocar/view/critical_view_picture.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "scene_reader.h"
-#include "trocar/files/scene_file.h"
 #include "trocar/files/operation_level_file.h"
+#include "trocar/files/scene_file.h"
 
 namespace trocar::files {
 
@@ -22,7 +22,7 @@ base::Result<scene::Scene> FindScene(const std::string& name_or_path, const Task
 }
 
 base::Result<scene::Scene> ParseScene(const std::string& text, const std::filesystem::path& source,
-                               const TaskChoice& choice) {
+                                      const TaskChoice& choice) {
   const auto document = host::JsonDocument::Parse(text, source.string());
   if (!document.ok()) return document.error();
   if (document->Root().TextOr("format", "") == "trocar-task") return ParseTask(text, source, choice);

@@ -104,8 +104,8 @@ class PathReader {
 };
 
 /// Stops, and groups of them that are repeated for each of some items.
-std::vector<Vec3> ReadHandPath(const std::vector<JsonView>& entries, const scene::Scene& scene, const scene::Task& task,
-                               std::size_t hand) {
+std::vector<Vec3> ReadHandPath(const std::vector<JsonView>& entries, const scene::Scene& scene,
+                               const scene::Task& task, std::size_t hand) {
   const scene::InstrumentSetup& setup = scene.instruments[hand];
   PathReader reader(scene, task, instrument::CalcToolPose(setup.p_world_port, setup.home).translation);
   for (const JsonView& entry : entries) {

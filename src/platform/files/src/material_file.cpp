@@ -62,8 +62,8 @@ base::Result<scene::OrganMaterial> ReadMaterialFile(const std::filesystem::path&
 /// Materials of files that were read already, by path.
 using MaterialFiles = std::map<std::filesystem::path, scene::OrganMaterial>;
 
-base::Result<scene::OrganMaterial> ReadMaterial(const host::JsonView& view, const std::filesystem::path& folder,
-                                         MaterialFiles& files) {
+base::Result<scene::OrganMaterial> ReadMaterial(const host::JsonView& view,
+                                                const std::filesystem::path& folder, MaterialFiles& files) {
   scene::OrganMaterial material;
   if (view.Has("file")) {
     view.AllowOnly({"organ", "file"});
@@ -89,7 +89,7 @@ base::Result<scene::OrganMaterial> ReadMaterial(const host::JsonView& view, cons
 }  // namespace
 
 base::Result<std::vector<scene::OrganMaterial>> ReadMaterials(const host::JsonView& scene,
-                                                       const std::filesystem::path& folder) {
+                                                              const std::filesystem::path& folder) {
   std::vector<scene::OrganMaterial> materials;
   std::set<std::string> organs;
   MaterialFiles files;

@@ -16,6 +16,6 @@ namespace trocar::files {
 /// \param folder  of the scene
 /// \return the file's error; kJsonField when a figure has no source. Complains in the document about an organ named twice
 base::Result<std::vector<scene::OrganMaterial>> ReadMaterials(const host::JsonView& scene,
-                                                       const std::filesystem::path& folder);
+                                                              const std::filesystem::path& folder);
 
 }  // namespace trocar::files

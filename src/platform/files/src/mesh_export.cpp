@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "trocar/base/assert.h"
+#include "trocar/geometry/mesh_measures.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/version.h"
-#include "trocar/geometry/mesh_measures.h"
 
 namespace trocar::files {
 namespace {

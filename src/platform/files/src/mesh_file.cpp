@@ -9,8 +9,8 @@
 #include <sstream>
 #include <vector>
 
-#include "trocar/host/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/host/safe_file.h"
 
 namespace trocar::files {
 namespace {
@@ -250,7 +250,8 @@ base::Result<geometry::TriangleMesh> ReadPly(const std::filesystem::path& path) 
   return ParsePly(*content, path.string());
 }
 
-base::Status WritePly(const std::filesystem::path& path, const geometry::TriangleMesh& mesh, std::string_view comment) {
+base::Status WritePly(const std::filesystem::path& path, const geometry::TriangleMesh& mesh,
+                      std::string_view comment) {
   return host::WriteFile(path, FormatPly(mesh, comment));
 }
 

@@ -206,7 +206,7 @@ void ReadSuction(const JsonView& root, scene::OperationParameters& made) {
 }  // namespace
 
 base::Result<scene::OperationParameters> ReadOperationParameters(const std::filesystem::path& path,
-                                                          const std::string& patch) {
+                                                                 const std::string& patch) {
   auto document = ReadPatched(path, patch);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();

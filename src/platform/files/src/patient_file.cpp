@@ -10,14 +10,14 @@
 #include <set>
 #include <system_error>
 
-#include "trocar/files/patient_frame.h"
 #include "patient_surroundings.h"
+#include "trocar/files/mesh_file.h"
+#include "trocar/files/patient_frame.h"
+#include "trocar/geometry/mesh_measures.h"
 #include "trocar/host/json.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/partial_path.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/files/mesh_file.h"
-#include "trocar/geometry/mesh_measures.h"
 #include "trocar/patient/patient.h"
 
 namespace trocar::files {
@@ -293,7 +293,7 @@ base::Status WritePatient(const fs::path& folder, const patient::Patient& patien
   if (failure) return fail(failure.message());
   const auto write_mesh = [&](const auto& thing) {
     return files::WritePly(partial / (thing.name + ".ply"), Converted(thing.mesh, ToLps),
-                              "LPS millimetres, " + thing.name);
+                           "LPS millimetres, " + thing.name);
   };
   for (const patient::Organ& organ : patient.organs) {
     if (const auto status = write_mesh(organ); !status.ok()) return fail(status.error().message);

@@ -55,8 +55,9 @@ void ReadSurroundings(const JsonView& root, patient::Patient& patient) {
   if (root.Has("table")) {
     const JsonView view = root.Object("table");
     view.AllowOnly({"head_up_deg", "right_up_deg", "reason"});
-    patient.table = patient::Table{math::kDegree * view.Number("head_up_deg", kTableDeg),
-                          math::kDegree * view.Number("right_up_deg", kTableDeg), view.Text("reason")};
+    patient.table =
+        patient::Table{math::kDegree * view.Number("head_up_deg", kTableDeg),
+                       math::kDegree * view.Number("right_up_deg", kTableDeg), view.Text("reason")};
   }
   if (root.Has("labels")) {
     for (const JsonView& view : root.Array("labels")) {

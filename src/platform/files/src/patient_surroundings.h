@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/host/json.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::files {
 
@@ -16,6 +16,7 @@ namespace trocar::files {
 void ReadSurroundings(const host::JsonView& root, patient::Patient& patient);
 
 /// The top-level members that the patient needs for them, in their order; none for a patient without.
-std::vector<std::pair<std::string, nlohmann::ordered_json>> MakeSurroundingsJson(const patient::Patient& patient);
+std::vector<std::pair<std::string, nlohmann::ordered_json>> MakeSurroundingsJson(
+    const patient::Patient& patient);
 
 }  // namespace trocar::files

@@ -15,14 +15,14 @@
 #include "scene_reader.h"
 #include "script.h"
 #include "tissue_model_file.h"
+#include "trocar/files/operation_level_file.h"
+#include "trocar/files/operation_parameters_file.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/json.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/patient/patient.h"
-#include "trocar/files/operation_level_file.h"
-#include "trocar/files/operation_parameters_file.h"
 
 namespace trocar::files {
 namespace {
@@ -131,8 +131,8 @@ base::Status ReadParameters(const host::JsonView& root, const std::filesystem::p
   return {};
 }
 
-void ReadLaparoscope(const host::JsonView& root, const patient::Patient& patient, scene::LaparoscopeSetup& setup,
-                     scene::LiveSettings& settings) {
+void ReadLaparoscope(const host::JsonView& root, const patient::Patient& patient,
+                     scene::LaparoscopeSetup& setup, scene::LiveSettings& settings) {
   const host::JsonView view = root.Object("laparoscope");
   view.AllowOnly({"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg",
                   "look_at_target", "holder"});
@@ -212,9 +212,9 @@ void ReadSettings(const host::JsonView& root, scene::LiveSettings& settings) {
 }  // namespace
 
 base::Result<scene::Scene> ReadSceneFields(const host::JsonDocument& document, const host::JsonView& view,
-                                    const std::filesystem::path& folder,
-                                    const std::filesystem::path& patient_folder,
-                                    const scene::OperationLevel& level) {
+                                           const std::filesystem::path& folder,
+                                           const std::filesystem::path& patient_folder,
+                                           const scene::OperationLevel& level) {
   view.AllowOnly({"format", "version", "name", "about", "patient", "tick_hz", "seed", "settings", "materials",
                   "instruments", "laparoscope", "script", "operation", "objects", "model"});
   scene::Scene scene;
@@ -254,8 +254,10 @@ base::Result<scene::Scene> ReadSceneFields(const host::JsonDocument& document, c
     scene.settings.head_up = scene.patient.table->head_up;
     scene.settings.right_up = scene.patient.table->right_up;
   }
-  ReadInstrument(view, "left", scene.patient, patient::PortUse::kLeftHand, scene.instruments[instrument::kLeft]);
-  ReadInstrument(view, "right", scene.patient, patient::PortUse::kRightHand, scene.instruments[instrument::kRight]);
+  ReadInstrument(view, "left", scene.patient, patient::PortUse::kLeftHand,
+                 scene.instruments[instrument::kLeft]);
+  ReadInstrument(view, "right", scene.patient, patient::PortUse::kRightHand,
+                 scene.instruments[instrument::kRight]);
   ReadLaparoscope(view, scene.patient, scene.laparoscope, scene.settings);
   ReadOperation(view, scene.patient, scene);
   CheckPorts(view, scene);
@@ -275,8 +277,8 @@ base::Result<scene::Scene> ReadSceneFields(const host::JsonDocument& document, c
 }
 
 base::Result<scene::Scene> ParsePlainScene(const std::string& text, const std::filesystem::path& source,
-                                    const std::filesystem::path& patient_folder,
-                                    const scene::OperationLevel& level) {
+                                           const std::filesystem::path& patient_folder,
+                                           const scene::OperationLevel& level) {
   auto document = ParsePatched(text, source.string(), level.scene_patch);
   if (!document.ok()) return document.error();
   const host::JsonView root = document->Root();
@@ -289,15 +291,15 @@ base::Result<scene::Scene> ParsePlainScene(const std::string& text, const std::f
 }
 
 base::Result<scene::Scene> ReadScene(const std::filesystem::path& path,
-                              const std::filesystem::path& patient_folder) {
+                                     const std::filesystem::path& patient_folder) {
   const auto text = host::ReadFile(path);
   if (!text.ok()) return text.error();
   return ParsePlainScene(*text, path, patient_folder, {});
 }
 
 base::Result<std::optional<scene::Scene>> FindOperation(const std::string& name,
-                                                 const std::filesystem::path& patient_folder,
-                                                 std::uint64_t seed, const std::string& level) {
+                                                        const std::filesystem::path& patient_folder,
+                                                        std::uint64_t seed, const std::string& level) {
   std::filesystem::path path = name;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {

@@ -52,7 +52,8 @@ base::Result<scene::Script> ReadScript(const std::filesystem::path& path, const 
                       base::ErrorCode::kUnknownName);
         continue;
       }
-      const math::Vec3 offset = pose.Has("offset_mm") ? ReadPointMm(pose, "offset_mm", range::kOffsetMm) : math::Vec3{};
+      const math::Vec3 offset =
+          pose.Has("offset_mm") ? ReadPointMm(pose, "offset_mm", range::kOffsetMm) : math::Vec3{};
       key.p_world_tip[hand] = landmark->position + offset;
       key.spin[hand] =
           pose.NumberOr("spin_deg", key.spin[hand] / math::kDegree, range::kTurnDeg) * math::kDegree;

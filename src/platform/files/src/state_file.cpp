@@ -6,8 +6,8 @@
 #include <cstring>
 #include <string_view>
 
-#include "trocar/host/safe_file.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/host/safe_file.h"
 
 namespace trocar::files {
 namespace {

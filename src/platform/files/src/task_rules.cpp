@@ -86,7 +86,8 @@ class RulesReader {
                        Fill(view.Text("sheet"), item), "sheet");
     if (c.kind == scene::ConditionKind::kCutOffLine)
       c.amount = 1e-3 * view.Number("distance_mm", range::kCutDistanceMm);
-    if (c.kind == scene::ConditionKind::kCutAreaOff) c.amount = 1e-6 * view.Number("area_mm2", range::kCutAreaMm2);
+    if (c.kind == scene::ConditionKind::kCutAreaOff)
+      c.amount = 1e-6 * view.Number("area_mm2", range::kCutAreaMm2);
   }
 
   scene::Condition ReadCondition(const JsonView& view, const std::string& item) const {
@@ -100,7 +101,8 @@ class RulesReader {
     if (!known) {
       std::string names;
       for (int i = 0; i < static_cast<int>(scene::ConditionKind::kCount); ++i)
-        names += (i == 0 ? "" : ", ") + std::string(scene::ConditionName(static_cast<scene::ConditionKind>(i)));
+        names +=
+            (i == 0 ? "" : ", ") + std::string(scene::ConditionName(static_cast<scene::ConditionKind>(i)));
       view.Complain("there is no rule \"" + kind + "\"; known are " + names, ErrorCode::kUnknownName);
       return c;
     }
@@ -222,7 +224,8 @@ class RulesReader {
  private:
   static std::optional<scene::ConditionKind> FindKind(std::string_view name) {
     for (int i = 0; i < static_cast<int>(scene::ConditionKind::kCount); ++i) {
-      if (scene::ConditionName(static_cast<scene::ConditionKind>(i)) == name) return static_cast<scene::ConditionKind>(i);
+      if (scene::ConditionName(static_cast<scene::ConditionKind>(i)) == name)
+        return static_cast<scene::ConditionKind>(i);
     }
     return std::nullopt;
   }

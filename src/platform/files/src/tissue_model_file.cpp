@@ -95,7 +95,7 @@ patient::Organ MakeSheet(const scene::ModelSheet& sheet) {
       if (i == 0 || j == 0 || i == columns || j == rows)
         organ.regions[0].vertices.push_back(static_cast<std::uint32_t>(organ.mesh.positions.size()));
       organ.mesh.positions.push_back(sheet.centre + math::Vec3{sheet.half.x * (2.0 * i / columns - 1),
-                                                         sheet.half.y * (2.0 * j / rows - 1), 0});
+                                                               sheet.half.y * (2.0 * j / rows - 1), 0});
     }
   }
   const auto at = [&](std::uint32_t i, std::uint32_t j) { return j * (columns + 1) + i; };

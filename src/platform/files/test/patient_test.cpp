@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <limits>
 
-#include "trocar/host/safe_file.h"
 #include "trocar/files/mesh_file.h"
 #include "trocar/geometry/primitives.h"
+#include "trocar/host/safe_file.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::files {
@@ -28,14 +28,18 @@ patient::Patient MakePatient() {
        {{patient::kDiaphragmaticFace, {1, 5, 9}}, {patient::kFalciform, {}}}},
       {"gallbladder", geometry::MakeSphere({0, 0.04, -0.1}, 0.01, 1), {{patient::kGallbladderBed, {0, 2}}}}};
   patient.attachments = {{patient::kGallbladderBed, 1, 0, 0, 4}, {patient::kGallbladderBed, 1, 2, 0, 7}};
-  patient.tubes = {
-      {"common_bile_duct", patient::TubeKind::kDuct, "", "", {{{0, 0, 0}, {0.01, 0, 0}}, {0.003, 0.0025}}, true},
-      {"cystic_artery",
-       patient::TubeKind::kArtery,
-       "common_bile_duct",
-       "gallbladder",
-       {{{0, 0, 0}, {0, 0.01, 0}}, {0.001, 0.001}},
-       false}};
+  patient.tubes = {{"common_bile_duct",
+                    patient::TubeKind::kDuct,
+                    "",
+                    "",
+                    {{{0, 0, 0}, {0.01, 0, 0}}, {0.003, 0.0025}},
+                    true},
+                   {"cystic_artery",
+                    patient::TubeKind::kArtery,
+                    "common_bile_duct",
+                    "gallbladder",
+                    {{{0, 0, 0}, {0, 0.01, 0}}, {0.001, 0.001}},
+                    false}};
   patient.landmarks = {{"umbilicus", {0, 0, 0}}, {"fundus", {-0.075, 0.095, -0.07}}};
   return patient;
 }
@@ -80,7 +84,8 @@ TEST_F(PatientFolder, StatesTheRolesThatNamesDoNotSay) {
   EXPECT_EQ(read->TubeOf(roles::TubeRole::kCommonBileDuct), 0);
   EXPECT_EQ(read->TubeOf(roles::TubeRole::kCysticDuct), -1);
   ASSERT_NE(read->LandmarkOf(roles::LandmarkRole::kFundus), nullptr);
-  EXPECT_EQ(read->FindLandmark("fundus"), read->LandmarkOf(roles::LandmarkRole::kFundus)) << "found by its role";
+  EXPECT_EQ(read->FindLandmark("fundus"), read->LandmarkOf(roles::LandmarkRole::kFundus))
+      << "found by its role";
   EXPECT_EQ(read->FindLandmark("apex"), read->LandmarkOf(roles::LandmarkRole::kFundus));
   EXPECT_EQ(read->FindLandmark("other"), nullptr);
 }
@@ -232,7 +237,8 @@ TEST(CheckPatient, FindsEachFault) {
   EXPECT_EQ(code_after([](patient::Patient&) {}), ErrorCode::kNone);
   EXPECT_EQ(code_after([](patient::Patient& p) { p.organs.clear(); }), ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](patient::Patient& p) { p.organs[1].name = "liver"; }), ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](patient::Patient& p) { p.organs[1].name = "../liver"; }), ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](patient::Patient& p) { p.organs[1].name = "../liver"; }),
+            ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](patient::Patient& p) {
               for (auto& t : p.organs[0].mesh.triangles) std::swap(t[0], t[1]);
             }),
@@ -241,12 +247,16 @@ TEST(CheckPatient, FindsEachFault) {
               p.organs[0].regions[0].vertices = {5, 1};
             }),
             ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](patient::Patient& p) { p.attachments[0].organ_b = 2; }), ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](patient::Patient& p) { p.attachments[0].vertex_b = 1u << 30; }), ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](patient::Patient& p) { p.tubes[0].line.radii[0] = 0; }), ErrorCode::kPatientInvalid);
-  EXPECT_EQ(
-      code_after([](patient::Patient& p) { p.tubes[0].line.points[0].x = std::numeric_limits<double>::quiet_NaN(); }),
-      ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](patient::Patient& p) { p.attachments[0].organ_b = 2; }),
+            ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](patient::Patient& p) { p.attachments[0].vertex_b = 1u << 30; }),
+            ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](patient::Patient& p) { p.tubes[0].line.radii[0] = 0; }),
+            ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](patient::Patient& p) {
+              p.tubes[0].line.points[0].x = std::numeric_limits<double>::quiet_NaN();
+            }),
+            ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](patient::Patient& p) { p.tubes[1].from = "aorta"; }), ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](patient::Patient& p) {
               p.organs[0].mesh.positions[0].x = std::numeric_limits<double>::infinity();
@@ -260,7 +270,8 @@ TEST(CheckPatient, FindsEachFault) {
               p.parameters = {{"a", std::numeric_limits<double>::quiet_NaN(), "", ""}};
             }),
             ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](patient::Patient& p) { p.landmarks[1].name = "umbilicus"; }), ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](patient::Patient& p) { p.landmarks[1].name = "umbilicus"; }),
+            ErrorCode::kPatientInvalid);
 }
 
 }  // namespace

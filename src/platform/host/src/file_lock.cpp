@@ -43,15 +43,16 @@ base::Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
   for (int tries = 0; tries < kMostTries; ++tries) {
     const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor < 0) {
-      return base::Error{base::ErrorCode::kFileUnwritable,
-                   "cannot make the lock file " + Printable(path.string()) + ": " + std::strerror(errno)};
+      return base::Error{
+          base::ErrorCode::kFileUnwritable,
+          "cannot make the lock file " + Printable(path.string()) + ": " + std::strerror(errno)};
     }
     if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const long owner = ReadOwner(descriptor);
       close(descriptor);
-      return base::Error{base::ErrorCode::kFileInUse,
-                   Printable(path.string()) + " is held by " +
-                       (owner > 0 ? "process " + std::to_string(owner) : std::string("another program"))};
+      return base::Error{base::ErrorCode::kFileInUse, Printable(path.string()) + " is held by " +
+                                                          (owner > 0 ? "process " + std::to_string(owner)
+                                                                     : std::string("another program"))};
     }
     if (!IsStillThere(descriptor, path)) {
       close(descriptor);
@@ -62,7 +63,8 @@ base::Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
     if (ftruncate(descriptor, 0) == 0) (void)!pwrite(descriptor, owner.data(), owner.size(), 0);
     return FileLock(path, descriptor);
   }
-  return base::Error{base::ErrorCode::kFileInUse, Printable(path.string()) + " is taken and given back all the time"};
+  return base::Error{base::ErrorCode::kFileInUse,
+                     Printable(path.string()) + " is taken and given back all the time"};
 }
 
 FileLock::~FileLock() {

@@ -67,10 +67,11 @@ class Watch {
     if (!Count()) return false;
     if (digits.size() > kMostDigits)
       return Refuse(base::ErrorCode::kFileTooLarge, Source() + ": at " + Path() + ": a number of more than " +
-                                                  std::to_string(kMostDigits) + " digits");
+                                                        std::to_string(kMostDigits) + " digits");
     if (digits.find_first_of(".eE") == std::string::npos)
-      return Refuse(base::ErrorCode::kJsonSyntax, Source() + ": at " + Path() + ": the whole number " + digits +
-                                                " does not fit into 64 bits; write it with a decimal point");
+      return Refuse(base::ErrorCode::kJsonSyntax,
+                    Source() + ": at " + Path() + ": the whole number " + digits +
+                        " does not fit into 64 bits; write it with a decimal point");
     return sink_.number_float(value, digits);
   }
   bool string(std::string& text) { return Count() && CheckText(text) && sink_.string(text); }
@@ -83,8 +84,9 @@ class Watch {
     has_moved_ = true;
     Level& object = levels_[depth_ - 1];
     if (object.count == limits_.fields)
-      return Refuse(base::ErrorCode::kFileTooLarge, Source() + ": at " + Path() + ": an object of more than " +
-                                                  std::to_string(limits_.fields) + " fields");
+      return Refuse(base::ErrorCode::kFileTooLarge, Source() + ": at " + Path() +
+                                                        ": an object of more than " +
+                                                        std::to_string(limits_.fields) + " fields");
     if (!CheckText(name)) return false;
     if (!Note(object, name)) {
       return Refuse(base::ErrorCode::kJsonSyntax,
@@ -145,7 +147,7 @@ class Watch {
   bool CheckText(const std::string& text) {
     if (text.size() > limits_.text)
       return Refuse(base::ErrorCode::kFileTooLarge, Source() + ": at " + Path() + ": a text of more than " +
-                                                  std::to_string(limits_.text) + " bytes");
+                                                        std::to_string(limits_.text) + " bytes");
     if (text.find('\0') == std::string::npos) return true;
     return Refuse(base::ErrorCode::kJsonSyntax,
                   Source() + ": at " + Path() + ": a text holds the character U+0000; leave it out");
@@ -154,7 +156,7 @@ class Watch {
     if (!Count()) return false;
     if (depth_ == limits_.depth)
       return Refuse(base::ErrorCode::kFileTooLarge, Source() + ": at " + Path() + ": nested deeper than " +
-                                                  std::to_string(limits_.depth) + " levels");
+                                                        std::to_string(limits_.depth) + " levels");
     if (levels_.size() == depth_) levels_.emplace_back();
     Level& level = levels_[depth_++];
     level.is_object = is_object;
@@ -251,7 +253,7 @@ base::Error ZeroByte(const std::string& source) {
 
 base::Error TooLong(const std::string& source, std::size_t most_bytes) {
   return base::Error{base::ErrorCode::kFileTooLarge, source + ": longer than " + std::to_string(most_bytes) +
-                                             " bytes, which is the most that is read here"};
+                                                         " bytes, which is the most that is read here"};
 }
 
 /// The bytes of a stream for the library's parser, which would gather a token of any length and end at a zero byte.
@@ -312,8 +314,9 @@ std::string QuoteJson(std::string_view text) {
 void JsonView::Complain(std::string_view text, base::ErrorCode code) const {
   auto& content = *document_->content_;
   if (content.complaint) return;
-  content.complaint = base::Error{code, content.source + ": at " + (path_.empty() ? "the top" : Excerpt(path_)) +
-                                      ": " + std::string(text)};
+  content.complaint =
+      base::Error{code, content.source + ": at " + (path_.empty() ? "the top" : Excerpt(path_)) + ": " +
+                            std::string(text)};
 }
 
 JsonView JsonView::Child(std::string_view key) const {
@@ -468,7 +471,7 @@ base::Status JsonDocument::Check() const {
 }
 
 base::Result<JsonDocument> JsonDocument::Parse(std::string_view text, std::string source,
-                                         const JsonLimits& limits) {
+                                               const JsonLimits& limits) {
   auto root = ParseJson<nlohmann::json>(text, source, limits);
   if (!root.ok()) return root.error();
   auto content = std::make_unique<Content>();
@@ -499,10 +502,12 @@ base::Result<Json> ParseJson(std::string_view text, std::string_view source, con
 }
 
 template base::Result<nlohmann::json> ParseJson(std::string_view, std::string_view, const JsonLimits&);
-template base::Result<nlohmann::ordered_json> ParseJson(std::string_view, std::string_view, const JsonLimits&);
+template base::Result<nlohmann::ordered_json> ParseJson(std::string_view, std::string_view,
+                                                        const JsonLimits&);
 
 template <class Sax>
-base::Status ParseJsonEvents(std::istream& stream, std::string_view source, Sax& events, const JsonLimits& limits) {
+base::Status ParseJsonEvents(std::istream& stream, std::string_view source, Sax& events,
+                             const JsonLimits& limits) {
   Watch<Sax> watch(events, source, limits);
   constexpr std::size_t kEscape = 6;  // \uNNNN for one byte
   StreamBytes bytes{*stream.rdbuf(),
@@ -516,6 +521,6 @@ base::Status ParseJsonEvents(std::istream& stream, std::string_view source, Sax&
 }
 
 template base::Status ParseJsonEvents(std::istream&, std::string_view, nlohmann::json_sax<nlohmann::json>&,
-                                const JsonLimits&);
+                                      const JsonLimits&);
 
 }  // namespace trocar::host

@@ -66,12 +66,13 @@ base::Result<std::string> ReadFile(const fs::path& path, std::size_t limit_bytes
   struct stat info {};
   if (::fstat(file.Get(), &info) != 0) return Unreadable(path);
   if (!S_ISREG(info.st_mode)) {
-    return base::Error{base::ErrorCode::kFileUnreadable, path.string() + " is not a regular file; name a file"};
+    return base::Error{base::ErrorCode::kFileUnreadable,
+                       path.string() + " is not a regular file; name a file"};
   }
   if (static_cast<std::size_t>(info.st_size) > limit_bytes) {
-    return base::Error{base::ErrorCode::kFileTooLarge, path.string() + " has " + std::to_string(info.st_size) +
-                                               " bytes, more than the " + std::to_string(limit_bytes) +
-                                               " that are accepted"};
+    return base::Error{base::ErrorCode::kFileTooLarge,
+                       path.string() + " has " + std::to_string(info.st_size) + " bytes, more than the " +
+                           std::to_string(limit_bytes) + " that are accepted"};
   }
   std::string content(static_cast<std::size_t>(info.st_size), '\0');
   std::size_t have = 0;

@@ -45,7 +45,8 @@ std::string CalcSha256(std::string_view text) {
 
 base::Result<std::string> CalcSha256OfFile(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return base::Error{base::ErrorCode::kFileMissing, file.string() + " cannot be opened; check the path"};
+  if (!stream)
+    return base::Error{base::ErrorCode::kFileMissing, file.string() + " cannot be opened; check the path"};
   Sha256 hash;
   std::vector<char> part(1u << 20);
   while (stream) {
@@ -53,7 +54,8 @@ base::Result<std::string> CalcSha256OfFile(const std::filesystem::path& file) {
     hash.Add(part.data(), static_cast<std::size_t>(stream.gcount()));
   }
   if (!stream.eof())
-    return base::Error{base::ErrorCode::kFileUnreadable, file.string() + " cannot be read to its end; check the disk"};
+    return base::Error{base::ErrorCode::kFileUnreadable,
+                       file.string() + " cannot be read to its end; check the disk"};
   return hash.TakeDigits();
 }
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "trocar/host/beat_watch.h"
 #include "trocar/base/error_codes.h"
+#include "trocar/host/beat_watch.h"
 #include "trocar/host/safe_file.h"
 #include "trocar_test/temporary_folder.h"
 

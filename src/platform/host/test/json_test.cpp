@@ -211,7 +211,8 @@ class Listener : public nlohmann::json_sax<nlohmann::json> {
 
 std::string ListenTo(const std::string& text, Listener& listener, const JsonLimits& limits = {}) {
   std::istringstream stream(text);
-  const base::Status heard = ParseJsonEvents<nlohmann::json_sax<nlohmann::json>>(stream, "f", listener, limits);
+  const base::Status heard =
+      ParseJsonEvents<nlohmann::json_sax<nlohmann::json>>(stream, "f", listener, limits);
   return heard.ok() ? std::string() : heard.error().Text();
 }
 

@@ -16,8 +16,11 @@ TEST(UseThreads, LetsEachMemberServeOnceAndWaitsForAll) {
   const auto crew = threads.make_crew(kCount);
   std::array<std::atomic<int>, kCount> times{};
   for (int turn = 1; turn <= 100; ++turn) {
-    crew->Begin([](void* context, int member) { ++(*static_cast<decltype(times)*>(context))[static_cast<std::size_t>(member)]; },
-                &times);
+    crew->Begin(
+        [](void* context, int member) {
+          ++(*static_cast<decltype(times)*>(context))[static_cast<std::size_t>(member)];
+        },
+        &times);
     crew->End();
     for (std::size_t member = 1; member < kCount; ++member) ASSERT_EQ(times[member], turn);
   }

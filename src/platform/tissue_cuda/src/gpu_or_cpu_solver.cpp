@@ -20,7 +20,8 @@ bool HasPlainSprings(const tissue::TissueState& state) noexcept {
 
 }  // namespace
 
-GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, const base::Threads& threads, base::Result<GpuSolver> gpu)
+GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, const base::Threads& threads,
+                               base::Result<GpuSolver> gpu)
     : DeviceSolver(model, tissue::SolverOptions{.threads = threads}) {
   if (gpu) {
     gpu_ = std::move(gpu).value();

@@ -99,7 +99,8 @@ void CholecystectomySurgeon::Learn(ModelDescription model) {
       const cholecystectomy::VesselRole role = model.tube_roles[t][k];
       if (!cholecystectomy::MayBeDivided(role)) known_.main_nodes.push_back(surface.first_node + k);
       const bool is_duct = tube.kind == patient::TubeKind::kDuct;
-      if (!cholecystectomy::MayBeDivided(role) && is_duct) known_.main_ducts.push_back(surface.first_node + k);
+      if (!cholecystectomy::MayBeDivided(role) && is_duct)
+        known_.main_ducts.push_back(surface.first_node + k);
       const bool is_kept_artery = !cholecystectomy::MayBeDivided(role) && !is_duct;
       if (is_kept_artery || role == cholecystectomy::VesselRole::kSubvesicalDuct)
         known_.careful_nodes.push_back(surface.first_node + k);

@@ -288,7 +288,7 @@ class CholecystectomySurgeon final : public Surgeon {
   Progress progress_;
   std::vector<collision::TriangleTree> trees_;  // (organs)
   std::uint64_t trees_tick_ = kNever;           // of the snapshot that they follow
-  cholecystectomy::TriangleSight sight_;               // by the fat that was left when it was last asked
+  cholecystectomy::TriangleSight sight_;        // by the fat that was left when it was last asked
   std::deque<SurgeonAct> acts_,
       inserted_;           // the latter by the act that is under way, to be done next; empty between ticks
   Dissection dissection_;  // that is under way, or planned next

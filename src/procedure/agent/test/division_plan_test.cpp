@@ -17,8 +17,8 @@
 
 namespace trocar::agent {
 
-using scene::kRight;
 using files::ReadScene;
+using scene::kRight;
 namespace {
 
 using Kind = DivisionStep::Kind;

@@ -14,6 +14,7 @@
 
 namespace trocar::agent {
 
+using files::ReadScene;
 using scene::CalcScriptInput;
 using scene::EventKind;
 using scene::EventName;
@@ -21,7 +22,6 @@ using scene::Input;
 using scene::kHandCount;
 using scene::kLeft;
 using scene::kRight;
-using files::ReadScene;
 using scene::Scene;
 using scene::SurfaceInfo;
 using simulation::OrganSnapshot;

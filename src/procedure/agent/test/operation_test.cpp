@@ -18,16 +18,17 @@
 #include "trocar/agent/surgeon.h"
 #include "trocar/agent/taking_over.h"
 #include "trocar/anatomy/generate_patient.h"
+#include "trocar/cholecystectomy/operation_end.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/patient/patient.h"
 #include "trocar/simulation/simulation.h"
-#include "trocar/cholecystectomy/operation_end.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::agent {
 
+using files::ReadScene;
 using math::Vec3;
 using scene::CalcScriptInput;
 using scene::ConnectiveTissue;
@@ -39,7 +40,6 @@ using scene::kHandCount;
 using scene::kLeft;
 using scene::kRight;
 using scene::MakeConnectiveTissue;
-using files::ReadScene;
 using simulation::Operation;
 using simulation::OperationResult;
 using simulation::OperationScene;

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "task_play.h"
-#include "trocar/geometry/surface_cut.h"
 #include "trocar/cholecystectomy/pattern_cut_monitor.h"
+#include "trocar/geometry/surface_cut.h"
 
 namespace trocar::agent {
 
+using cholecystectomy::PatternCut;
 using math::Vec3;
 using scene::ModelSheet;
-using cholecystectomy::PatternCut;
 namespace {
 
 // --- its judge, against closed formulas

@@ -15,10 +15,10 @@
 
 namespace trocar::agent {
 
+using host::FindDataFolder;
 using math::Vec3;
 using scene::CalcScriptInput;
 using scene::ClampSettings;
-using host::FindDataFolder;
 using scene::kLeft;
 using scene::LiveSettings;
 using scene::SmallScene;

@@ -15,13 +15,13 @@
 
 namespace trocar::agent {
 
+using files::ListTasks;
+using files::TaskEntry;
 using scene::CalcScriptInput;
 using scene::ErrorRule;
 using scene::Goal;
 using scene::kLeft;
-using files::ListTasks;
 using scene::ObjectSnapshot;
-using files::TaskEntry;
 using scene::TaskPhase;
 using simulation::InstrumentSnapshot;
 namespace {

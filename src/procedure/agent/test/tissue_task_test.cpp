@@ -19,6 +19,7 @@
 
 namespace trocar::agent {
 
+using cholecystectomy::PatternCut;
 using scene::CalcScriptInput;
 using scene::Condition;
 using scene::ConditionKind;
@@ -32,7 +33,6 @@ using scene::TaskPhase;
 using simulation::ClipSnapshot;
 using simulation::OperationSnapshot;
 using simulation::TaskMonitor;
-using cholecystectomy::PatternCut;
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device_cards.h"
 
-#include "trocar/host/translate.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {

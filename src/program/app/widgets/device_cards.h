@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
+#include "trocar/host/translate.h"
 #include "trocar/presenter/device_presenter.h"
 
 namespace trocar::app {

@@ -2,9 +2,9 @@
 #include "device_page.h"
 
 #include "play_screenshot.h"
-#include "trocar/host/translate.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "device_cards.h"
 #include "device_plot.h"
-#include "trocar/host/clock.h"
 #include "trocar/gui/tips.h"
+#include "trocar/host/clock.h"
 #include "trocar/presenter/device_presenter.h"
 
 namespace trocar::app {

@@ -3,9 +3,9 @@
 
 #include <utility>
 
+#include "trocar/gui/labels.h"
 #include "trocar/host/log.h"
 #include "trocar/host/translate.h"
-#include "trocar/gui/labels.h"
 #include "trocar/presenter/replay_presenter.h"
 
 namespace trocar::app {

@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {

@@ -9,8 +9,8 @@
 #include <map>
 #include <string>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/list_card.h"
+#include "trocar/host/translate.h"
 #include "trocar/presenter/key_bindings.h"
 
 namespace trocar::app {

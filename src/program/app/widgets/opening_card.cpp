@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opening_card.h"
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "force_bar.h"
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
+#include "trocar/host/translate.h"
 #include "trocar/presenter/panel_presenter.h"
 
 namespace trocar::app {

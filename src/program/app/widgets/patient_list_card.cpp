@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <filesystem>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/list_card.h"
+#include "trocar/host/translate.h"
 #include "trocar/presenter/patient_desk.h"
 
 namespace trocar::app {

@@ -12,8 +12,8 @@
 #include <optional>
 #include <utility>
 
-#include "trocar/host/clock.h"
 #include "trocar/base/result.h"
+#include "trocar/host/clock.h"
 #include "trocar/presenter/picture_detail.h"
 #include "trocar/render/offscreen_target.h"
 #include "trocar/simulation/simulation.h"

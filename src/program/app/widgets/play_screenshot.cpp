@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "trocar/host/log.h"
 #include "trocar/gui/window_screenshot.h"
+#include "trocar/host/log.h"
 
 namespace trocar::app {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "picture_folder.h"
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
 #include "trocar/gui/window_screenshot.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {

@@ -14,10 +14,10 @@
 #include "picture.h"
 #include "recording_chooser.h"
 #include "replay_bar.h"
-#include "trocar/host/translate.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
+#include "trocar/host/translate.h"
 #include "trocar/presenter/replay_presenter.h"
 
 namespace trocar::app {

@@ -6,10 +6,10 @@
 
 #include "picture_folder.h"
 #include "play_screenshot.h"
-#include "trocar/host/translate.h"
-#include "trocar/host/user_folder.h"
 #include "trocar/gui/labels.h"
 #include "trocar/gui/window_screenshot.h"
+#include "trocar/host/translate.h"
+#include "trocar/host/user_folder.h"
 #include "trocar/presenter/guides.h"
 
 namespace trocar::app {

@@ -25,10 +25,10 @@
 #include "result_card.h"
 #include "sound_card.h"
 #include "task_chooser.h"
-#include "trocar/host/translate.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
+#include "trocar/host/translate.h"
 #include "trocar/presenter/simulator_presenter.h"
 #include "trocar/rehearsal/rehearsal_view.h"
 

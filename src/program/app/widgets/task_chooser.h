@@ -4,8 +4,8 @@
 
 #include <gtkmm.h>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/list_card.h"
+#include "trocar/host/translate.h"
 #include "trocar/presenter/task_page.h"
 
 namespace trocar::app {

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "processor_time.h"
-#include "trocar/bench/benchmark.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/bench/benchmark.h"
 #include "trocar/environment/pool.h"
 #include "trocar/files/task_file.h"
 #include "trocar/math/random.h"

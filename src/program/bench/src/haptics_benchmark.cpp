@@ -207,8 +207,8 @@ base::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   if (!folder) return folder.error();
   auto scene = files::ReadScene(*folder / "scenes/demonstration.json");
   if (!scene) return scene.error();
-  auto simulation =
-      simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)), {.threads = host::UseThreads(options.threads)});
+  auto simulation = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)),
+                                                 {.threads = host::UseThreads(options.threads)});
   if (!simulation) return simulation.error();
 
   // devices, and where they are led

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <memory>
 
+#include "trocar/base/statistics.h"
 #include "trocar/bench/physics_checks.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/host/progress_bar.h"
-#include "trocar/base/statistics.h"
 #include "trocar/host/text_table.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/simulation.h"

@@ -8,9 +8,9 @@
 
 #include "processor_time.h"
 #include "tissue_benchmark.h"
+#include "trocar/base/statistics.h"
 #include "trocar/bench/benchmark.h"
 #include "trocar/bench/experiment.h"
-#include "trocar/base/statistics.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/text_table.h"
@@ -62,8 +62,8 @@ Arrival TimeRelaxation(const GridCase& grid, const tissue::TissueState& truth) {
 /// The fewest iterations, in steps of a half, that lead there from flat in one solve.
 Arrival TimeSolver(const GridCase& grid, const tissue::TissueState& truth, SolverKind kind,
                    bool recognises_grids, const ExperimentOptions& options) {
-  tissue::EquilibriumSolver solver(grid.model,
-                                   {.threads = host::UseThreads(options.threads), .recognises_grids = recognises_grids});
+  tissue::EquilibriumSolver solver(
+      grid.model, {.threads = host::UseThreads(options.threads), .recognises_grids = recognises_grids});
   const bool counts_steps = kind == SolverKind::kNewtonMultigrid;
   SolverSettings settings;
   settings.kind = kind;

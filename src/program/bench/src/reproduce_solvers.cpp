@@ -45,8 +45,8 @@ constexpr std::array<Contender, 6> kContenders = {{
 /// Time of one iteration [s]: a long run less a short one, so that what a solve costs once does not count.
 base::Result<double> TimeIteration(const GridCase& grid, const Contender& contender, int iterations,
                                    const ExperimentOptions& options) {
-  tissue::EquilibriumSolver solver(
-      grid.model, {.threads = host::UseThreads(options.threads), .recognises_grids = contender.recognises_grids});
+  tissue::EquilibriumSolver solver(grid.model, {.threads = host::UseThreads(options.threads),
+                                                .recognises_grids = contender.recognises_grids});
   SolverSettings settings;
   settings.kind = contender.kind;
   settings.tolerance = settings.max_error = 0;

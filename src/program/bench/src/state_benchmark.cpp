@@ -37,7 +37,8 @@ base::Result<BenchmarkResult> RunStateBenchmark(const BenchmarkOptions& options)
   if (!folder) return folder.error();
   auto read = files::ReadScene(*folder / "scenes/cholecystectomy.json");
   if (!read) return read.error();
-  const auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*read)), host::UseThreads(options.threads));
+  const auto model = simulation::MakeSimulationModel(std::make_shared<const scene::Scene>(std::move(*read)),
+                                                     host::UseThreads(options.threads));
   if (!model) return model.error();
   auto made = simulation::Simulation::Make(*model, {.threads = host::UseThreads(options.threads)});
   if (!made) return made.error();

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/bench/benchmark.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/base/statistics.h"
+#include "trocar/bench/benchmark.h"
 #include "trocar/store/attempts.h"
 #include "trocar/store/maintenance.h"
 #include "work_folder.h"

@@ -36,7 +36,8 @@ double LargestDisplacement(const GridCase& grid, const TissueState& state) {
 base::Status RunIterations(const std::string& name, const GridCase& grid, bool as_grid,
                            const BenchmarkOptions& options, BenchmarkResult& result) {
   const auto make = [&](int threads) {
-    return tissue::EquilibriumSolver(grid.model, {.threads = host::UseThreads(threads), .recognises_grids = as_grid});
+    return tissue::EquilibriumSolver(grid.model,
+                                     {.threads = host::UseThreads(threads), .recognises_grids = as_grid});
   };
   tissue::EquilibriumSolver solver = make(options.threads);
   SolverSettings settings;

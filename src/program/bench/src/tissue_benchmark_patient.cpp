@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "tissue_benchmark.h"
+#include "trocar/base/statistics.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/progress_bar.h"
-#include "trocar/base/statistics.h"
 #include "trocar/host/text_table.h"
 #include "trocar/host/threads.h"
 #include "trocar/simulation/simulation.h"
@@ -29,7 +29,8 @@ base::Status RunPatientCases(const BenchmarkOptions& options, BenchmarkResult& r
   base::Result<scene::Scene> read = files::ReadScene(*folder / "scenes/retraction.json");
   if (!read) return read.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(read).value());
-  base::Result<simulation::Simulation> made = simulation::Simulation::Make(scene, {.threads = host::UseThreads(options.threads)});
+  base::Result<simulation::Simulation> made =
+      simulation::Simulation::Make(scene, {.threads = host::UseThreads(options.threads)});
   if (!made) return made.error();
   const int ticks = static_cast<int>(scene->script.Duration() / scene->tick_seconds) + 1;
   std::vector<double> tick_ms(static_cast<std::size_t>(ticks), INFINITY), errors;

@@ -93,7 +93,7 @@ void AddErrors(const report::AttemptReport& from, ResultPage& page) {
     row.severity = host::Translate(cholecystectomy::NameOf(error.severity));
     row.tone = error.severity == cholecystectomy::Severity::kMinor   ? Tone::kPlain
                : error.severity == cholecystectomy::Severity::kMajor ? Tone::kCaution
-                                                              : Tone::kBad;
+                                                                     : Tone::kBad;
     page.errors.push_back(std::move(row));
   }
 }

@@ -8,9 +8,9 @@
 #include "group_view.h"
 #include "history_view.h"
 #include "result_view.h"
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 #include "view_parts.h"
 
 namespace trocar::centre {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
+#include "trocar/host/translate.h"
 #include "view_parts.h"
 
 namespace trocar::centre {

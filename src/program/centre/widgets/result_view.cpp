@@ -2,8 +2,8 @@
 #include "result_view.h"
 
 #include "review_view.h"
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
+#include "trocar/host/translate.h"
 #include "trocar/report/attempt_report.h"
 #include "view_parts.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "review_view.h"
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
+#include "trocar/host/translate.h"
 #include "view_parts.h"
 
 namespace trocar::centre {

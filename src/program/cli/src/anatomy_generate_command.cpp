@@ -150,7 +150,7 @@ base::Status GenerateMany(const GenerateArguments& arguments,
   if (!arguments.output.empty()) {
     sink = [&](std::uint64_t seed, const patient::Patient& patient) {
       return files::WritePatient(std::filesystem::path(arguments.output) / ("seed-" + std::to_string(seed)),
-                                   patient);
+                                 patient);
     };
   }
   ProgressBar bar("generating " + std::to_string(arguments.count) + " patients",

@@ -9,8 +9,8 @@
 #include <cstdio>
 
 #include "console.h"
-#include "trocar/host/printable_output.h"
 #include "trocar/device/ports.h"
+#include "trocar/host/printable_output.h"
 
 namespace trocar::cli {
 namespace {

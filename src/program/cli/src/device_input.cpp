@@ -2,8 +2,8 @@
 #include "device_input.h"
 
 #include "command.h"
-#include "trocar/host/log.h"
 #include "trocar/device/device_spec.h"
+#include "trocar/host/log.h"
 
 namespace trocar::cli {
 

@@ -11,11 +11,11 @@
 #include "command.h"
 #include "console.h"
 #include "device_console.h"
-#include "trocar/host/log.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/device/hand_recording.h"
+#include "trocar/host/log.h"
+#include "trocar/host/safe_file.h"
 
 namespace trocar::cli {
 namespace {

@@ -13,10 +13,10 @@
 
 #include "command.h"
 #include "device_console.h"
-#include "trocar/host/console.h"
-#include "trocar/host/translate.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/emulator.h"
+#include "trocar/host/console.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::cli {
 namespace {

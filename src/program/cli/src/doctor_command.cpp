@@ -8,8 +8,8 @@
 
 #include "command.h"
 #include "console.h"
-#include "trocar/host/text_table.h"
 #include "trocar/doctor/doctor_checks.h"
+#include "trocar/host/text_table.h"
 
 namespace trocar::cli {
 namespace {

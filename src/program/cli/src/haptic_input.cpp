@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "command.h"
-#include "trocar/host/log.h"
-#include "trocar/host/safe_file.h"
-#include "trocar/host/translate.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/device/ports.h"
+#include "trocar/host/log.h"
+#include "trocar/host/safe_file.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::cli {
 

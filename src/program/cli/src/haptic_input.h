@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "trocar/host/clock.h"
 #include "trocar/base/result.h"
+#include "trocar/host/clock.h"
 #include "trocar/session/haptic_loop.h"
 #include "trocar/session/haptic_record.h"
 #include "trocar/simulation/simulation.h"

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "trocar/host/partial_path.h"
 #include "trocar/base/result.h"
+#include "trocar/host/partial_path.h"
 
 namespace trocar::cli {
 

@@ -20,12 +20,12 @@
 #include "pseudonym_option.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/assessment/play_state.h"
+#include "trocar/base/state_hash.h"
+#include "trocar/base/statistics.h"
 #include "trocar/files/operation_level_file.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/files/task_file.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/base/state_hash.h"
-#include "trocar/base/statistics.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/version.h"
 #include "trocar/scene/task.h"
@@ -126,8 +126,8 @@ void PrintForProgram(const scene::Scene& scene, const PlayReport& report) {
                                  {"critical_errors", nlohmann::ordered_json::array()},
                                  {"errors", nlohmann::ordered_json::array()}};
   for (const scene::TaskError& error : report.errors) {
-    const bool is_critical =
-        scene.task->errors[static_cast<std::size_t>(error.rule)].severity == cholecystectomy::Severity::kCritical;
+    const bool is_critical = scene.task->errors[static_cast<std::size_t>(error.rule)].severity ==
+                             cholecystectomy::Severity::kCritical;
     json[is_critical ? "critical_errors" : "errors"].push_back(ErrorJson(scene, error));
   }
   json.update({{"blood_ml", report.blood_ml},

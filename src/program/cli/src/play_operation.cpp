@@ -9,14 +9,14 @@
 #include "attempt_recording.h"
 #include "console.h"
 #include "part_folder.h"
-#include "trocar/host/json.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/base/statistics.h"
+#include "trocar/cholecystectomy/injury.h"
+#include "trocar/cholecystectomy/operation_end.h"
+#include "trocar/host/json.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/translate.h"
 #include "trocar/simulation/simulation.h"
-#include "trocar/cholecystectomy/injury.h"
-#include "trocar/cholecystectomy/operation_end.h"
 #include "trocar/view/demo.h"
 
 namespace trocar::cli {

@@ -11,8 +11,8 @@
 
 #include "command.h"
 #include "console.h"
-#include "trocar/host/json.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/host/json.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/replay.h"
 #include "trocar/simulation/engine_bits.h"

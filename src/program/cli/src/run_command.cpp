@@ -16,10 +16,10 @@
 
 #include "command.h"
 #include "help_language.h"
+#include "trocar/base/simd_choice.h"
 #include "trocar/host/console.h"
 #include "trocar/host/partial_path.h"
 #include "trocar/host/printable_output.h"
-#include "trocar/base/simd_choice.h"
 #include "trocar/host/translate.h"
 #include "trocar/host/version.h"
 

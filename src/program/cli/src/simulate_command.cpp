@@ -19,16 +19,16 @@
 #include "haptic_input.h"
 #include "igtl_option.h"
 #include "own_json.h"
+#include "trocar/base/state_hash.h"
+#include "trocar/base/statistics.h"
 #include "trocar/files/scene_file.h"
+#include "trocar/files/state_file.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/log.h"
 #include "trocar/host/threads.h"
-#include "trocar/base/state_hash.h"
-#include "trocar/base/statistics.h"
 #include "trocar/net/igtl_server.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/tissue_cuda/gpu_or_cpu_solver.h"
-#include "trocar/files/state_file.h"
 
 namespace trocar::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "run_trocar.h"
+#include "trocar/cli/run_command.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/patient/patient.h"
-#include "trocar/cli/run_command.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
@@ -44,8 +44,7 @@ TEST_F(AnatomyCommand, GenerateMakesAndCountsSeveralPatients) {
   const Printed printed =
       RunTrocar({"anatomy", "generate", "--seed", "3", "--count", "2", "-o", folder_.string()});
   EXPECT_EQ(printed.status, 0) << printed.err;
-  for (const char* name : {"seed-3", "seed-4"})
-    EXPECT_TRUE(files::ReadPatient(folder_ / name).ok()) << name;
+  for (const char* name : {"seed-3", "seed-4"}) EXPECT_TRUE(files::ReadPatient(folder_ / name).ok()) << name;
   EXPECT_NE(printed.out.find("linter: silent for every patient"), std::string::npos) << printed.out;
   EXPECT_NE(printed.out.find("moynihan_hump"), std::string::npos);
   // a summary needs no folder

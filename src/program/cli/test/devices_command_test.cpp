@@ -9,11 +9,11 @@
 #include <thread>
 
 #include "run_trocar.h"
-#include "trocar/host/clock.h"
-#include "trocar/host/safe_file.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/emulator.h"
 #include "trocar/device/hand_recording.h"
+#include "trocar/host/clock.h"
+#include "trocar/host/safe_file.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {

@@ -8,12 +8,12 @@
 #include <set>
 #include <string>
 
+#include "trocar/device/device_store.h"
 #include "trocar/files/operation_parameters_file.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
-#include "trocar/patient/patient.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/device/device_store.h"
+#include "trocar/patient/patient.h"
 #include "trocar/scene/scene.h"
 #include "trocar_test/temporary_folder.h"
 

@@ -20,11 +20,11 @@
 #include <utility>
 
 #include "child_process.h"
+#include "trocar/base/simd_choice.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/program.h"
 #include "trocar/host/real_time.h"
-#include "trocar/base/simd_choice.h"
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/video_writer.h"

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <utility>
 
-#include "trocar/host/translate.h"
 #include "trocar/editor/contour_read_outs.h"
 #include "trocar/editor/organ_colour.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "trocar/base/assert.h"
+#include "trocar/editor/contour_read_outs.h"
 #include "trocar/host/log.h"
 #include "trocar/host/translate.h"
-#include "trocar/editor/contour_read_outs.h"
 
 namespace trocar::editor {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 namespace {

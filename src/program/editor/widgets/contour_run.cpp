@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "trocar/gui/window_screenshot.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/gui/window_screenshot.h"
 
 namespace trocar::editor {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "trocar/host/translate.h"
 #include "trocar/editor/organ_colour.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 namespace {

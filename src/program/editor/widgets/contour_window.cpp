@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "trocar/host/translate.h"
 #include "trocar/editor/contour_run.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 namespace {

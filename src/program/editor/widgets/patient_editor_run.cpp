@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "trocar/host/json_text.h"
 #include "trocar/gui/window_screenshot.h"
+#include "trocar/host/json_text.h"
 
 namespace trocar::editor {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "trocar/host/translate.h"
 #include "trocar/editor/patient_editor_run.h"
 #include "trocar/gui/labels.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 namespace {

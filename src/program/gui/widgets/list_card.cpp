@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/gui/list_card.h"
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::gui {
 namespace {

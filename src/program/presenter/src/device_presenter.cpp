@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/device/device_spec.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/log.h"
 #include "trocar/host/translate.h"
-#include "trocar/device/device_spec.h"
 
 namespace trocar::presenter {
 

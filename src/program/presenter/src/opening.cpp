@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <utility>
 
+#include "trocar/device/device_spec.h"
 #include "trocar/host/log.h"
 #include "trocar/host/translate.h"
-#include "trocar/device/device_spec.h"
 #include "trocar/presenter/scene_choice.h"
 #include "trocar/presenter/simulator_presenter.h"
 

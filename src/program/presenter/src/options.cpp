@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "trocar/host/version.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/editor/contour_script.h"
+#include "trocar/host/version.h"
 #include "trocar/presenter/window_settings.h"
 #include "trocar/record/recording.h"
 

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "trocar/anatomy/generate_patient.h"
-#include "trocar/files/patient_file.h"
-#include "trocar/patient/patient.h"
 #include "trocar/anatomy/patient_from_labels.h"
+#include "trocar/files/patient_file.h"
 #include "trocar/host/partial_path.h"
 #include "trocar/host/translate.h"
 #include "trocar/host/user_folder.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::presenter {
 namespace {

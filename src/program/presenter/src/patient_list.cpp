@@ -6,14 +6,14 @@
 #include <system_error>
 #include <utility>
 
+#include "trocar/base/state_hash.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/host/data_folder.h"
-#include "trocar/patient/patient.h"
 #include "trocar/host/log.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/base/state_hash.h"
 #include "trocar/host/translate.h"
 #include "trocar/host/user_folder.h"
+#include "trocar/patient/patient.h"
 #include "trocar/render/figure_picture.h"
 #include "trocar/scene/scene.h"
 #include "trocar/view/patient_figure.h"

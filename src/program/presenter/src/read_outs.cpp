@@ -234,7 +234,8 @@ std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) 
     case scene::EventKind::kStoneRetrieved:
       return host::TranslateWith("{1}: retrieved a stone", {hand});
     case scene::EventKind::kOperationError:
-      return host::Translate(cholecystectomy::ExplanationOf(static_cast<cholecystectomy::OperationError>(event.error)));
+      return host::Translate(
+          cholecystectomy::ExplanationOf(static_cast<cholecystectomy::OperationError>(event.error)));
   }
   return "";
 }

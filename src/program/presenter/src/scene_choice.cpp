@@ -43,7 +43,9 @@ base::Result<scene::Scene> ReadChosenScene(const Options& options) {
 base::Result<simulation::Simulation> MakeChosenSimulation(const Options& options) {
   auto scene = ReadChosenScene(options);
   if (!scene) return scene.error();
-  return simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()), {.threads = host::UseThreads(ThreadsOf(options)), .now = host::NowNanoseconds});
+  return simulation::Simulation::Make(
+      std::make_shared<const scene::Scene>(std::move(scene).value()),
+      {.threads = host::UseThreads(ThreadsOf(options)), .now = host::NowNanoseconds});
 }
 
 base::Result<LoadedScene> MakeChosenScene(const Options& options, const PartProgress& progress) {
@@ -68,7 +70,8 @@ base::Result<simulation::Simulation> MakeStartedSimulation(const Options& option
   auto made = record::MakeScene(start.description);
   if (!made) return made.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(made).value());
-  auto simulation = simulation::Simulation::Make(scene, {.threads = host::UseThreads(ThreadsOf(options)), .now = host::NowNanoseconds});
+  auto simulation = simulation::Simulation::Make(
+      scene, {.threads = host::UseThreads(ThreadsOf(options)), .now = host::NowNanoseconds});
   if (!simulation || start.state.empty()) return simulation;
   // the state's file also holds what the surgeon remembers who came so far: it is read and left
   const std::string name = start.state_surgeon.substr(0, start.state_surgeon.find(','));

@@ -8,8 +8,8 @@
 #include <functional>
 #include <thread>
 
-#include "trocar/host/clock.h"
 #include "trocar/device/emulator.h"
+#include "trocar/host/clock.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::presenter {

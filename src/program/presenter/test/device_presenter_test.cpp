@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "trocar/host/clock.h"
 #include "trocar/device/emulator.h"
+#include "trocar/host/clock.h"
 #include "trocar/presenter/scene_choice.h"
 #include "trocar_test/temporary_folder.h"
 

@@ -160,7 +160,8 @@ TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
   EXPECT_EQ(text(scene::EventKind::kClipSlipped), "A clip slipped off the tissue");
   EXPECT_NE(text(scene::EventKind::kUsedOutside).find("push it in"), std::string::npos);
   const auto error = cholecystectomy::OperationError::kClipCrossed;
-  EXPECT_EQ(text(scene::EventKind::kOperationError, static_cast<int>(error)), cholecystectomy::ExplanationOf(error));
+  EXPECT_EQ(text(scene::EventKind::kOperationError, static_cast<int>(error)),
+            cholecystectomy::ExplanationOf(error));
   EXPECT_TRUE(IsWarning({scene::EventKind::kOperationError, 1, scene::kRight, -1, 0.0}));
   EXPECT_FALSE(IsWarning({scene::EventKind::kClipClosed, 1, scene::kRight, -1, 0.0}));
 }

@@ -7,12 +7,12 @@
 #include <system_error>
 #include <utility>
 
+#include "trocar/base/state_archive.h"
+#include "trocar/base/state_hash.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/host/log.h"
 #include "trocar/host/partial_path.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/base/state_archive.h"
-#include "trocar/base/state_hash.h"
 #include "trocar/host/translate.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/patient/patient.h"

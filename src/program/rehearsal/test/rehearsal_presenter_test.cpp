@@ -6,12 +6,12 @@
 
 #include <future>
 
-#include "trocar/files/patient_file.h"
-#include "trocar/patient/patient.h"
 #include "trocar/anatomy/phantom.h"
 #include "trocar/contours/contour_workspace.h"
+#include "trocar/files/patient_file.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/images/png_file.h"
+#include "trocar/patient/patient.h"
 #include "trocar_test/made_images.h"
 #include "trocar_test/temporary_folder.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "trocar/gui/labels.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/log.h"
-#include "trocar/gui/labels.h"
 #include "trocar/patient/patient.h"
 #include "trocar/roles/roles.h"
 #include "trocar/scene/scene.h"

@@ -6,10 +6,10 @@
 #include <thread>
 #include <utility>
 
-#include "trocar/host/newest_slot.h"
-#include "trocar/host/translate.h"
 #include "trocar/device/hand_rig.h"
 #include "trocar/device/pose_driver.h"
+#include "trocar/host/newest_slot.h"
+#include "trocar/host/translate.h"
 #include "trocar/session/hand_joints.h"
 
 namespace trocar::session {

@@ -11,10 +11,10 @@
 #include "attempt_keeper.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/agent/taking_over.h"
+#include "trocar/base/statistics.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/newest_slot.h"
 #include "trocar/host/real_time.h"
-#include "trocar/base/statistics.h"
 #include "trocar/record/input_codec.h"
 
 namespace trocar::session {

@@ -15,10 +15,10 @@
 
 #include "supervisor_protocol.h"
 #include "supervisor_watch.h"
-#include "trocar/host/clock.h"
-#include "trocar/host/real_time.h"
 #include "trocar/device/file_messages.h"
 #include "trocar/device/library_guard.h"
+#include "trocar/host/clock.h"
+#include "trocar/host/real_time.h"
 #include "trocar/session/supervisor_link.h"
 
 namespace trocar::session {

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "supervisor_protocol.h"
-#include "trocar/host/beat_watch.h"
 #include "trocar/device/companion.h"
 #include "trocar/device/file_messages.h"
+#include "trocar/host/beat_watch.h"
 
 namespace trocar::session {
 namespace {

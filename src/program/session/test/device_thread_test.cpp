@@ -8,10 +8,10 @@
 #include <limits>
 #include <thread>
 
-#include "trocar/host/clock.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/device/emulator.h"
 #include "trocar/device/polhemus_tracker.h"
+#include "trocar/host/clock.h"
 #include "trocar/instrument/trocar_kinematics.h"
 
 namespace trocar::session {

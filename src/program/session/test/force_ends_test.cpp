@@ -27,10 +27,10 @@
 #include "child_processes.h"
 #include "force_wire.h"
 #include "stand_in_page.h"
-#include "trocar/host/clock.h"
-#include "trocar/host/real_time.h"
 #include "trocar/device/emulator.h"
 #include "trocar/device/force_device_spec.h"
+#include "trocar/host/clock.h"
+#include "trocar/host/real_time.h"
 
 namespace trocar::session {
 namespace {

@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/clock.h"
 #include "trocar/device/simulated_force_device.h"
+#include "trocar/host/clock.h"
 
 namespace trocar::session {
 

@@ -22,11 +22,11 @@
 #include "openhaptics/hd_host_page.h"
 #include "stand_in_gate.h"
 #include "stand_in_page.h"
-#include "trocar/host/clock.h"
 #include "trocar/device/companion.h"
 #include "trocar/device/file_messages.h"
 #include "trocar/device/open_haptics.h"
 #include "trocar/device/ports.h"
+#include "trocar/host/clock.h"
 #include "wait_for.h"
 
 namespace trocar::session {

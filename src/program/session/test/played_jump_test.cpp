@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
+#include "trocar/device/hand_recording.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/device/hand_recording.h"
 #include "trocar/session/device_thread.h"
 #include "trocar/session/hand_joints.h"
 #include "trocar/simulation/simulation.h"

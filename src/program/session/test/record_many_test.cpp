@@ -12,9 +12,9 @@
 #include <thread>
 
 #include "trocar/agent/surgeon.h"
+#include "trocar/device/force_device_spec.h"
 #include "trocar/files/task_file.h"
 #include "trocar/host/clock.h"
-#include "trocar/device/force_device_spec.h"
 #include "trocar/host/threads.h"
 #include "trocar/record/input_codec.h"
 #include "trocar/record/replay.h"

@@ -21,9 +21,9 @@
 #include "force_wire.h"
 #include "machine_watch.h"
 #include "supervisor_protocol.h"
-#include "trocar/host/clock.h"
 #include "trocar/device/companion.h"
 #include "trocar/device/simulated_force_device.h"
+#include "trocar/host/clock.h"
 #include "trocar/session/haptic_loop.h"
 
 namespace trocar::session {

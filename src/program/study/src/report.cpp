@@ -9,10 +9,10 @@
 
 #include "study_folder.h"
 #include "table.h"
+#include "trocar/base/statistics.h"
 #include "trocar/bench/svg_plot.h"
 #include "trocar/host/markup.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/base/statistics.h"
 #include "trocar/host/text_table.h"
 
 namespace trocar::study {

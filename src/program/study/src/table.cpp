@@ -6,11 +6,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "trocar/dataset/hdf5_file.h"
 #include "trocar/host/csv_field.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/partial_path.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/dataset/hdf5_file.h"
 
 namespace trocar::study {
 namespace {

@@ -144,9 +144,9 @@ surgery::GallbladderAttachment MakeAttachment(const patient::Patient& patient,
 }
 
 cholecystectomy::DissectedAnatomy MakeDissectedAnatomy(const patient::Patient& patient,
-                                                std::span<const SurfaceInfo> surfaces,
-                                                std::span<const StrandInfo> strands,
-                                                std::span<const Vec3> rest) {
+                                                       std::span<const SurfaceInfo> surfaces,
+                                                       std::span<const StrandInfo> strands,
+                                                       std::span<const Vec3> rest) {
   using Kind = StrandInfo::Kind;
   cholecystectomy::DissectedAnatomy found;
   const patient::Landmark *fundus = patient.LandmarkOf(LandmarkRole::kFundus),
@@ -173,10 +173,11 @@ cholecystectomy::DissectedAnatomy MakeDissectedAnatomy(const patient::Patient& p
 }
 
 cholecystectomy::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> surfaces,
-                                            std::span<const StrandInfo> strands, std::span<const Vec3> rest,
-                                            std::span<const std::uint32_t> main_ducts,
-                                            std::span<const std::uint32_t> main_arteries,
-                                            const cholecystectomy::JudgementSettings& settings) {
+                                                   std::span<const StrandInfo> strands,
+                                                   std::span<const Vec3> rest,
+                                                   std::span<const std::uint32_t> main_ducts,
+                                                   std::span<const std::uint32_t> main_arteries,
+                                                   const cholecystectomy::JudgementSettings& settings) {
   using Kind = StrandInfo::Kind;
   std::vector<std::uint32_t> cystic, hepatic;
   FindDucts(surfaces, rest, cystic, hepatic);
@@ -194,10 +195,11 @@ cholecystectomy::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> 
 }
 
 cholecystectomy::TriangleSight MakeTriangleSight(const patient::Patient& patient,
-                                          std::span<const SurfaceInfo> surfaces,
-                                          std::span<const StrandInfo> strands, std::span<const Vec3> rest,
-                                          std::span<const double> exposable,
-                                          const cholecystectomy::JudgementSettings& settings) {
+                                                 std::span<const SurfaceInfo> surfaces,
+                                                 std::span<const StrandInfo> strands,
+                                                 std::span<const Vec3> rest,
+                                                 std::span<const double> exposable,
+                                                 const cholecystectomy::JudgementSettings& settings) {
   std::vector<std::uint32_t> cystic, hepatic;
   FindDucts(surfaces, rest, cystic, hepatic);
   const std::vector<surgery::EnteringTube> entering = FindEnteringTubes(patient, surfaces, strands);

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "trocar/cholecystectomy/dissection_monitor.h"
+#include "trocar/cholecystectomy/operation_judge.h"
 #include "trocar/patient/patient.h"
 #include "trocar/scene/patient_tissue.h"
 #include "trocar/surgery/bed_ooze.h"
 #include "trocar/surgery/gallbladder_attachment.h"
 #include "trocar/surgery/gallstone_spill.h"
-#include "trocar/cholecystectomy/dissection_monitor.h"
-#include "trocar/cholecystectomy/operation_judge.h"
 
 namespace trocar::simulation {
 
@@ -38,20 +38,21 @@ surgery::GallbladderAttachment MakeAttachment(const patient::Patient& patient,
 /// \param rest        (nodes) [m]
 /// \param main_ducts, main_arteries  nodes of those that must stay
 cholecystectomy::TriangleWindow MakeTriangleWindow(std::span<const scene::SurfaceInfo> surfaces,
-                                            std::span<const scene::StrandInfo> strands,
-                                            std::span<const math::Vec3> rest,
-                                            std::span<const std::uint32_t> main_ducts,
-                                            std::span<const std::uint32_t> main_arteries,
-                                            const cholecystectomy::JudgementSettings& settings);
+                                                   std::span<const scene::StrandInfo> strands,
+                                                   std::span<const math::Vec3> rest,
+                                                   std::span<const std::uint32_t> main_ducts,
+                                                   std::span<const std::uint32_t> main_arteries,
+                                                   const cholecystectomy::JudgementSettings& settings);
 
 /// What an eye has to see of it, and the fat that hides it.
 /// \param rest       (nodes) [m]
 /// \param exposable  (entering) of CalcExposable
 cholecystectomy::TriangleSight MakeTriangleSight(const patient::Patient& patient,
-                                          std::span<const scene::SurfaceInfo> surfaces,
-                                          std::span<const scene::StrandInfo> strands,
-                                          std::span<const math::Vec3> rest, std::span<const double> exposable,
-                                          const cholecystectomy::JudgementSettings& settings);
+                                                 std::span<const scene::SurfaceInfo> surfaces,
+                                                 std::span<const scene::StrandInfo> strands,
+                                                 std::span<const math::Vec3> rest,
+                                                 std::span<const double> exposable,
+                                                 const cholecystectomy::JudgementSettings& settings);
 
 /// How much of each tube, from the gallbladder on, may be asked to lie bare: as far as main ducts and arteries, which keep
 /// what lies beside them, fat that reaches there included. At least kLeastExposable.
@@ -67,9 +68,9 @@ inline constexpr double kLeastExposable = 0.003;  // [m]
 /// All but the triangle's window, the sight of it, and what is exposable.
 /// \param rest  (nodes) [m]
 cholecystectomy::DissectedAnatomy MakeDissectedAnatomy(const patient::Patient& patient,
-                                                std::span<const scene::SurfaceInfo> surfaces,
-                                                std::span<const scene::StrandInfo> strands,
-                                                std::span<const math::Vec3> rest);
+                                                       std::span<const scene::SurfaceInfo> surfaces,
+                                                       std::span<const scene::StrandInfo> strands,
+                                                       std::span<const math::Vec3> rest);
 
 /// How many stones a patient has, and how large: by the patient's parameters, else by the scene.
 surgery::GallstoneSettings FindGallstones(const scene::Scene& scene);

@@ -25,7 +25,7 @@ constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
 constexpr double kBelowAll = -0.03;  // under the lowest organ: what falls beside everything stops there [m]
 
 cholecystectomy::PatternCutMonitor MakePatternCutMonitor(const scene::ModelSheet& sheet,
-                                                  const geometry::EditableMesh& mesh) {
+                                                         const geometry::EditableMesh& mesh) {
   return {{sheet.centre, sheet.half, sheet.circle}, mesh};
 }
 
@@ -419,12 +419,12 @@ cholecystectomy::OperationJudge Operation::MakeJudge() const {
                                     facts_.main_arteries, settings);
   anatomy.sight = MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest,
                                     anatomy.exposable, settings);
-  return {cholecystectomy::DissectionMonitor(std::move(anatomy), tissue.definition.rest), facts_.gallbladder >= 0,
-          settings};
+  return {cholecystectomy::DissectionMonitor(std::move(anatomy), tissue.definition.rest),
+          facts_.gallbladder >= 0, settings};
 }
 
 cholecystectomy::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,
-                                                  const Camera& camera) const noexcept {
+                                                         const Camera& camera) const noexcept {
   cholecystectomy::OperationObservation now{
       hands.time,
       hands.seconds,

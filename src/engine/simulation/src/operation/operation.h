@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "operation/assistant.h"
+#include "trocar/cholecystectomy/operation_judge.h"
+#include "trocar/cholecystectomy/pattern_cut_monitor.h"
 #include "trocar/instrument/camera.h"
 #include "trocar/scene/patient_tissue.h"
 #include "trocar/simulation/operation_result.h"
@@ -20,11 +22,11 @@
 #include "trocar/surgery/gallbladder_attachment.h"
 #include "trocar/surgery/gallstone_spill.h"
 #include "trocar/surgery/vessels.h"
-#include "trocar/cholecystectomy/operation_judge.h"
-#include "trocar/cholecystectomy/pattern_cut_monitor.h"
 
 namespace trocar::simulation {
 
+using cholecystectomy::EmittedAct;
+using cholecystectomy::EmittedActs;
 using instrument::Camera;
 using scene::EventKind;
 using scene::HandControls;
@@ -34,8 +36,6 @@ using scene::SpareNodes;
 using scene::StrandInfo;
 using scene::SurfaceInfo;
 using surgery::WallHoles;
-using cholecystectomy::EmittedAct;
-using cholecystectomy::EmittedActs;
 
 /// What a tick knows of the hands.
 struct HandsNow {
@@ -128,7 +128,7 @@ class Operation {
   /// What a judge sees of this tick, which has to outlive it.
   /// \param camera  through which the trainee looks
   cholecystectomy::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
-                                         const Camera& camera) const noexcept;
+                                                const Camera& camera) const noexcept;
   /// What happened in this tick.
   std::span<const OperationEvent> Events() const { return std::span(emitted_.events).first(emitted_.count); }
 
@@ -214,7 +214,7 @@ class Operation {
   struct AnatomyFacts {
     std::int32_t liver = -1, gallbladder = -1;
     std::vector<std::uint32_t> main_ducts, main_arteries;  // nodes of those that must stay
-    cholecystectomy::BiliaryAnatomy biliary;                      // of the vessels
+    cholecystectomy::BiliaryAnatomy biliary;               // of the vessels
     Vec3 p_pool;                                           // where blood and bile gather
     double deepest = 0;                                    // z below which nothing falls [m]
     std::uint32_t assistant_node = 0;                      // of what the assistant takes

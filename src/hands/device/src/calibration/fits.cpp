@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "trocar/device/hand_calibration.h"
 #include "trocar/host/console.h"
 #include "trocar/host/translate.h"
-#include "trocar/device/hand_calibration.h"
 
 namespace trocar::device {
 namespace {

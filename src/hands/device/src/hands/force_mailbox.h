@@ -10,9 +10,9 @@
 #include <span>
 
 #include "hands/stylus_hand.h"
+#include "trocar/device/force_driver.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/newest_slot.h"
-#include "trocar/device/force_driver.h"
 
 namespace trocar::device {
 

@@ -9,9 +9,9 @@
 
 #include "hands/force_mailbox.h"
 #include "haply_messages.h"
-#include "trocar/host/clock.h"
 #include "trocar/device/force_check.h"
 #include "trocar/device/mouse_keyboard.h"
+#include "trocar/host/clock.h"
 #include "web_socket.h"
 
 namespace trocar::device {

@@ -10,9 +10,9 @@
 #include <thread>
 #include <utility>
 
+#include "trocar/device/file_messages.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/real_time.h"
-#include "trocar/device/file_messages.h"
 
 namespace trocar::device {
 namespace {

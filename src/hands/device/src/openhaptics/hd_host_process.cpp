@@ -17,9 +17,9 @@
 #include "hd_devices.h"
 #include "hd_host.h"
 #include "host_watch.h"
+#include "trocar/device/file_messages.h"
 #include "trocar/host/beat_watch.h"
 #include "trocar/host/clock.h"
-#include "trocar/device/file_messages.h"
 
 namespace trocar::device {
 namespace {

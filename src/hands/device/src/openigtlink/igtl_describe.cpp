@@ -4,9 +4,9 @@
 #include <initializer_list>
 #include <utility>
 
+#include "trocar/device/igtl.h"
 #include "trocar/host/printable.h"
 #include "trocar/host/translate.h"
-#include "trocar/device/igtl.h"
 
 namespace trocar::device {
 namespace {

@@ -15,8 +15,8 @@
 #include <system_error>
 #include <utility>
 
-#include "trocar/host/program.h"
 #include "trocar/device/ports.h"
+#include "trocar/host/program.h"
 
 // glibc 2.36 declares these for C only
 extern "C" {

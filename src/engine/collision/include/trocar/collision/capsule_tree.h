@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/collision/segment_distance.h"
 #include "trocar/collision/wide_tree.h"
-#include "trocar/base/result.h"
 
 namespace trocar::collision {
 

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/collision/centroid_hierarchy.h"
 #include "trocar/collision/queries.h"
 #include "trocar/collision/wide_tree.h"
-#include "trocar/base/result.h"
 
 namespace trocar::collision {
 

@@ -3,9 +3,9 @@
 /// where on something is an error: the tables of an operation.
 #pragma once
 
+#include "trocar/cholecystectomy/operation_judge.h"
 #include "trocar/surgery/flow_network.h"
 #include "trocar/surgery/surgery_settings.h"
-#include "trocar/cholecystectomy/operation_judge.h"
 
 namespace trocar::scene {
 

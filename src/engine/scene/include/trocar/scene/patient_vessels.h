@@ -2,11 +2,11 @@
 /// \file patient_vessels.h  The patient's ducts and arteries as a network with flow, and what each part of it is to the surgeon.
 #pragma once
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
+#include "trocar/cholecystectomy/injury.h"
+#include "trocar/patient/patient.h"
 #include "trocar/scene/operation_parameters.h"
 #include "trocar/surgery/vessel_map.h"
-#include "trocar/cholecystectomy/injury.h"
 
 namespace trocar::scene {
 

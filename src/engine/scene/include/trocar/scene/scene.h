@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
 #include "trocar/instrument/tool.h"
+#include "trocar/patient/patient.h"
 #include "trocar/scene/input.h"
 #include "trocar/scene/operation_level.h"
 #include "trocar/scene/operation_parameters.h"

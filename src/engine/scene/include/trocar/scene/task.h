@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "trocar/base/state_archive.h"
+#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/instrument/hand.h"
 #include "trocar/math/vector.h"
-#include "trocar/cholecystectomy/operation_error.h"
 
 namespace trocar::scene {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "trocar/base/result.h"
-#include "trocar/scene/scene.h"
-#include "trocar/scene/tissue_layout.h"
 #include "trocar/cholecystectomy/injury.h"
 #include "trocar/cholecystectomy/triangle_sight.h"
+#include "trocar/scene/scene.h"
+#include "trocar/scene/tissue_layout.h"
 
 namespace trocar::simulation {
 

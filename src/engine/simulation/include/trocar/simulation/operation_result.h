@@ -2,12 +2,12 @@
 /// \file operation_result.h  How an operation stands: what is judged of it now, and at its end.
 #pragma once
 
-#include "trocar/surgery/flow_network.h"
-#include "trocar/surgery/surgery_snapshot.h"
 #include "trocar/cholecystectomy/critical_view.h"
 #include "trocar/cholecystectomy/injury.h"
 #include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cholecystectomy/triplet.h"
+#include "trocar/surgery/flow_network.h"
+#include "trocar/surgery/surgery_snapshot.h"
 
 namespace trocar::simulation {
 
@@ -17,7 +17,7 @@ struct OperationResult {
   cholecystectomy::ErrorLog errors;
   cholecystectomy::DissectionFacts facts;
   cholecystectomy::CriticalViewScore critical_view;  ///< now
-  bool was_critical_view_achieved = false;    ///< at some time before
+  bool was_critical_view_achieved = false;           ///< at some time before
   cholecystectomy::InjuryReport injuries;
   surgery::FluidLedger fluids;
   double bed_blood = 0;  ///< that the liver's bed has oozed, part of `fluids` [m^3]

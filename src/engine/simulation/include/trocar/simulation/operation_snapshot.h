@@ -9,15 +9,15 @@
 #include <span>
 #include <vector>
 
+#include "trocar/cholecystectomy/critical_view.h"
+#include "trocar/cholecystectomy/pattern_cut_monitor.h"
+#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/math/pose.h"
 #include "trocar/scene/input.h"
 #include "trocar/scene/tissue_layout.h"
 #include "trocar/surgery/flow_network.h"
 #include "trocar/surgery/surgery_snapshot.h"
-#include "trocar/cholecystectomy/critical_view.h"
-#include "trocar/cholecystectomy/pattern_cut_monitor.h"
-#include "trocar/cholecystectomy/triplet.h"
 
 namespace trocar::simulation {
 
@@ -81,9 +81,9 @@ struct OperationSnapshot {
   std::size_t clip_count = 0;
   std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
   std::size_t tube_cut_count = 0;
-  std::vector<std::uint8_t> band_is_whole;   ///< (ModelSetup::bands)
+  std::vector<std::uint8_t> band_is_whole;          ///< (ModelSetup::bands)
   std::vector<cholecystectomy::PatternCut> sheets;  ///< (ModelSetup::sheets)
-  std::vector<StoneSnapshot> stones;         ///< the patient's gallstones
+  std::vector<StoneSnapshot> stones;                ///< the patient's gallstones
   FlowSnapshot flow;
   double smoke = 0;  ///< in the view, 0 none to 1 thick [-]
   AssistantSnapshot assistant;

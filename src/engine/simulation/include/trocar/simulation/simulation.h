@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "trocar/base/result.h"
-#include "trocar/tissue/local_patch.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/model_description.h"
 #include "trocar/simulation/operation_result.h"
 #include "trocar/simulation/snapshot.h"
 #include "trocar/tissue/equilibrium.h"
+#include "trocar/tissue/local_patch.h"
 
 namespace trocar::simulation {
 
@@ -30,7 +30,8 @@ using scene::Input;
 struct Services {
   base::Threads threads{};
   /// Makes the solver of another device, which has other bits than the processor's; empty: the processor solves.
-  std::function<std::unique_ptr<tissue::DeviceSolver>(const tissue::TissueModel& model, const base::Threads& threads)>
+  std::function<std::unique_ptr<tissue::DeviceSolver>(const tissue::TissueModel& model,
+                                                      const base::Threads& threads)>
       make_device_solver{};
   /// Monotonic time [ns], for Snapshot::stage_seconds alone, which are 0 where it is null.
   std::int64_t (*now)() noexcept = nullptr;
@@ -63,8 +64,7 @@ enum class StatePart : std::uint8_t {
 class Simulation {
  public:
   /// \return kSceneInvalid or kPatientInvalid
-  static base::Result<Simulation> Make(std::shared_ptr<const Scene> scene,
-                                       const Services& services = {});
+  static base::Result<Simulation> Make(std::shared_ptr<const Scene> scene, const Services& services = {});
   /// One more of the same model.
   static base::Result<Simulation> Make(std::shared_ptr<const SimulationModel> model,
                                        const Services& services = {});

@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
-#include "trocar/collision/sweep.h"
 #include "trocar/base/state_archive.h"
+#include "trocar/collision/sweep.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/tissue_model.h"

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/collision/capsule_tree.h"
 #include "trocar/collision/triangle_tree.h"
-#include "trocar/base/result.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/triangle_mesh.h"
 

@@ -32,16 +32,16 @@ struct LocalPatch {
   } kind = Kind::kNone;
   bool is_healthy = false;  ///< the tick ended with a good state
   std::uint64_t tick = 0;
-  math::Pose X_world_tool;       ///< of the tool in that tick
-  math::Vec3 force;              ///< of the tissue on the tool in that tick, as it is at the tip [N], world frame
-  bool has_pivot = false;  ///< the shaft turns about its trocar as the tip moves
-  Matrix3Rows jacobian{};  ///< kLinear: dF/dp of what holds the tool both ways, symmetric [N/m]
+  math::Pose X_world_tool;  ///< of the tool in that tick
+  math::Vec3 force;         ///< of the tissue on the tool in that tick, as it is at the tip [N], world frame
+  bool has_pivot = false;   ///< the shaft turns about its trocar as the tip moves
+  Matrix3Rows jacobian{};   ///< kLinear: dF/dp of what holds the tool both ways, symmetric [N/m]
 
   /// One-sided spring of kLinear. Where the tool's tip has gone by u since the cut it pushes the tip by -(force + stiffness
   /// normal . u) normal as long as the bracket is above zero. A sum of such springs has an energy, so that no way round gains
   /// any; a Jacobian that is cut off as a whole has none.
   struct Press {
-    math::Vec3 normal;           ///< tip_normal of the contact, see below
+    math::Vec3 normal;     ///< tip_normal of the contact, see below
     double force = 0;      ///< at the cut [N], >= 0
     double stiffness = 0;  ///< of contact and tissue in row [N/m], > 0
   };
@@ -50,7 +50,7 @@ struct LocalPatch {
 
   std::uint32_t free_count = 0, held_count = 0, node_count = 0;
   std::array<std::uint32_t, kMaxNodes> node;    ///< index in the whole system
-  std::array<math::Vec3, kMaxNodes> position;         ///< at the cut [m]
+  std::array<math::Vec3, kMaxNodes> position;   ///< at the cut [m]
   std::array<double, kMaxNodes> own_stiffness;  ///< of the virtual spring [N/m]
 
   /// Half of a spring or strand, stored with each free or held end.
@@ -71,7 +71,7 @@ struct LocalPatch {
     /// How far the contact goes along the normal for a metre of the tool's tip: the normal itself at the tip, less across
     /// the shaft the nearer it lies to the trocar. Its force pushes the tip along this.
     math::Vec3 tip_normal;
-    math::Vec3 lever;        ///< from the tool's origin to the pressing point [m], world frame
+    math::Vec3 lever;  ///< from the tool's origin to the pressing point [m], world frame
     double depth;      ///< at the cut [m]
     double stiffness;  ///< [N/m]
   };
@@ -83,17 +83,17 @@ struct LocalPatch {
 struct PatchSource {
   const TissueModel& model;
   const TissueState& state;
-  const TissueLoad& load;                   ///< for the scales
-  std::span<const ContactSpring> contacts;  ///< of all tools
-  std::span<const std::uint8_t> contact_tools;      ///< whose each contact is
-  std::uint8_t tool = 0;                            ///< whose segment is wanted
-  std::span<const std::uint32_t> held;              ///< nodes between this tool's jaws
+  const TissueLoad& load;                       ///< for the scales
+  std::span<const ContactSpring> contacts;      ///< of all tools
+  std::span<const std::uint8_t> contact_tools;  ///< whose each contact is
+  std::uint8_t tool = 0;                        ///< whose segment is wanted
+  std::span<const std::uint32_t> held;          ///< nodes between this tool's jaws
   math::Pose X_world_tool;
   math::Vec3 force;  ///< of the tissue on the tool [N]
   bool is_healthy = false;
   std::uint64_t tick = 0;
-  bool has_pivot = false;  ///< the tool goes through a trocar
-  math::Vec3 p_world_pivot{};    ///< there [m]
+  bool has_pivot = false;      ///< the tool goes through a trocar
+  math::Vec3 p_world_pivot{};  ///< there [m]
 };
 
 /// Cuts segments; holds the memory for it.

@@ -14,9 +14,9 @@ inline constexpr std::size_t kMaxChannels = 4;
 
 struct CheckPoseSettings {
   std::array<math::Vec3, kMaxChannels> p_device;  ///< where each device has to be brought, its own frame [m]
-  double radius = 0.020;                    ///< about that place [m]
-  double still_radius = 0.005;              ///< the others may move by this meanwhile [m]
-  int ticks = 200;                          ///< for which the button must be held there
+  double radius = 0.020;                          ///< about that place [m]
+  double still_radius = 0.005;                    ///< the others may move by this meanwhile [m]
+  int ticks = 200;                                ///< for which the button must be held there
 };
 
 enum class CheckPoseState : std::uint8_t {

@@ -9,7 +9,6 @@
 
 namespace trocar::haptics {
 
-
 struct DeviceGuardSettings {
   double stale_age = 0.010;     ///< from which silence counts: the pose is held and the force fades [s] (D2)
   double silent_age = 0.018;    ///< at which the force is zero: 20 ms less a tick and its lateness [s]
@@ -24,8 +23,8 @@ struct DeviceGuardSettings {
 
 /// What is believed of a device in one tick.
 struct GuardedDevice {
-  math::Vec3 position;                 ///< the last good one [m], device frame
-  math::Vec3 velocity;                 ///< derived from good positions [m/s]
+  math::Vec3 position;           ///< the last good one [m], device frame
+  math::Vec3 velocity;           ///< derived from good positions [m/s]
   math::Quaternion orientation;  ///< unit
   std::uint32_t buttons = 0;     ///< none while silent
   double jaw = 0;                ///< [rad]; NaN where the device has none

@@ -13,7 +13,6 @@
 
 namespace trocar::haptics {
 
-
 /// A force in the frame of its device, made by ToDeviceForce: one in the world's frame does not fit into the gate.
 struct DeviceForce {
   math::Vec3 newton;  ///< on the hand [N]
@@ -53,7 +52,7 @@ struct ArmingConditions {
 
 struct GateInput {
   DeviceForce force;           ///< wanted
-  math::Vec3 velocity;               ///< of the device [m/s]
+  math::Vec3 velocity;         ///< of the device [m/s]
   double temperature = 0;      ///< of its motors, 1 is too hot; NaN where unknown [-]
   bool is_warm = false;        ///< the device says so
   double scale = 1;            ///< asked for by the guards of time and of silence, 0 to 1 [-]
@@ -78,7 +77,8 @@ struct GateOutput {
 
 /// The gate's promises once more, by arithmetic of its own and on the force itself; false for what is no number.
 /// \param sent  output of the tick before [N]
-bool MaySend(const GateSettings& settings, ArmState state, const math::Vec3& force, const math::Vec3& sent) noexcept;
+bool MaySend(const GateSettings& settings, ArmState state, const math::Vec3& force,
+             const math::Vec3& sent) noexcept;
 
 class ForceGate {
  public:
@@ -108,8 +108,8 @@ class ForceGate {
   GateSettings settings_;
   ArmState state_ = ArmState::kUnarmed;
   Fault reason_ = Fault::kNotRequested;
-  math::Vec3 sent_;             // output of the tick before [N]
-  math::Vec3 limited_;          // after the rise stage of the tick before [N]
+  math::Vec3 sent_;       // output of the tick before [N]
+  math::Vec3 limited_;    // after the rise stage of the tick before [N]
   double scale_ = 0;      // of speed, heat and ramp in the tick before [-]
   double ramp_ = 0;       // [-]
   double ramp_rise_ = 0;  // per tick [-]

@@ -54,8 +54,8 @@ class HapticChannel {
   ///
   /// \param X_world_hand  CalcHand() and the direction that the shaft has there
   /// \note Real-time safe: no allocation, lock or throw.
-  ChannelOutput Act(const math::Pose& X_world_hand, const LoopTiming& timing, const ChannelConditions& conditions,
-                    double now) noexcept;
+  ChannelOutput Act(const math::Pose& X_world_hand, const LoopTiming& timing,
+                    const ChannelConditions& conditions, double now) noexcept;
 
   const GuardedDevice& GetDevice() const noexcept { return device_; }
   const DeviceGuardCounts& GetCounts() const noexcept { return guard_.GetCounts(); }

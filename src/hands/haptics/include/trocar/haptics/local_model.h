@@ -22,10 +22,10 @@ struct LocalModelSettings {
 
 /// What the hand feels, and where the tool is.
 struct LocalAnswer {
-  math::Vec3 force;                  ///< on the hand, before the scales of the device [N], world frame
-  tissue::Matrix3Rows jacobian{};      ///< dF / d(hand) [N/m]; without the sweeps' lag
-  math::Vec3 p_world_tool;           ///< of the tool, which gives way to the tissue where the hand does not [m]
-  bool is_in_contact = false;  ///< the force is not zero
+  math::Vec3 force;                ///< on the hand, before the scales of the device [N], world frame
+  tissue::Matrix3Rows jacobian{};  ///< dF / d(hand) [N/m]; without the sweeps' lag
+  math::Vec3 p_world_tool;         ///< of the tool, which gives way to the tissue where the hand does not [m]
+  bool is_in_contact = false;      ///< the force is not zero
 };
 
 /// One tool's local model. Energy of tissue, contacts and coupling falls with every sweep, and the hand's spring is the

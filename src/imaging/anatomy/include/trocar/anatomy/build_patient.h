@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "trocar/patient/patient.h"
-#include "trocar/contours/build_organs.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/build_organs.h"
 #include "trocar/images/image_series.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
 #include "trocar/images/ct_render.h"
 #include "trocar/images/image_stack.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 
@@ -35,8 +35,9 @@ std::vector<std::pair<std::string, int>> VisibleHumanLabels();
 
 /// The organs of a patient as a label map, to make a phantom of.
 /// \return kPatientInvalid without liver or gallbladder
-base::Result<images::LabelVolume> DrawLabels(const patient::Patient& patient, const images::Progress& progress = {},
-                                             double pixel_mm = 0.8, double slice_mm = 1.0);
+base::Result<images::LabelVolume> DrawLabels(const patient::Patient& patient,
+                                             const images::Progress& progress = {}, double pixel_mm = 0.8,
+                                             double slice_mm = 1.0);
 
 /// Writes slices/ (a DICOM series) and labels.nrrd (the truth) into a folder.
 /// \param folder  is made; it must not exist, or be empty

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <span>
 
-#include "trocar/patient/patient.h"
 #include "trocar/anatomy/patient_parameters.h"
 #include "trocar/base/result.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 
@@ -22,6 +22,7 @@ namespace trocar::anatomy {
 /// the same patient.
 /// \param settings  see DrawParameters
 /// \return the error of the settings, or of the step that failed
-base::Result<patient::Patient> GeneratePatient(std::uint64_t seed, std::span<const ParameterSetting> settings = {});
+base::Result<patient::Patient> GeneratePatient(std::uint64_t seed,
+                                               std::span<const ParameterSetting> settings = {});
 
 }  // namespace trocar::anatomy

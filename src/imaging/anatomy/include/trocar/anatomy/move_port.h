@@ -2,8 +2,8 @@
 /// \file move_port.h  A port of a patient is put elsewhere on the insufflated wall, as far as the rules of placing allow.
 #pragma once
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 
@@ -12,6 +12,7 @@ namespace trocar::anatomy {
 /// break one, a place that breaks it no more than that is taken.
 /// \param x, y  of the wall, to the left and cranial from the navel [m]
 /// \return kEditRefused with the rule that the place would break
-base::Result<patient::Port> MovePort(const patient::Patient& patient, patient::PortUse use, double x, double y);
+base::Result<patient::Port> MovePort(const patient::Patient& patient, patient::PortUse use, double x,
+                                     double y);
 
 }  // namespace trocar::anatomy

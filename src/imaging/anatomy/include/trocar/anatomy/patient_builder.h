@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "trocar/patient/patient.h"
-#include "trocar/contours/control_points.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/meshing/structure_mesh.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 
@@ -41,7 +41,7 @@ struct RegionSettings {
 /// Without any tube the usual ducts and arteries are placed by the landmarks (is_seen = false).
 /// \return kPatientInvalid when "liver" or "gallbladder" is missing or they do not touch
 base::Result<patient::Patient> AssemblePatient(const contours::ControlPoints& points,
-                                      const std::vector<meshing::StructureMesh>& structures,
-                                      const RegionSettings& settings = {});
+                                               const std::vector<meshing::StructureMesh>& structures,
+                                               const RegionSettings& settings = {});
 
 }  // namespace trocar::anatomy

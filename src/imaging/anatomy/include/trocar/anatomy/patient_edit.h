@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/anatomy/tube_graph.h"
 #include "trocar/base/result.h"
 #include "trocar/geometry/mesh_topology.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 
@@ -34,15 +34,16 @@ base::Status PaintRegion(patient::Patient& patient, std::string_view organ, std:
 /// Moves a point of a centre line. Points within `reach` along the line follow less and less; so do the ends
 /// of other tubes that are joined to what moves.
 /// \param reach [m], >= 0
-base::Status MoveTubePoint(patient::Patient& patient, std::uint32_t tube, std::uint32_t point, const math::Vec3& position,
-                           double reach);
+base::Status MoveTubePoint(patient::Patient& patient, std::uint32_t tube, std::uint32_t point,
+                           const math::Vec3& position, double reach);
 /// New point on the line between `after` and the next one; its radius lies between theirs.
-base::Status InsertTubePoint(patient::Patient& patient, std::uint32_t tube, std::uint32_t after, const math::Vec3& position);
+base::Status InsertTubePoint(patient::Patient& patient, std::uint32_t tube, std::uint32_t after,
+                             const math::Vec3& position);
 /// \return kPatientInvalid when fewer than two points would be left
 base::Status DeleteTubePoint(patient::Patient& patient, std::uint32_t tube, std::uint32_t point);
 /// Multiplies the radius; points within `reach` follow less and less. Radii stay within 0.1 and 15 mm.
-base::Status ScaleTubeRadius(patient::Patient& patient, std::uint32_t tube, std::uint32_t point, double factor,
-                             double reach);
+base::Status ScaleTubeRadius(patient::Patient& patient, std::uint32_t tube, std::uint32_t point,
+                             double factor, double reach);
 
 /// Joins an end to an organ or another tube: it moves onto the nearest point of the surface or centre line,
 /// and the points near it follow. An empty name lets the end leave the scene.

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 

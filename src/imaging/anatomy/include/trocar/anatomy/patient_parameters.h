@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 
@@ -68,7 +68,7 @@ using ParameterSetting = std::pair<std::string, std::string>;
 /// \return one Parameter a rule; kUnknownName for a name or word that is not known (it lists what is),
 ///         kUsage for a number out of range or no number
 base::Result<std::vector<patient::Parameter>> DrawParameters(std::uint64_t seed,
-                                                    std::span<const ParameterSetting> settings = {});
+                                                             std::span<const ParameterSetting> settings = {});
 
 /// The middle of every distribution, and no variation: for DrawParameters.
 std::vector<ParameterSetting> MakeUsualSettings();

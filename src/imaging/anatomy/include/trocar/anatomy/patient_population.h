@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/anatomy/patient_parameters.h"
 #include "trocar/base/result.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 

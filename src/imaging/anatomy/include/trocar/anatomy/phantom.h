@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "trocar/patient/patient.h"
-#include "trocar/contours/control_points.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/images/image_stack.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 

@@ -57,7 +57,8 @@ TubeGraph MakeTubeGraph(const patient::Patient& patient);
 
 /// Tubes with an end in the organ, ascending; each once.
 /// \return indices into patient.tubes
-std::vector<std::uint32_t> FindEnteringTubes(const patient::Patient& patient, const TubeGraph& graph, roles::OrganRole organ);
+std::vector<std::uint32_t> FindEnteringTubes(const patient::Patient& patient, const TubeGraph& graph,
+                                             roles::OrganRole organ);
 
 /// Tubes of a kind that can be reached from a tube along tubes of that kind, itself included, ascending.
 std::vector<std::uint32_t> FindConnectedTubes(const patient::Patient& patient, const TubeGraph& graph,

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/anatomy/patient_parameters.h"
 #include "trocar/base/result.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::anatomy {
 
@@ -56,16 +56,17 @@ enum class UnseenNumbers {
 ///
 /// \param settings  take the place of the variant's and of the numbers
 /// \return as DrawParameters, without what the images show
-base::Result<std::vector<patient::Parameter>> MakeUnseenParameters(const UnseenVariant& variant, UnseenNumbers numbers,
-                                                          std::span<const ParameterSetting> settings = {});
+base::Result<std::vector<patient::Parameter>> MakeUnseenParameters(
+    const UnseenVariant& variant, UnseenNumbers numbers, std::span<const ParameterSetting> settings = {});
 
 /// Draws all that is not seen from the distributions.
-base::Result<std::vector<patient::Parameter>> DrawUnseenParameters(std::uint64_t seed,
-                                                          std::span<const ParameterSetting> settings = {});
+base::Result<std::vector<patient::Parameter>> DrawUnseenParameters(
+    std::uint64_t seed, std::span<const ParameterSetting> settings = {});
 
 /// The combination that parameters show.
 /// \pre the variations are among them (TROCAR_ASSERT)
-UnseenVariant FindVariant(std::span<const UnseenVariant> variants, std::span<const patient::Parameter> parameters);
+UnseenVariant FindVariant(std::span<const UnseenVariant> variants,
+                          std::span<const patient::Parameter> parameters);
 
 /// A patient with ducts and arteries after the parameters, in place of those that are not seen.
 ///
@@ -76,7 +77,8 @@ UnseenVariant FindVariant(std::span<const UnseenVariant> variants, std::span<con
 /// \return kPatientInvalid where the patient has no liver, gallbladder or infundibulum, or what comes of it is
 ///         inconsistent
 base::Result<patient::Patient> CompletePatient(const patient::Patient& patient, std::string_view what,
-                                      const UnseenVariant& variant, std::span<const patient::Parameter> parameters);
+                                               const UnseenVariant& variant,
+                                               std::span<const patient::Parameter> parameters);
 
 /// Whether CompletePatient keeps its ducts and arteries.
 bool HasSeenTubes(const patient::Patient& patient);

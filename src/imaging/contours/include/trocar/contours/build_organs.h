@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/contours/overlay.h"
 #include "trocar/contours/reference_judge.h"
-#include "trocar/base/result.h"
 #include "trocar/images/image_series.h"
 #include "trocar/meshing/mesh_quality.h"
 #include "trocar/meshing/structure_mesh.h"

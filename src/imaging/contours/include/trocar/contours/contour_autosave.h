@@ -10,8 +10,8 @@
 #include <string>
 #include <thread>
 
-#include "trocar/contours/control_points.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/control_points.h"
 
 namespace trocar::contours {
 

@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "trocar/contours/control_points.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/control_points.h"
 
 namespace trocar::contours {
 

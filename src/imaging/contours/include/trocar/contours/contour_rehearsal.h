@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/contours/reference_contours.h"
-#include "trocar/base/result.h"
 #include "trocar/images/image_stack.h"
 #include "trocar/math/random.h"
 

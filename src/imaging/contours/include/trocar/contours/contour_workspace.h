@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/contours/contour_document.h"
 #include "trocar/contours/grow_contours.h"
 #include "trocar/contours/intelligent_scissors.h"
 #include "trocar/contours/mesh_job.h"
 #include "trocar/contours/slice_fits.h"
 #include "trocar/contours/slice_store.h"
-#include "trocar/base/result.h"
 #include "trocar/images/image_series.h"
 
 namespace trocar::contours {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/contours/edge_adaption.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/edge_adaption.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::contours {

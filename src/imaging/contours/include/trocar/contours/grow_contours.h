@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/contours/contour_document.h"
 #include "trocar/contours/organ_growth.h"
 #include "trocar/contours/slice_store.h"
-#include "trocar/base/result.h"
 #include "trocar/images/image_series.h"
 
 namespace trocar::contours {

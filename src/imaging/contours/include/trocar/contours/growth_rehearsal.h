@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/contours/contour_workspace.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/contour_workspace.h"
 #include "trocar/images/image_stack.h"
 
 namespace trocar::contours {

@@ -13,9 +13,9 @@
 #include <thread>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/contours/slice_fits.h"
-#include "trocar/base/result.h"
 #include "trocar/geometry/triangle_mesh.h"
 
 namespace trocar::contours {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "trocar/contours/control_points.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/images/image_stack.h"
 
 namespace trocar::contours {

@@ -7,8 +7,8 @@
 
 #include <array>
 
-#include "trocar/contours/control_points.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/images/image_stack.h"
 

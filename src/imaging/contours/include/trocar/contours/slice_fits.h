@@ -9,11 +9,11 @@
 #include <tuple>
 #include <vector>
 
+#include "trocar/base/result.h"
 #include "trocar/contours/contour_fill.h"
 #include "trocar/contours/contour_fit.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/contours/slice_store.h"
-#include "trocar/base/result.h"
 
 namespace trocar::contours {
 

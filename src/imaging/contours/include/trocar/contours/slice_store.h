@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/contours/edge_field.h"
 #include "trocar/base/result.h"
+#include "trocar/contours/edge_field.h"
 #include "trocar/images/image_stack.h"
 
 namespace trocar::contours {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/instrument/hand.h"
 #include "trocar/math/vector.h"
-#include "trocar/cholecystectomy/operation_error.h"
 
 namespace trocar::training {
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "trocar/base/result.h"
+#include "trocar/cholecystectomy/critical_view.h"
 #include "trocar/render/image.h"
 #include "trocar/simulation/simulation.h"
-#include "trocar/cholecystectomy/critical_view.h"
 
 namespace trocar::view {
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
+#include "trocar/patient/patient.h"
 #include "trocar/render/figure.h"
 
 namespace trocar::view {

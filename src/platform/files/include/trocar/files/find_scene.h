@@ -6,9 +6,9 @@
 #include <string>
 
 #include "trocar/base/result.h"
+#include "trocar/files/task_file.h"
 #include "trocar/scene/scene.h"
 #include "trocar/scene/task.h"
-#include "trocar/files/task_file.h"
 
 namespace trocar::files {
 
@@ -21,6 +21,6 @@ base::Result<scene::Scene> FindScene(const std::string& name_or_path, const Task
 /// An operation, a task, or a scene to look at, from text that need not stand in a file.
 /// \param source  its name in messages; relative paths inside start from its folder
 base::Result<scene::Scene> ParseScene(const std::string& text, const std::filesystem::path& source,
-                               const TaskChoice& choice = {});
+                                      const TaskChoice& choice = {});
 
 }  // namespace trocar::files

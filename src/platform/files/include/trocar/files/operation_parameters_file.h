@@ -17,6 +17,6 @@ inline constexpr const char* kOperationParametersFile = "assets/operation/parame
 /// \param patch  JSON merge patch (RFC 7386) on it; empty: none
 /// \return the file's error: kFileMissing, kJsonSyntax or kJsonField with the place
 base::Result<scene::OperationParameters> ReadOperationParameters(const std::filesystem::path& path,
-                                                          const std::string& patch = {});
+                                                                 const std::string& patch = {});
 
 }  // namespace trocar::files

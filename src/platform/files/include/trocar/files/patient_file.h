@@ -17,7 +17,7 @@ base::Result<patient::Patient> ReadPatient(const std::filesystem::path& folder);
 
 /// A patient as its folder has it, right or wrong.
 struct UncheckedPatient {
-  patient::Patient patient;                       ///< an organ whose mesh cannot be read has none
+  patient::Patient patient;              ///< an organ whose mesh cannot be read has none
   std::vector<base::Error> mesh_errors;  ///< (organs, then neighbours) kNone where the mesh was read
 };
 

@@ -20,6 +20,7 @@ base::Status WriteStateFile(const std::filesystem::path& path, const simulation:
 
 /// Restores the simulation.
 /// \return the player's bytes; kFileMissing, kFileUnreadable, or kStateInvalid: then the simulation is as it was
-base::Result<std::vector<std::byte>> ReadStateFile(const std::filesystem::path& path, simulation::Simulation& simulation);
+base::Result<std::vector<std::byte>> ReadStateFile(const std::filesystem::path& path,
+                                                   simulation::Simulation& simulation);
 
 }  // namespace trocar::files

@@ -49,7 +49,8 @@ base::Result<Json> ParseJson(std::string_view text, std::string_view source, con
 /// \tparam Sax  nlohmann::json_sax<nlohmann::json>
 /// \return as ParseJson; success, too, where `events` itself ended it by returning false
 template <class Sax>
-base::Status ParseJsonEvents(std::istream& stream, std::string_view source, Sax& events, const JsonLimits& limits);
+base::Status ParseJsonEvents(std::istream& stream, std::string_view source, Sax& events,
+                             const JsonLimits& limits);
 
 /// Closed interval that a number must lie in.
 struct NumberRange {
@@ -112,7 +113,8 @@ class JsonDocument {
  public:
   /// \param source  name used in messages
   /// \return kJsonSyntax with line and column, or with the field that an object gives twice; kFileTooLarge
-  static base::Result<JsonDocument> Parse(std::string_view text, std::string source, const JsonLimits& limits = {});
+  static base::Result<JsonDocument> Parse(std::string_view text, std::string source,
+                                          const JsonLimits& limits = {});
   /// \return ReadFile's error, too
   static base::Result<JsonDocument> Read(const std::filesystem::path& path, const JsonLimits& limits = {});
 

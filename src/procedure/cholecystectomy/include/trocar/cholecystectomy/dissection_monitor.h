@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "trocar/base/state_archive.h"
+#include "trocar/cholecystectomy/critical_view.h"
+#include "trocar/cholecystectomy/triangle_sight.h"
+#include "trocar/cholecystectomy/triangle_window.h"
 #include "trocar/instrument/camera.h"
 #include "trocar/surgery/gallbladder_attachment.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/rest_frame.h"
-#include "trocar/cholecystectomy/critical_view.h"
-#include "trocar/cholecystectomy/triangle_sight.h"
-#include "trocar/cholecystectomy/triangle_window.h"
 
 namespace trocar::cholecystectomy {
 

@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <span>
 
-#include "trocar/instrument/hand.h"
-#include "trocar/surgery/vessels.h"
 #include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cholecystectomy/triplet.h"
 #include "trocar/cholecystectomy/vessel_judgement.h"
+#include "trocar/instrument/hand.h"
+#include "trocar/surgery/vessels.h"
 
 namespace trocar::cholecystectomy {
 

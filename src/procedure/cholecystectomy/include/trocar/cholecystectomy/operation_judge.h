@@ -8,14 +8,14 @@
 #include <span>
 
 #include "trocar/base/state_archive.h"
-#include "trocar/instrument/camera.h"
-#include "trocar/instrument/hand.h"
-#include "trocar/surgery/grasp.h"
 #include "trocar/cholecystectomy/critical_view.h"
 #include "trocar/cholecystectomy/dissection_monitor.h"
 #include "trocar/cholecystectomy/emitted_acts.h"
 #include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cholecystectomy/triplet.h"
+#include "trocar/instrument/camera.h"
+#include "trocar/instrument/hand.h"
+#include "trocar/surgery/grasp.h"
 
 namespace trocar::cholecystectomy {
 

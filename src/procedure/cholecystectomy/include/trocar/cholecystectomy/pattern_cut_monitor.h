@@ -14,8 +14,8 @@ using math::Vec3;
 
 /// A level sheet that is held at its border, with a circle drawn round its middle.
 struct PatternSheet {
-  math::Vec3 centre;        ///< world frame [m]
-  math::Vec3 half;          ///< of its sides along x and y [m]; z is 0
+  math::Vec3 centre;  ///< world frame [m]
+  math::Vec3 half;    ///< of its sides along x and y [m]; z is 0
   double circle = 0;  ///< radius [m]
 };
 
@@ -25,7 +25,7 @@ struct PatternCut {
   double farthest = 0;    ///< of a cut from the line: inside of it, or round the piece that came free [m]
   double off_area = 0;    ///< between the line and the rim of that piece [m^2]
   bool is_free = false;   ///< what the line encloses hangs on the border no more
-  math::Vec3 p_farthest;        ///< world frame [m]
+  math::Vec3 p_farthest;  ///< world frame [m]
 };
 
 /// Judges by places at rest, so that it does not matter how the sheet is pulled.

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "trocar/surgery/vessels.h"
 #include "trocar/cholecystectomy/injury.h"
+#include "trocar/surgery/vessels.h"
 
 namespace trocar::cholecystectomy {
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/host/clock.h"
 #include "trocar/base/result.h"
+#include "trocar/host/clock.h"
 
 namespace trocar::bench {
 

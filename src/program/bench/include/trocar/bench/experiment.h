@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/bench/svg_plot.h"
 #include "trocar/base/result.h"
+#include "trocar/bench/svg_plot.h"
 
 namespace trocar::bench {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/bench/svg_plot.h"
 #include "trocar/base/result.h"
+#include "trocar/bench/svg_plot.h"
 
 namespace trocar::bench {
 

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "trocar/anatomy/build_patient.h"
-#include "trocar/host/translate.h"
 #include "trocar/editor/contour_commands.h"
 #include "trocar/editor/contour_editor.h"
 #include "trocar/editor/contour_options.h"
@@ -19,6 +18,7 @@
 #include "trocar/editor/surface_updates.h"
 #include "trocar/gui/background_job.h"
 #include "trocar/gui/question.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 

@@ -11,12 +11,12 @@
 #include <string>
 
 #include "trocar/anatomy/patient_lint.h"
-#include "trocar/host/translate.h"
 #include "trocar/editor/patient_commands.h"
 #include "trocar/editor/patient_editor.h"
 #include "trocar/editor/patient_editor_options.h"
 #include "trocar/gui/background_job.h"
 #include "trocar/gui/question.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/translate.h"
 #include "trocar/editor/contour_panel_presenter.h"
 #include "trocar/editor/mesh_view.h"
 #include "trocar/gui/card.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 

@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 
-#include "trocar/host/translate.h"
 #include "trocar/editor/contour_canvas.h"
 #include "trocar/editor/contour_panel.h"
 #include "trocar/editor/contour_presenter.h"
@@ -20,6 +19,7 @@
 #include "trocar/gui/help_card.h"
 #include "trocar/gui/message_bars.h"
 #include "trocar/gui/tips.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 

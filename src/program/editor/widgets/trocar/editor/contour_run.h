@@ -7,13 +7,13 @@
 #include <deque>
 #include <vector>
 
-#include "trocar/host/clock.h"
 #include "trocar/editor/contour_canvas.h"
 #include "trocar/editor/contour_panel.h"
 #include "trocar/editor/contour_presenter.h"
 #include "trocar/editor/contour_script.h"
 #include "trocar/editor/series_bar.h"
 #include "trocar/gui/message_bars.h"
+#include "trocar/host/clock.h"
 
 namespace trocar::editor {
 

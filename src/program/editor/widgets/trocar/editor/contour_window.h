@@ -7,9 +7,9 @@
 #include <memory>
 #include <optional>
 
-#include "trocar/host/clock.h"
 #include "trocar/editor/contour_pane.h"
 #include "trocar/gui/command_bar.h"
+#include "trocar/host/clock.h"
 
 namespace trocar::editor {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/translate.h"
 #include "trocar/editor/patient_panel_presenter.h"
 #include "trocar/gui/card.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::editor {
 

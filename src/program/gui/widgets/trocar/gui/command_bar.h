@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/command.h"
 #include "trocar/gui/tips.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::gui {
 

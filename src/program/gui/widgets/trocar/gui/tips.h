@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/clock.h"
 #include "trocar/gui/tip_clock.h"
+#include "trocar/host/clock.h"
 
 namespace trocar::gui {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/background_job.h"
+#include "trocar/host/translate.h"
 #include "trocar/presenter/branch.h"
 #include "trocar/presenter/options.h"
 #include "trocar/presenter/replay_commands.h"

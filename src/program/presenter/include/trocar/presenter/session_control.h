@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "trocar/host/clock.h"
 #include "trocar/device/mouse_keyboard.h"
+#include "trocar/host/clock.h"
 #include "trocar/net/igtl_server.h"
 #include "trocar/session/device_thread.h"
 #include "trocar/session/haptic_loop.h"

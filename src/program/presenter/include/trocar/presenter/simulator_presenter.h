@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "trocar/centre/course_page.h"
-#include "trocar/host/clock.h"
 #include "trocar/gui/background_job.h"
+#include "trocar/host/clock.h"
 #include "trocar/presenter/branch.h"
 #include "trocar/presenter/hints.h"
 #include "trocar/presenter/home.h"

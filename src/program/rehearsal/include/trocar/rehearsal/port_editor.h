@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
+#include "trocar/patient/patient.h"
 #include "trocar/rehearsal/rehearsal_state.h"
 
 namespace trocar::rehearsal {

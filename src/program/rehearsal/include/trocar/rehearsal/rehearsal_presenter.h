@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/file_lock.h"
 #include "trocar/editor/contour_options.h"
 #include "trocar/gui/background_job.h"
+#include "trocar/host/file_lock.h"
 #include "trocar/images/series_list.h"
 #include "trocar/patient/patient.h"
 #include "trocar/rehearsal/port_editor.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/base/result.h"
 #include "trocar/images/image_series.h"
+#include "trocar/patient/patient.h"
 
 namespace trocar::rehearsal {
 

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/patient/patient.h"
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/base/result.h"
 #include "trocar/images/image_stack.h"
+#include "trocar/patient/patient.h"
 #include "trocar/rehearsal/rehearsal_state.h"
 #include "trocar/view/patient_figure.h"
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/host/translate.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/file_dialog.h"
+#include "trocar/host/translate.h"
 #include "trocar/rehearsal/rehearsal_presenter.h"
 
 namespace trocar::rehearsal {

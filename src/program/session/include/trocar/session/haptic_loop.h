@@ -11,11 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/host/newest_slot.h"
 #include "trocar/base/result.h"
 #include "trocar/device/force_driver.h"
 #include "trocar/haptics/check_pose.h"
 #include "trocar/haptics/haptic_channel.h"
+#include "trocar/host/newest_slot.h"
 #include "trocar/scene/scene.h"
 #include "trocar/session/device_hands.h"
 #include "trocar/session/supervisor_link.h"
@@ -97,7 +97,7 @@ std::string FormatHapticsJson(const HapticStatus& status);
 struct HapticLink {
   std::atomic<bool> is_used{false};  ///< a loop runs: the simulation cuts patches only then
   std::array<host::NewestSlot<tissue::LocalPatch>, kHandCount> patches;  ///< simulation to loop
-  host::NewestSlot<HapticHands> hands;                                    ///< loop to simulation
+  host::NewestSlot<HapticHands> hands;                                   ///< loop to simulation
 };
 
 /// The simulation's end of the link: hands and pedals of the haptic devices take the place of the input's.
