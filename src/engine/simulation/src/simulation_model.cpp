@@ -10,6 +10,7 @@
 #include "trocar/base/state_hash.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/patient/patient.h"
+#include "trocar/scene/scene_fields.h"
 #include "trocar/tissue/conserved_equilibrium.h"
 #include "trocar/tissue/damage.h"
 #include "trocar/tissue/equilibrium.h"
@@ -69,7 +70,8 @@ base::Status Fill(const tissue::TissueModel& tissue_model, const base::Threads& 
   return {};
 }
 
-std::uint64_t CalcFingerprint(const SimulationModel& model) {
+/// Counts objects and goals instead of reading them; only recordings and states of before have it.
+std::uint64_t CalcFirstFingerprint(const SimulationModel& model) {
   base::StateHash hash;
   const Scene& scene = *model.scene;
   base::AddStateTo(hash, model.tissue->definition);
@@ -99,6 +101,16 @@ std::uint64_t CalcFingerprint(const SimulationModel& model) {
   return hash.Value();
 }
 
+/// Of the scene, and of what this program makes of it.
+std::uint64_t CalcFingerprint(const SimulationModel& model) {
+  base::StateHash hash;
+  hash.Add(scene::CalcSceneFingerprint(*model.scene));
+  base::AddStateTo(hash, model.tissue->definition);
+  base::AddStateTo(hash, model.tissue_at_start);
+  hash.Add(std::uint64_t{model.tissue->surfaces.size()});
+  return hash.Value();
+}
+
 }  // namespace
 
 base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::shared_ptr<const Scene> scene,
@@ -115,6 +127,7 @@ base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::sh
   model->hollow_organ = model->scene->patient.OrganOf(roles::OrganRole::kGallbladder);
   if (const auto filled = Fill(tissue_model, threads, *model); !filled.ok()) return filled.error();
   model->fingerprint = CalcFingerprint(*model);
+  model->first_fingerprint = CalcFirstFingerprint(*model);
   return std::shared_ptr<const SimulationModel>(std::move(model));
 }
 

@@ -28,7 +28,8 @@ struct SimulationModel {
   std::int32_t hollow_organ = -1;       ///< leaks when its wall tears
   tissue::TissueState tissue_at_start;  ///< at rest, tense organs filled
   tissue::ConservationState conserved_at_start;
-  std::uint64_t fingerprint = 0;  ///< of all that makes a state one of this model
+  std::uint64_t fingerprint = 0;        ///< of all that makes a state one of this model
+  std::uint64_t first_fingerprint = 0;  ///< as it was taken at first, see ModelFingerprintKind
   /// What the solvers make of the uncut tissue.
   std::shared_ptr<const tissue::SolverModel> solver_model;
   /// State of the first tick. The first simulation of the model saves it: it is the same in all of them.

@@ -56,7 +56,7 @@ base::Result<std::span<const std::byte>> ReadHeader(const SimulationModel& model
     return Refuse("the state was saved in format " + std::to_string(header.version) +
                   ", this program reads " + std::to_string(kVersion) + "; save it again with this version");
   }
-  if (header.fingerprint != model.fingerprint)
+  if (header.fingerprint != model.fingerprint && header.fingerprint != model.first_fingerprint)
     return Refuse(
         "the state was saved of another scene, patient or seed; restore it into the one it came from");
   if (header.size != fields.size() || header.checksum != CalcChecksum(fields))
@@ -197,8 +197,9 @@ base::Status Simulation::RestoreWithout(std::span<const std::byte> bytes, const 
   return restored;
 }
 
-std::uint64_t Simulation::ModelFingerprint() const {
-  return content_->model->fingerprint;
+std::uint64_t Simulation::ModelFingerprint(ModelFingerprintKind kind) const {
+  return kind == ModelFingerprintKind::kFirst ? content_->model->first_fingerprint
+                                              : content_->model->fingerprint;
 }
 
 std::uint64_t Simulation::Hash(StatePart part) const {

@@ -386,6 +386,7 @@ base::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
                                                         RecorderSettings settings) {
   description.tick_seconds = simulation.GetScene().tick_seconds;
   description.model = simulation.ModelFingerprint();
+  description.model_kind = simulation::ModelFingerprintKind::kEveryField;
   description.first_tick = simulation.GetSnapshot().tick;
   description.program = std::string(host::VersionText());
   description.engine_bits = simulation::kEngineBits;

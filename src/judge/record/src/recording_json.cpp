@@ -69,6 +69,7 @@ std::string WriteDescription(const Description& d) {
                        {"first_tick", d.first_tick},
                        {"player", d.player},
                        {"program", d.program},
+                       {"model_kind", static_cast<int>(d.model_kind)},
                        {"engine_bits", d.engine_bits},
                        {"compiler", d.compiler},
                        {"started", d.started}};
@@ -97,6 +98,10 @@ bool ReadDescription(std::string_view text, Description& d) {
       return false;
   }
   // older files do not say
+  if (std::uint64_t model_kind = 1; json.contains("model_kind")) {
+    if (!ReadCount(json, "model_kind", model_kind) || model_kind < 1 || model_kind > 2) return false;
+    d.model_kind = static_cast<simulation::ModelFingerprintKind>(model_kind);
+  }
   if (std::uint64_t bits = 1; json.contains("engine_bits")) {
     if (!ReadCount(json, "engine_bits", bits) || bits > kMostEngineBits) return false;
     d.engine_bits = static_cast<int>(bits);

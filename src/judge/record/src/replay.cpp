@@ -64,7 +64,7 @@ base::Result<Replay> Replay::Open(Recording recording, const ReplaySettings& set
       Simulation::Make(*model, {.threads = host::UseThreads(settings.threads), .now = host::NowNanoseconds});
   if (!made.ok()) return made.error();
   const Description& d = recording.description;
-  if (made->ModelFingerprint() != d.model) {
+  if (made->ModelFingerprint(d.model_kind) != d.model) {
     return Refuse("the recording is of another state of \"" + d.name +
                   "\": its scene, patient or what this program makes of them has changed since " + d.started +
                   " (version " + d.program +

@@ -65,6 +65,21 @@ TEST_F(ReplayTest, OnlyTheEngineThatIsNotedReplaysIt) {
               testing::HasSubstr("engine " + std::to_string(simulation::kEngineBits)));
 }
 
+// Recordings of before name a fingerprint that covers less; they go on to fit, and only as what they are.
+TEST_F(ReplayTest, AFingerprintOfBeforeFitsUnderItsOwnName) {
+  using simulation::ModelFingerprintKind;
+  const std::uint64_t first = OpenIt().GetSimulation().ModelFingerprint(ModelFingerprintKind::kFirst);
+  Recording recording = ReadIt();
+  EXPECT_EQ(recording.description.model_kind, ModelFingerprintKind::kEveryField);
+  recording.description.model = first;
+  EXPECT_FALSE(Replay::Open(std::move(recording), 1).ok());
+  recording = ReadIt();
+  recording.description.model = first;
+  recording.description.model_kind = ModelFingerprintKind::kFirst;
+  const auto replay = Replay::Open(std::move(recording), 1);
+  ASSERT_TRUE(replay.ok()) << replay.error().Text();
+}
+
 TEST_F(ReplayTest, SeeksToAnyMoment) {
   Replay replay = OpenIt();
   std::mt19937_64 random(8);

@@ -15,6 +15,7 @@
 
 #include "trocar/base/result.h"
 #include "trocar/scene/scene.h"
+#include "trocar/simulation/engine_bits.h"
 #include "trocar/simulation/model_description.h"
 #include "trocar/simulation/operation_result.h"
 #include "trocar/simulation/snapshot.h"
@@ -99,7 +100,7 @@ class Simulation {
   /// \return kStateInvalid where it is damaged, of another format or another model; then all is as it was
   base::Status Restore(std::span<const std::byte> bytes);
   /// Fingerprint of the model: scene, patient and tissue at rest. States of one model fit each other.
-  std::uint64_t ModelFingerprint() const;
+  std::uint64_t ModelFingerprint(ModelFingerprintKind kind = ModelFingerprintKind::kEveryField) const;
   /// Fingerprint of the state.
   std::uint64_t Hash(StatePart part = StatePart::kAll) const;
   /// Names and fingerprints of all fields of the state, in their order: where two states differ.

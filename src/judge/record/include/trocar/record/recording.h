@@ -14,6 +14,7 @@
 
 #include "trocar/base/result.h"
 #include "trocar/scene/input.h"
+#include "trocar/simulation/engine_bits.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::record {
@@ -31,6 +32,8 @@ struct Description {
   std::uint64_t seed = 0;   ///< of the scene
   double tick_seconds = 0;  ///< [s]
   std::uint64_t model = 0;  ///< fingerprint: simulation::Simulation::ModelFingerprint
+  /// What it covers; kFirst where a file does not say.
+  simulation::ModelFingerprintKind model_kind = simulation::ModelFingerprintKind::kFirst;
   std::uint64_t first_tick =
       0;               ///< at which it begins; not 0 where it goes on from a saved state or another recording
   std::string player;  ///< "expert, seed 3", "mouse and keyboard", ...
