@@ -309,6 +309,15 @@ def run_controls(root, tree):
                     shutil.copytree(entry, copy / "docs")
                 elif entry.suffix == ".md":
                     shutil.copy(entry, copy / entry.name)
+                elif entry.name == "src":
+                    # the pages of the wings are copies, or a mistake would be seeded in this tree
+                    for wing in entry.iterdir():
+                        (copy / "src" / wing.name).mkdir(parents=True)
+                        for part in wing.iterdir():
+                            if part.suffix == ".md":
+                                shutil.copy(part, copy / "src" / wing.name / part.name)
+                            else:
+                                os.symlink(part, copy / "src" / wing.name / part.name)
                 elif entry.name not in (".git", "build", "out"):
                     os.symlink(entry, copy / entry.name)
             seed(copy)
