@@ -13,7 +13,7 @@ configure() {
   if [ ! -f "$folder/build.ninja" ] || [ ${#fresh[@]} -gt 0 ]; then
     say "configuring build/$1"
     (cd "$root" && cmake "${fresh[@]}" --preset "$1" "${@:2}")
-  elif [ -n "$(find "$root/src" "$root/bench" "$root/tests" -name '*.cpp' -newer "$folder/build.ninja" -print -quit)" ]; then
+  elif [ -n "$(find "$root/src" "$root/tests" -name '*.cpp' -newer "$folder/build.ninja" -print -quit)" ]; then
     cmake "$folder" >/dev/null # sorts changed files into units anew (cmake/unity_build.cmake)
   fi
 }
