@@ -21,6 +21,9 @@
 namespace {
 
 using namespace trocar::tissue;
+using trocar::base::HasSimdLevel;
+using trocar::base::SimdLevel;
+using trocar::base::SimdLevelName;
 using trocar::math::Vec3;
 
 /// Where there is no library of threads (WebAssembly, another processor's), the caller does all: the bits are the same.
