@@ -49,7 +49,7 @@ def check(source):
     if "gallbladder" not in names or "cystic_duct" not in names or "fundus" not in names:
         return [f"{TABLE}: no table of names was found"]
     complaints, looked_at = [], 0
-    for folder in ("src", "bench", "samples"):
+    for folder in ("src", "samples"):
         for path in sorted((source / folder).rglob("*")):
             name = path.relative_to(source).as_posix()
             if path.suffix not in (".cpp", ".h", ".cu") or "/test/" in name or name == TABLE or name in OTHER_TABLES:

@@ -155,7 +155,7 @@ def read_sources(folders):
 
 def check_names(root):
     """Source files, and names such as SolveReport::error or Suite.Test, that the documents mention are there."""
-    folders = [root / name for name in ("src", "tests", "samples", "fuzz", "bench")]
+    folders = [root / name for name in ("src", "tests", "samples", "fuzz")]
     files, words = read_sources(tuple(folder.resolve() for folder in folders if folder.is_dir()))
     for page in pages(root):
         name = page.relative_to(root)

@@ -51,7 +51,7 @@ def main():
     tests = read_tests(build)
     complaints = find_lane_complaints(tests, lanes)
     root = pathlib.Path(source)
-    files = [path for folder in ("src", "bench", "tests") if (root / folder).exists()
+    files = [path for folder in ("src", "tests") if (root / folder).exists()
              for path in (root / folder).rglob("*_test.cpp")]
     complaints += find_hidden_tests((path.relative_to(root), path.read_text(encoding="utf-8")) for path in files)
     print("\n".join(complaints))

@@ -10,7 +10,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ["src", "bench", "python"]
+FOLDERS = ["src", "python"]
 # numbers, for which there is nothing to say; and who must not throw or allocate
 DUMPS = {"src/platform/host/include/trocar/host/json_text.h", "src/judge/training/src/trace_file.cpp", "src/judge/training/src/metric_definition.cpp",
          "src/judge/training/src/attempt_metrics.cpp"}
