@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file attempt.h  What the hands do, collected tick by tick, and the metrics of that.
+/// \file attempt.h  An attempt, collected tick by tick, and its metrics.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ class Attempt {
  public:
   explicit Attempt(const simulation::Simulation& simulation) { Begin(simulation); }
 
-  /// What the hands do from here on is another attempt.
+  /// Begins another attempt.
   void Begin(const simulation::Simulation& simulation) {
     trace_.emplace(simulation);
     trace_->Add(simulation.GetSnapshot());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file binding.h  What the parts of the Python module share: errors as exceptions, vectors as arrays.
+/// \file binding.h  Helpers that the parts of the Python module share: errors as exceptions, vectors as arrays.
 #pragma once
 
 #include <pybind11/numpy.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file camera.h  What the laparoscope of a simulation shows, drawn off-screen.
+/// \file camera.h  Picture of a simulation's laparoscope, drawn off-screen.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ class Camera {
   double FocalLength() const { return focal_length_; }  ///< of the last picture [pixels]
 
  private:
-  /// What needs the context to be current where it goes.
+  /// Objects that need the context to be current when they are destroyed.
   struct Graphics {
     render::OffscreenContext context;
     render::OffscreenTarget target;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file running.h  What runs: one simulation with the scene that it is of; one environment. Each may collect its attempt.
+/// \file running.h  A running simulation with its scene, and a running environment. Each may collect its attempt.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file scene_source.h  What Python gives as a scene or a patient: a name, a path, or a dictionary.
+/// \file scene_source.h  Scene or patient as Python gives it: a name, a path, or a dictionary.
 #pragma once
 
 #include <filesystem>

@@ -47,7 +47,7 @@ inline void ConsiderForSegment(std::span<const Vec3> positions, const Triangle& 
           found.on_segment};
 }
 
-/// What the nearest triangle to a capsule's axis says of the capsule.
+/// Contact of a capsule, from the triangle nearest to its axis.
 inline CapsuleContact MakeCapsuleContact(const SegmentContact& axis, double radius) noexcept {
   CapsuleContact contact;
   contact.axis = axis;

@@ -31,7 +31,7 @@ inline int CountLeaving(std::span<const math::Vec3> positions, const geometry::T
   return math::Dot(a, normal) * normal[axis] > 0.0 ? around : 0;
 }
 
-/// What most of the rays along x, y and z say.
+/// Majority vote of the rays along x, y and z: true where at least two leave the surface more often than they enter it.
 /// \param count_leaving  (axis) -> CountLeaving of all triangles
 template <typename Count>
 bool DoMostRaysLeave(const Count& count_leaving) noexcept {

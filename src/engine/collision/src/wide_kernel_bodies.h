@@ -13,7 +13,7 @@ namespace {
 /// A box grown by this share of its largest coordinate holds its corners, which single precision moves by 2^-24
 /// of themselves, and whatever double precision computes between them [-].
 constexpr float kBoxMargin = 4e-7f;
-/// What three products of a direction and a position lose, as a share of the largest coordinate [-].
+/// Bound on the rounding error of a direction's dot product with a position, as a share of the largest coordinate [-].
 constexpr float kDotMargin = 4e-6f;
 /// Of a squared length [-].
 constexpr float kSquareMargin = 4e-6f;

@@ -17,7 +17,7 @@ using Ring = std::vector<Vec3>;
 /// \pre at least two rings of at least three points (TROCAR_ASSERT)
 geometry::TriangleMesh MakeLoft(const std::vector<Ring>& rings);
 
-/// The same without ends: the last ring is joined to the first.
+/// Closed solid through a loop of rings: as MakeLoft(), but without ends, the last ring joined to the first.
 geometry::TriangleMesh MakeLoop(const std::vector<Ring>& rings);
 
 /// Rectangle across the z axis with its corners cut, so that its edges catch the light.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file hold_constraint.h  What jaws hold follows them, as on springs and dampers in all six directions.
+/// \file hold_constraint.h  Constraint by which a held body follows the jaws, as on springs and dampers in all six directions.
 #pragma once
 
 #include "bullet_units.h"

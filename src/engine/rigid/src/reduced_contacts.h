@@ -16,7 +16,7 @@ class ReducedContactWorld final : public OwnMotionWorld {
  public:
   using OwnMotionWorld::OwnMotionWorld;
 
-  /// What a step's solver sees.
+  /// Finds the contacts that a step's solver sees: the deepest and the outermost only.
   void performDiscreteCollisionDetection() override;
   /// All, as Bullet finds them.
   void FindAllContacts() { btDiscreteDynamicsWorld::performDiscreteCollisionDetection(); }

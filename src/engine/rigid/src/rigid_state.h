@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file rigid_state.h  What Bullet's objects have to hold again for the next step to have the same bits.
+/// \file rigid_state.h  State of Bullet's objects that has to be restored for the next step to have the same bits.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file bad_tick.h  What is taken back with a tick whose tissue state was bad (faults S1 and S3).
+/// \file bad_tick.h  Return to the last good tick after one whose tissue state was bad (faults S1 and S3).
 #pragma once
 
 #include "trocar/tissue/conservation.h"

@@ -17,7 +17,7 @@ namespace trocar::simulation {
 
 using scene::EventKind;
 
-/// What one hand's jaws did to a thing in a tick.
+/// Change of one hand's grasp of an object in a tick.
 struct RigidChange {
   surgery::GraspChange kind = surgery::GraspChange::kNone;
   std::int32_t object = -1;
@@ -34,7 +34,7 @@ class RigidStage {
 
   /// The jaws of a hand cannot close further than what they hold.
   double StopJaw(int hand, double wanted) noexcept;
-  /// What the tools run into, as limits on the tools that are seen and forces on the hands.
+  /// Finds the obstacles that the tools run into. They limit the tools that are seen and press on the hands.
   void FindObstacles(const Scene& scene, const std::array<instrument::TrocarJoints, kHandCount>& joints,
                      ToolContacts& contacts);
   /// One tick, with the tools where they are seen.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file simulation_content.h  What a simulation is made of, and the stages of its tick.
+/// \file simulation_content.h  Content of a simulation: its state, its scratch, and the stages of its tick.
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ struct WorldState {
   instrument::TrocarJoints laparoscope;  ///< where it is held
 };
 
-/// What those who only look have seen.
+/// State of the observers, which only look: the judge of the operation, the monitor of the task, and the events.
 struct JudgementState {
   std::optional<cholecystectomy::OperationJudge> operation;  ///< where the scene is one
   TaskMonitor monitor;
@@ -55,7 +55,7 @@ struct JudgementState {
   bool was_frozen = false, were_tools_touching = false;
 };
 
-/// What the stages of one tick hand on; nothing of it decides the next tick.
+/// Data that the stages of one tick pass on. None of it decides the next tick.
 struct TickScratch {
   LiveSettings settings;
   Vec3 gravity;  ///< in the patient's frame [m/s^2]

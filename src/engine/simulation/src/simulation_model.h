@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file simulation_model.h  What is constant while a surgery runs, shared by any number of simulations.
+/// \file simulation_model.h  Constant data of a surgery, shared by any number of simulations.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct SimulationModel {
   tissue::ConservationState conserved_at_start;
   std::uint64_t fingerprint = 0;        ///< of all that makes a state one of this model
   std::uint64_t first_fingerprint = 0;  ///< as it was taken at first, see ModelFingerprintKind
-  /// What the solvers make of the uncut tissue.
+  /// Solver model of the uncut tissue.
   std::shared_ptr<const tissue::SolverModel> solver_model;
   /// State of the first tick. The first simulation of the model saves it: it is the same in all of them.
   mutable std::vector<std::byte> start;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file tool_contacts.h  What tools, organs and tubes touch in a tick, and where the tools that are seen stand.
+/// \file tool_contacts.h  Contacts of tools, organs and tubes in a tick, and the poses of the tools that are seen.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct ToolTouch {
 /// Called in the order of its members, once a tick each; nothing allocates but Make.
 class ToolContacts {
  public:
-  /// \param model     whose rest shape the trees are built over
+  /// \param model     system over whose rest shape the trees are built
   /// \param surfaces  organs, then tubes
   /// \return kMeshInvalid
   static base::Result<ToolContacts> Make(const Scene& scene, const tissue::TissueModel& model,

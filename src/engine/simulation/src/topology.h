@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file topology.h  The one owner of what is joined to what: nodes and springs as surgery has left them.
 ///
-/// What is built over nodes and springs (solver, volumes, contacts, ...) registers once, and is notified in the same way
-/// after a cut, after a state was restored and after a surgery began again.
+/// Users of nodes and springs (solver, volumes, contacts, ...) register once. They are notified in the same way after a cut,
+/// after a state was restored and after a surgery began again.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ struct WallSprings {
 
 class Topology {
  public:
-  /// What goes on with the changed system. It has to forget what it knew of the one of before only where `is_restored`:
-  /// then anything may be different, and its own state is restored after it.
+  /// Notification of a user that it goes on with the changed system. Only where `is_restored` it has to forget the former
+  /// system: then anything may be different, and its own state is restored afterwards.
   using Update = std::function<void(const Topology& topology, bool is_restored)>;
 
   Topology() = default;

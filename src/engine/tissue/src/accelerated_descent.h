@@ -21,7 +21,7 @@
 
 namespace trocar::tissue {
 
-/// What ends it.
+/// Stopping criteria of the accelerated descent.
 struct AcceleratedSettings {
   int max_iterations;
   double max_error;  ///< see SolverSettings [-]
@@ -35,7 +35,7 @@ class AcceleratedDescent {
       : springs_(&springs), spare_share_(spare_share) {}
   /// Takes a model, or another of as many nodes.
   ///
-  /// \param ordered     the same in the solvers' order; both must outlive this
+  /// \param ordered     that model in the solvers' order; both must outlive this
   /// \param grid_shape  where it is a structured mesh and is to be taken as a stencil
   /// \note Allocates nothing where the spare share was enough and no structured mesh is or was there.
   void SetModel(const TissueModel& model, const OrderedModel& ordered,

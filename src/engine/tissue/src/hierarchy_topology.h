@@ -48,8 +48,8 @@ struct HierarchyTopology {
   const LevelTopology& Coarsest() const { return levels[level_count - 1]; }
 };
 
-/// What a level may need: as many nodes and steps as `like` has there, and `share` times more; half of the level before, where
-/// another graph needs other levels.
+/// Capacity of a level: as many nodes and steps as `like` has there, and `share` times more. With a share it is at least half
+/// of the level before, because another graph may need other levels.
 struct LevelCapacity {
   std::size_t nodes = 0, steps = 0;
 };

@@ -104,7 +104,7 @@ struct ByNode {
 };
 
 #if TROCAR_LANES == 16
-/// The same by slice.
+/// Displacements of a step by slice, and all that is done to them.
 struct BySlice {
   static Vector Load(const SliceStep& s, std::uint32_t node) {
     return LoadRow(s.u_by_slice + std::size_t{node} * 3, kSliceNodes);

@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kSliceNodes = 16;
 struct alignas(16) Float4 {
   float x = 0, y = 0, z = 0, w = 0;
 };
-/// The same in double precision, padded to 32 bytes.
+/// A node's vector in double precision, padded to 32 bytes.
 struct alignas(32) Double4 {
   double x = 0, y = 0, z = 0, w = 0;
 };
@@ -50,7 +50,7 @@ struct LinkMatrix {
   const float* follower;  // (steps, 3, kSliceNodes): t, of kProduct and kFollower alone; or null
 };
 
-/// What a pass over a LinkMatrix writes.
+/// Result that a pass over a LinkMatrix writes.
 enum class LinkPass {
   kStart,     ///< out = factor D^-1 b; x is not read
   kProduct,   ///< out = K x
@@ -59,7 +59,7 @@ enum class LinkPass {
   kSmooth     ///< out = x + factor D^-1 (b - K x)
 };
 
-/// What the balance of forces needs of a node.
+/// Values of a node that the balance of forces needs, in the order of BalancePass::nodes.
 enum BalanceValue {
   kRestX,      ///< [m]
   kRestY,      ///< [m]
@@ -100,7 +100,7 @@ struct FollowerPass {
   float* follower;          // (steps, 3, kSliceNodes) out: t [N/m]
 };
 
-/// What a pass found over its slices; the same for every width of a vector.
+/// Sums and maxima that a pass found over its slices; the same for every width of a vector.
 struct BalanceSums {
   double energy = 0;     ///< springs half, being met from both ends, virtual springs and outer forces [J]
   double residual2 = 0;  ///< largest squared force out of balance on a free node [N^2]

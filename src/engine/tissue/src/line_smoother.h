@@ -25,7 +25,7 @@ class LineSmoother {
   /// Finds the chains: connected nodes with few neighbours whose matrix is narrow.
   /// \param graph  of the finest level
   LineSmoother(const NodeGraph& graph, const SliceLayout& layout) { SetGraph(graph, layout); }
-  /// The same for another graph.
+  /// Finds the chains of another graph.
   /// \note Allocates nothing where Reserve() was enough.
   void SetGraph(const NodeGraph& graph, const SliceLayout& layout);
   void Reserve(double share);

@@ -58,7 +58,7 @@ struct OrderedSprings {
 void SetOrderedSprings(const TissueModel& model, const OrderedModel& ordered, OrderedSprings& springs);
 OrderedSprings MakeOrderedSprings(const TissueModel& model, const OrderedModel& ordered);
 
-/// What acts in one solve, in the solvers' order.
+/// Load of one solve, in the solvers' order.
 struct OrderedLoad {
   std::vector<Vec3> constant;  // (n) weight and external force [N]
   std::vector<std::uint8_t> is_free;
@@ -117,8 +117,8 @@ class Linearisation {
   /// \note Real-time safe.
   void CalcBalance(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                    Balance& balance) noexcept;
-  /// The same, and the stiffness: links, diagonal_excess and inverse of `level`. Of the contacts' stiffness only what
-  /// each does to its corners alone is in the diagonal excess.
+  /// Forces, energy and stiffness: the last fills links, diagonal_excess and inverse of `level`. Of the contacts' stiffness the
+  /// diagonal excess has only what each contact does to its corners alone.
   /// \note Real-time safe.
   void Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                  LinkLevel& level, Balance& balance) noexcept;

@@ -2,7 +2,7 @@
 /// \file link_hierarchy.h  Algebraic multigrid for systems of springs: an approximate inverse of their
 /// stiffness.
 ///
-/// What the nodes of an aggregate (hierarchy_topology.h) share is their translation, so the sum of the links between two
+/// The nodes of an aggregate (hierarchy_topology.h) share only their translation, so the sum of the links between two
 /// aggregates is again a link with a symmetric 3 x 3 stiffness: every level is a LinkMatrix. A step of a coarse function is
 /// steeper than the slope it stands for, which makes coarse links too stiff; they are scaled down instead of smoothing the
 /// prolongation, which would fill the coarse matrices. On the finest level chains of nodes are solved directly
@@ -38,7 +38,7 @@ struct LinkLevel {
 
   std::uint32_t Size() const { return layout->node_count; }
   LinkMatrix Matrix() const;
-  /// S of an entry as a block. \param is_firm  what softens a compressed spring's ends across is left out
+  /// S of an entry as a block. \param is_firm  leaves out the negative stiffness of a compressed spring across its axis
   std::array<float, 6> Link(std::size_t entry, bool is_firm = false) const noexcept {
     const float* const from =
         links.data() + entry / kSliceNodes * link_floats * kSliceNodes + entry % kSliceNodes;

@@ -44,7 +44,7 @@ class LocalSolve {
   /// \note Real-time safe.
   bool Gather(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
               std::span<const Float4> step, double longest) noexcept;
-  /// Those of the last Gather() that move, as the whole numbers them.
+  /// Nodes of the last Gather() that move, as the whole numbers them.
   std::span<const std::uint32_t> Free() const { return std::span(nodes_).first(free_count_); }
   /// Adds factor times each node's vector to the load [N].
   /// \note Real-time safe.

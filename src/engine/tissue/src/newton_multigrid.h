@@ -46,7 +46,7 @@ class NewtonMultigrid {
  private:
   using SmallVector = ProjectedPreconditioner::SmallVector;
 
-  /// What the phases of one solve share.
+  /// Data that the phases of one solve share.
   struct Context {
     const Kernels& kernels;
     Workers& workers;
@@ -73,7 +73,7 @@ class NewtonMultigrid {
     SmallVector multipliers_before{};
     bool IsUsable() const noexcept { return length > 0.0 && length < INFINITY; }
   };
-  /// What was taken of a step, in position_.
+  /// Part of a step that was taken, in position_.
   struct Advancement {
     double share = 0;           // of the step [-]
     bool is_lower = false;      // the energy fell as it should and the constraints are in reach

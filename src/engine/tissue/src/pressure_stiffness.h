@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file pressure_stiffness.h  What closed surfaces under pressure add to the stiffness.
+/// \file pressure_stiffness.h  Follower stiffness that closed surfaces under pressure add to the stiffness.
 ///
 /// A pressure pushes along normals, and normals turn with the nodes: node a feels P dV/dx_a, so the stiffness has
 /// -P d^2V / dx_a dx_b. For an edge between a and b it takes x_b - x_a to (P / 6) (c - d) x (x_b - x_a), with c and d the

@@ -55,7 +55,7 @@ class ProjectedPreconditioner {
   DotAndLongest Apply(const Kernels& kernels, Workers& workers, AlignedVector<Float4>& r,
                       AlignedVector<Float4>& z) noexcept;
 
-  /// What each active constraint carries of the residual since SetActive(), in its own units.
+  /// Part of the residual that each active constraint carries since SetActive(), in its own units.
   SmallVector& Multipliers() noexcept { return multipliers_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file solver_content.h  What the solvers share, and what each is handed.
+/// \file solver_content.h  Data that the solvers share, and the input that each is handed.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace trocar::tissue {
 
-/// What one iteration needs of the nodes of a slice, lane by lane. Rebuilt in every solve.
+/// Data of the nodes of a slice that an iteration needs, lane by lane. Rebuilt in every solve.
 struct SliceData {
   double inverse_block[6][kLanes];  ///< xx, xy, xz, yy, yz, zz; zero for prescribed nodes, which then stay
   double shape_stiffness[kLanes];   ///< scaled [N/m]
@@ -30,7 +30,7 @@ struct StepFactors {
   bool is_first;  ///< of its cycle: the position before is the present one
 };
 
-/// What one slice reports.
+/// Result of one slice of nodes: largest residual, largest force, and whether a step was cut short.
 struct SliceReport {
   double residual2 = 0;       ///< largest squared residual of a free node [N^2]
   double force2 = 0;          ///< largest squared force of a spring or load on one [N^2]
@@ -43,7 +43,7 @@ void UpdateSlice(const SlicedSprings& springs, const SliceData& data, const Step
                  const Vec3* position, Vec3* previous, std::uint32_t node_count, std::uint32_t slice,
                  SliceReport& report) noexcept;
 
-/// What ends an iteration that measures its residual.
+/// Stopping criteria of iterations that measure their residual.
 struct IterationSettings {
   int max_iterations;
   double tolerance;  ///< on the residual [-]
@@ -84,7 +84,7 @@ SolveReport SolveChebyshevJacobiWang2015(const LinearisedModel& springs, Chebysh
                                          const TissueLoad& load, TissueState& state,
                                          ConstraintSet* constraints) noexcept;
 
-/// What one solver needs is made when it first runs, or before by Prepare(): most simulations run one solver for ever.
+/// Solvers and their memory. Each is made when it first runs, or before by Prepare(): most simulations run one for ever.
 struct EquilibriumSolver::Content {
   Content(const TissueModel& model, const SolverOptions& options, std::shared_ptr<const SolverModel> made);
   void UpdateTopology(const TissueModel& model);

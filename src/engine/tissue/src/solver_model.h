@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file solver_model.h  What the solvers make of a model: the order of its nodes in memory, and the levels of the multigrid.
+/// \file solver_model.h  Solver model: the order of a model's nodes in memory, and the levels of the multigrid.
 #pragma once
 
 #include <cstdint>

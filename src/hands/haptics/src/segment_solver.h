@@ -22,7 +22,7 @@ class SegmentSolver {
   /// nodes that nothing presses; the others use them again.
   void Sweep(const math::Vec3& p_world_hand, double coupling_stiffness, bool is_outwards,
              bool is_first) noexcept;
-  /// The same for the derivatives, with the blocks of the tick; positions stay.
+  /// One sweep over the derivatives, with the blocks of the tick; positions stay.
   void SweepDerivative(double coupling_stiffness) noexcept;
 
   const math::Vec3& GetTool() const noexcept { return tool_; }

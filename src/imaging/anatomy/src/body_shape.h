@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file body_shape.h  What a label map says of the body's shape: its middle, the height of the navel, its front.
+/// \file body_shape.h  Shape of the body in a label map: its midline, the height of the navel, its front.
 #pragma once
 
 #include <map>

@@ -11,11 +11,11 @@
 
 namespace trocar::anatomy {
 
-/// What each label would be.
+/// Structure that each label is taken for.
 using Meanings = std::map<int, Structure>;
 
-/// What speaks against it, by sizes, places and, where a CT is there, densities: clauses, the gravest first; none where all can be so. Bounds are wide: organs of sick, small and large
-/// persons are inside, and other organs outside.
+/// Finds what contradicts these structures, by sizes, places and, where there is a CT, densities: clauses, the gravest first;
+/// empty where all are possible. The bounds are wide: they admit organs of sick, small and large persons, and no other organs.
 /// Sources: sizes in public segmentations of 1,228 CT series (Wasserthal et al., Radiology: Artificial Intelligence 2023); places from
 /// textbooks of topographic anatomy, with a margin; the gallbladder's contact with the liver from label_sights of the Visible Human and
 /// of generated patients.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file label_neighbours.h  What a label map shows beside liver and gallbladder becomes meshes.
+/// \file label_neighbours.h  Meshes of the neighbours that a label map shows beside liver and gallbladder.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct NeighbourLabels {
   int third_lumbar = 0, fourth_lumbar = 0, body = 0;
 };
 
-/// Those that FindLabels understood.
+/// Labels beside liver and gallbladder, as FindLabels understood them.
 NeighbourLabels FindNeighbourLabels(const OrganLabels& organs, const LabelBoxes& boxes);
 
 /// One neighbour as a mesh in the map's frame (left, cranial, anterior) [mm].

@@ -34,7 +34,7 @@ base::Error ExplainMirrored(const std::string& sign, bool is_mirrored);
 /// \return kLabelsMismatch where a large one would be lost (two livers, or one that the map cuts in two)
 base::Status CheckParts(const std::string& organ, const std::vector<double>& parts_ml, bool takes_largest);
 
-/// What a reader should know of a map that is taken: parts left out, and where its border cuts an organ.
+/// Remarks for the reader on a map that is accepted: parts that are left out, and where the map's border cuts an organ.
 std::vector<std::string> DescribeLosses(const std::string& organ, const std::vector<double>& parts_ml,
                                         const std::vector<CutSide>& cuts);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file label_sights.h  What can be seen of each label without knowing what it is: how much, where, of what shape, beside what.
+/// \file label_sights.h  Measures of each label that need no knowledge of its meaning: size, place, shape, contact with others.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file phantom_tissue.h  What the phantom's pictures show where: the body around liver and gallbladder.
+/// \file phantom_tissue.h  Tissue at each place of the phantom's images: the body around liver and gallbladder.
 #pragma once
 
 #include <array>
@@ -59,7 +59,7 @@ class NoiseField {
 /// Colour of a substance at a place, with its texture.
 Tint CalcTint(Substance substance, const math::Vec3& p, const NoiseField& noise);
 
-/// What the body is drawn around; left, cranial, anterior [mm].
+/// Landmarks that the body is drawn around; left, cranial, anterior [mm].
 struct BodyPlan {
   geometry::Box liver;
   double lowest = 0;         ///< of the gallbladder

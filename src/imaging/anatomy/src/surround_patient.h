@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file surround_patient.h  What an assembled patient gets round its organs, whichever images it comes from.
+/// \file surround_patient.h  Surroundings that an assembled patient gets round its organs, whichever images it comes from.
 #pragma once
 
 #include "body_shape.h"

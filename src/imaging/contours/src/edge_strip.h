@@ -21,7 +21,7 @@ struct ClosedCurve {
 /// \param step_px   distance of the points, > 0; at least 8 and at most `most` points are made
 ClosedCurve ResampleClosed(std::span<const Vec2> polyline, double step_px, std::size_t most = 4000);
 
-/// The same points with their normals.
+/// Closed curve of the given points, with their normals.
 /// \param at  (n) n >= 3 points of a closed curve at about equal steps [pixels]
 ClosedCurve MakeClosedCurve(std::vector<Vec2> at);
 

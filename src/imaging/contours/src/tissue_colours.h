@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file tissue_colours.h  What the colours of one tissue look like, and how unlike them a colour is.
+/// \file tissue_colours.h  Distribution of one tissue's colours, and the distance of a colour from it.
 /// Source: Mahalanobis, "On the generalised distance in statistics", 1936.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file volume_opening.h  What of an organ is too thin for its triangles.
+/// \file volume_opening.h  Removal of the parts of an organ that are too thin for its triangles.
 #pragma once
 
 #include "trocar/meshing/volume.h"

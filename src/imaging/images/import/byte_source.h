@@ -25,19 +25,19 @@ class ByteSource {
 
 /// From byte `begin` of the file on.
 std::unique_ptr<ByteSource> OpenPlain(const InputFile& file, std::uint64_t begin);
-/// Likewise, unpacking gzip or zlib.
+/// As OpenPlain, unpacking gzip or zlib.
 /// \note Read throws Failure kImageUndecodable for a damaged stream
 std::unique_ptr<ByteSource> OpenDeflated(const InputFile& file, std::uint64_t begin);
 
 /// Whether the file begins like gzip.
 bool IsGzip(const InputFile& file);
 
-/// What kind of file it is; looks into gzip.
+/// Format of the file, by its first bytes; looks into gzip.
 FileKind FindKind(const InputFile& file);
 
 /// The file's first bytes, at most `most`.
 std::string ReadBegin(const InputFile& file, std::size_t most);
-/// The same of what gzip has packed, where it has.
+/// The first bytes of the file's content, at most `most`; a gzip file is unpacked.
 std::string ReadUnpacked(const InputFile& file, std::size_t most);
 
 /// Bytes of the file, of one that gzip has packed those of what it holds; counts no further than `most`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file dicom_content.h  What a DICOM file holds and how its pixels are packed, by the identifiers that say so.
+/// \file dicom_content.h  Content of a DICOM file and packing of its pixels, by the identifiers in its header.
 /// Source: DICOM PS3.6 tables, PS3.3 section C.7.3.1.1.1 (Modality).
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file dicom_folder.h  What the DICOM files of a folder are: slices with a place, and all that lies beside them.
+/// \file dicom_folder.h  DICOM files of a folder: slices with a place, and everything that lies beside them.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,7 @@ std::optional<base::Error> FindProblem(const FoundDicom& folder, std::span<const
 /// Why the folder has no slices at all.
 base::Error ExplainNoSlices(const FoundDicom& folder);
 
-/// What lies beside the slices and was passed over, for a person.
+/// Remarks for a person: files beside the slices that were passed over, and files that cannot be read.
 std::vector<std::string> TellPassedOver(const FoundDicom& folder);
 
 }  // namespace trocar::images

@@ -48,7 +48,7 @@ inline std::string Note(std::string text) {
 /// "slice 12 (IM000012)"
 std::string NameSlice(const DicomSlice& slice);
 
-/// What keeps two slices from being of one volume ("are of two series"); null where nothing does.
+/// Reason why two slices cannot be of one volume ("are of two series"); null where there is none.
 const char* FindDifference(const ImageHeader& a, const ImageHeader& b);
 
 /// Sorts by position along the normal. Slice numbers are the instance numbers where these run along with the
@@ -61,7 +61,7 @@ const char* FindDifference(const ImageHeader& a, const ImageHeader& b);
 ///         kImageSeriesUneven with slice numbers and files; kImageGeometryInvalid where a file does not say
 ///         where it lies
 base::Result<DicomOrder> OrderDicomSlices(std::span<const DicomSlice> slices);
-/// The same of pointers, whose indices the order holds.
+/// As above, from pointers; the order holds indices into them.
 base::Result<DicomOrder> OrderDicomSlices(std::span<const DicomSlice* const> slices);
 
 /// The place of each slice along the normal: 0, 1, ... from the lowest one on; slices in one place have the same.

@@ -25,7 +25,7 @@ class ImportFile {
   /// Never waits (FIFO, device).
   /// \return kFileMissing, kFileUnreadable, or kImagePathUnsafe for what is no regular file
   static base::Result<ImportFile> Open(const std::filesystem::path& path, Links links);
-  /// The same of a path that a header names, from `folder` on: no part of it may be a link.
+  /// As Open, for a path that a header names, relative to `folder`: no part of it may be a link.
   /// \pre IsPathBelow(path)
   static base::Result<ImportFile> OpenBelow(const std::filesystem::path& folder, std::string_view path);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file import_protocol.h  What this program and its image reader, a process of its own, say to each other.
+/// \file import_protocol.h  Messages between this program and its image reader, a process of its own.
 ///
 /// One request, one reply, both of fixed size, over a SOCK_SEQPACKET socket; files and the memory for samples
 /// travel as descriptors. Both programs come from one build, so plain structs do. The reader is not trusted:
@@ -28,7 +28,7 @@ enum class ImportOperation : std::uint32_t {
   kProbeFrames = 3  ///< of a DICOM file: an ImageHeader of each of its frames, into the memory for samples
 };
 
-/// What a DICOM file holds. All but pictures lie beside a series and are passed over.
+/// Kind of content of a DICOM file. All but pictures lie beside a series and are passed over.
 enum class DicomContent : std::uint32_t {
   kPictures,
   kSegmentation,
@@ -49,7 +49,7 @@ enum class DicomContent : std::uint32_t {
 };
 inline constexpr DicomContent kLastDicomContent = DicomContent::kOther;
 
-/// What may part the slices of one DICOM series into several volumes, the most telling first.
+/// Attribute that may split the slices of one DICOM series into several volumes, the most telling first.
 enum class DicomKey : std::uint32_t {
   kTemporalPosition,
   kAcquisition,
@@ -99,7 +99,7 @@ struct ImportRequest {
   std::uint64_t capacity = 0;          ///< kDecode: how many bytes there are from there
 };
 
-/// What a header says. Lengths are in millimetres, directions and places in LPS.
+/// Content of an image file's header. Lengths are in millimetres, directions and places in LPS.
 struct ImageHeader {
   FileKind kind = FileKind::kUnknown;
   std::uint32_t width = 0, height = 0, depth = 0;

@@ -19,7 +19,7 @@
 
 namespace trocar::images {
 
-/// What an import may use up.
+/// Limits of an import: sizes, memory and time.
 struct ImportLimits {
   std::uint32_t most_side = 16384;                      ///< of a picture [pixels]
   std::uint64_t most_bytes = std::uint64_t{2} << 30;    ///< of the samples of one file
@@ -89,7 +89,7 @@ class ImportPool {
 
   const ImportLimits& Limits() const { return limits_; }
 
-  /// What the header of `file` says, with the name of its data file still to be opened or the names of its
+  /// Reads the header of `file`, with the name of its data file that is still to be opened, or the names of its
   /// labels.
   /// \param[out] refused  of a file that is refused: what its reader had found out by then; only `content` and `series_hash` count
   base::Result<ImportReply> Probe(const ImportFile& file, const ImportFile* data_file = nullptr,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file series_content.h  What an open ImageSeries holds, and the ways to fill it.
+/// \file series_content.h  Content of an open ImageSeries, and the functions that fill it.
 #pragma once
 
 #include <oneapi/tbb/parallel_for.h>

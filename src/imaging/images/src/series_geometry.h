@@ -12,7 +12,7 @@
 
 namespace trocar::images {
 
-/// What the files say of size and place; unknown where they say nothing.
+/// Size and place as the files state them; unknown where they state nothing.
 struct SaidGeometry {
   double spacing[2] = {0, 0};  // of columns and rows [mm]
   double slice_mm = 0;
@@ -21,7 +21,7 @@ struct SaidGeometry {
   math::Vec3 origin;
 };
 
-/// What one header says.
+/// Geometry that one header states.
 SaidGeometry GeometryOf(const ImageHeader& header);
 
 /// Fills in size, spacing and axes of the pictures that come out.

@@ -20,7 +20,7 @@ struct EdgeNeighbours {
   std::uint32_t t = 0, other = 0;
   std::uint32_t a = 0, b = 0, c = 0, d = 0;
 
-  /// What the flip puts in the place of t and other.
+  /// Triangles that a flip of the edge puts in the place of t and other.
   geometry::Triangle FlippedFirst() const { return {a, d, c}; }
   geometry::Triangle FlippedSecond() const { return {d, b, c}; }
 };

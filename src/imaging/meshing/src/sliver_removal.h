@@ -10,7 +10,7 @@
 
 namespace trocar::meshing {
 
-/// What counts as a sliver, and how far its removal may go.
+/// Criterion of a sliver, and limits of the removal.
 struct SliverSettings {
   double least_angle_deg = 5.0;      ///< triangles with a smaller angle are slivers
   std::size_t fewest_triangles = 0;  ///< no edge is collapsed below this count

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file private_key.h  What a file of a private key holds.
+/// \file private_key.h  Reader of private key files.
 #pragma once
 
 #include "signing.h"

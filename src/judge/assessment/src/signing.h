@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file signing.h  What is used of libsodium. No type of it leaves this file.
+/// \file signing.h  Functions of libsodium that this module uses. No type of it leaves this file.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of an input is written field by field where it changes.
+// Parts of an input that are written field by field where they change.
 #pragma once
 
 #include <vector>

@@ -18,7 +18,7 @@ namespace trocar::record {
 struct StateIndexSettings {
   std::filesystem::path path;   ///< empty: in memory, as where the file cannot be written
   std::uint64_t recording = 0;  ///< file id of the recording: an index of another one is replaced
-  std::uint64_t model = 0;      ///< its fingerprint, likewise
+  std::uint64_t model = 0;      ///< fingerprint of the recording's model: an index of another one is replaced
   /// Beyond it a file takes nothing more; of what is in memory every second state goes.
   std::uint64_t most_bytes = std::uint64_t{1} << 30;
 };

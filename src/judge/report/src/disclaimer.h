@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file disclaimer.h  What every report says of itself.
+/// \file disclaimer.h  Disclaimer and footer of every report.
 #pragma once
 
 #include <string>

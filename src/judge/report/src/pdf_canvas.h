@@ -41,7 +41,7 @@ class PdfCanvas {
   double AddDrawing(const Drawing& drawing, double left, double top, double width);
   /// A PNG, scaled to `width`. \return its height; 0 where it is no picture
   double AddPicture(const std::string& png, double left, double top, double width);
-  /// The same without drawing.
+  /// Height that AddPicture would return, without drawing.
   double MeasurePicture(const std::string& png, double width);
   /// In the list of contents that viewers show beside the page.
   void AddOutline(const std::string& title, int page, double y);

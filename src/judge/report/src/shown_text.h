@@ -17,7 +17,7 @@ inline std::string Shown(std::string_view text) {
   return host::Printable(text, kMostLetters);
 }
 
-/// The same between tags and in quoted attributes.
+/// Shown text, escaped for use between tags and in quoted attributes.
 inline std::string EscapeShown(std::string_view text) {
   return host::EscapeMarkup(Shown(text));
 }

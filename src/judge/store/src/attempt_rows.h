@@ -15,9 +15,9 @@ namespace trocar::store {
 #define TROCAR_COUNTS \
   "attempt.completed = 1 AND attempt.verification IN ('verified', 'recorded_here', 'accepted')"
 
-/// What AddAttempt refuses. \return kStoreInvalid
+/// Checks an attempt as AddAttempt does. \return kStoreInvalid
 base::Status CheckAttempt(const Attempt& attempt);
-/// What no reader of the store would take: nested too deep, or too long. A text that is no JSON is kept as it is.
+/// Checks that an outcome is not nested too deep or too long for the store's readers. A text that is no JSON is kept as it is.
 /// \return kStoreInvalid
 base::Status CheckOutcome(std::string_view outcome);
 /// Whether the store has it as somebody else's, or as nobody's where it is somebody's.

@@ -85,7 +85,7 @@ auto InTransaction(Database& database, Access access, const Work& work) -> declt
 
 /// Text that no database refuses: what is no UTF-8, holds NUL or begins with U+0001 is written with escapes behind a U+0001.
 std::string EncodeText(std::string_view text);
-/// What EncodeText was given.
+/// Inverse of EncodeText.
 std::string DecodeText(std::string_view text);
 
 enum class SqliteUse : std::uint8_t {

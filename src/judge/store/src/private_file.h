@@ -21,7 +21,7 @@ base::Status MakePrivateFolder(const std::filesystem::path& folder);
 /// \return kFileUnwritable
 base::Status WritePrivateFile(const std::filesystem::path& path, std::string_view content);
 
-/// The same, where there is no such file yet: of several programs the first one's content stays.
+/// As WritePrivateFile, where there is no such file yet: of several programs the first one's content stays.
 base::Status MakePrivateFileOnce(const std::filesystem::path& path, std::string_view content);
 
 /// A file of mode 0600 that grows, and takes its name once it is whole.
@@ -50,7 +50,7 @@ class PrivateFileWriter {
 /// Erases what programs that were killed left half written in a folder: names and pseudonyms are in it.
 base::Status EraseRemnants(const std::filesystem::path& folder);
 
-/// The same in all folders of a store.
+/// As above, in all folders of a store.
 base::Status EraseRemnants(const Place& place);
 
 /// Syncs a folder's entries. \return kFileUnwritable

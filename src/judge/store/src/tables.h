@@ -13,7 +13,7 @@
 
 namespace trocar::store {
 
-/// What a column's number is the id of.
+/// Table to whose ids a column refers.
 enum class Reference : std::uint8_t { kNone, kPerson, kGroup, kCourse, kAssignment, kAttempt, kCount };
 
 enum class ColumnKind : std::uint8_t { kText, kWhole, kNumber };

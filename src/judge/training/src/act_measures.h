@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file act_measures.h  What was done: view, force, grasps, current, clips, errors, the task.
+/// \file act_measures.h  Measures of what was done: view, force, grasps, current, clips, errors, the task.
 #pragma once
 
 #include "attempt_part.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file acts.h  What each hand is doing in the words of CholecT50, from what a tick publishes and what the surgeon commands.
+/// \file acts.h  Acts of each hand in the terms of CholecT50, from what a tick publishes and what the surgeon commands.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file data_card.h  What a data set says of itself: what it holds, how it was made, its licence, seeds, hash and gaps.
+/// \file data_card.h  Data card of a data set: what it holds, how it was made, its licence, seeds, hash and gaps.
 #pragma once
 
 #include <filesystem>

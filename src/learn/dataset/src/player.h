@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file player.h  What acts in a video: a scripted surgeon, or what a recording holds.
+/// \file player.h  Player of a video: a scripted surgeon or a recording.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ class Player {
   virtual bool HasFinished() const = 0;
   /// One tick.
   virtual void Step() = 0;
-  /// What the last tick was given; before the first one where hands and camera stand.
+  /// Input of the last tick; before the first tick, the place of hands and camera.
   virtual const scene::Input& LastInput() const = 0;
   /// After the last tick. \return kRecordingInvalid where other states were computed than were recorded
   virtual base::Status Finish() const { return {}; }
@@ -29,7 +29,7 @@ class Player {
 base::Result<std::unique_ptr<Player>> MakeSurgeonPlayer(const Plan& plan, std::uint64_t seed,
                                                         const std::filesystem::path& patient,
                                                         double field_of_view_scale);
-/// What a file holds, from its first tick on.
+/// Player of a recording's file, from its first tick on.
 /// \return the file's error; kRecordingInvalid where it is damaged, or its scene is not what was recorded
 base::Result<std::unique_ptr<Player>> MakeRecordingPlayer(const std::filesystem::path& recording);
 

@@ -27,7 +27,7 @@ struct Variation {
 Variation DrawVariation(std::uint64_t seed);
 nlohmann::ordered_json ToJson(const Variation& variation);
 
-/// What the camera makes of a picture: gains and gamma, by a table.
+/// Colour response of the camera: gains and gamma, as a lookup table.
 class ColourTable {
  public:
   explicit ColourTable(const Variation& variation);

@@ -30,7 +30,7 @@ struct Frame {
   std::vector<Act> acts;    ///< of tools that are in the picture
 };
 
-/// What writes a video in one layout. A writer lives on the thread of its video.
+/// Writer of a video in one layout. It lives on the thread of its video.
 class VideoWriter {
  public:
   virtual ~VideoWriter() = default;

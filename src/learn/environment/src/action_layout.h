@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file action_layout.h  What the numbers of an action mean in a scene, and what they do to the hands.
+/// \file action_layout.h  Meaning of an action's numbers in a scene, and their effect on the hands.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline constexpr double kMaxSpin = 3.0;       // [rad/s]
 inline constexpr double kMaxTipSpeed = 0.12;  // [m/s]
 inline constexpr double kMaxJaw = 2.5;        // [rad/s]
 
-/// What hands and camera are to do during an action.
+/// Motion of hands and camera that an action asks for.
 struct Motion {
   std::array<std::array<double, 5>, kHandCount>
       rates{};                     ///< pan, tilt, spin, depth, jaw; or x, y, z, spin, jaw

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file episode.h  What is usual for an episode of a scene: how long it lasts, and whether it is about the camera.
+/// \file episode.h  Defaults for an episode of a scene: how long it lasts, and whether it is about the camera.
 #pragma once
 
 #include "trocar/scene/scene.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file reward.h  What an action did, as features of a reward.
+/// \file reward.h  Effects of an action, as features of a reward.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace trocar::environment {
 
-/// What features are differences of.
+/// State of a task at a moment; features are differences between two of them.
 struct Standing {
   double goals = 0, steps = 0;  ///< shares of all that are done [-]
   bool is_completed = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file state_layout.h  What is observed of a simulation as a row of numbers.
+/// \file state_layout.h  Observation of a simulation as a row of numbers.
 #pragma once
 
 #include <span>

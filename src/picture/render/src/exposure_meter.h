@@ -15,7 +15,7 @@ namespace trocar::render {
 /// Bounds of the exposure [-].
 inline constexpr double kLeastExposure = 0.30, kMostExposure = 2.6;
 
-/// What a picture calls for.
+/// Exposure that suits a picture.
 /// \param pixels    (4 n) red, green, blue, anything; of the round picture only
 /// \param exposure  with which it was taken [-]
 /// \return  within the bounds [-]; `exposure` for a picture in which nothing is lit

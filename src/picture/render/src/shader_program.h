@@ -12,7 +12,7 @@
 namespace trocar::render {
 
 using Matrix4 = std::array<float, 16>;  ///< column after column
-using Matrix3 = std::array<float, 9>;   ///< likewise
+using Matrix3 = std::array<float, 9>;   ///< column after column
 
 /// A linked program with the places of its uniforms.
 struct Program {

@@ -39,7 +39,7 @@ class SurfaceStore {
   SurfaceStore& operator=(const SurfaceStore&) = delete;
   ~SurfaceStore();
 
-  /// What the renderer's members of the same names say.
+  /// As Renderer::AddSurface and Renderer::RemoveSurface.
   SurfaceId Add(std::span<const geometry::Triangle> triangles, std::span<const math::Vec3> rest,
                 Material material, std::span<const double> ambient_occlusion,
                 std::span<const geometry::Triangle> coarse);

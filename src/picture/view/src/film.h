@@ -24,7 +24,7 @@ class Film {
   bool HasLiquid() const { return !runs_.empty() || !pools_.empty(); }
   /// Adds what wets a place to its mark.
   void Wet(const math::Vec3& p_world, render::SurfaceMark& mark) const;
-  /// The same for a node that may lie raw.
+  /// As above, for a node that may lie raw.
   void Wet(const math::Vec3& p_world, std::size_t row, render::SurfaceMark& mark) const;
 
  private:

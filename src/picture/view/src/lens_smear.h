@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file lens_smear.h  What sticks to the lens after it has touched tissue, until it is wiped outside.
+/// \file lens_smear.h  Smear on the lens after it has touched tissue, until it is wiped outside.
 #pragma once
 
 #include <vector>

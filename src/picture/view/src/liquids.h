@@ -15,7 +15,7 @@ namespace trocar::view {
 /// Adds what runs and drips out of every leak.
 void AddStreams(render::Frame& frame, const simulation::Snapshot& snapshot);
 
-/// What lies under a pool: a small piece of a surface that faces up or down.
+/// Ground under a pool: a small piece of a surface that faces up or down.
 struct GroundPiece {
   math::Vec3 p_world;  ///< [m]
   math::Vec3 area;     ///< normal times area [m^2]

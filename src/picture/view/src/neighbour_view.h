@@ -15,7 +15,7 @@ namespace trocar::view {
 
 using math::Vec3;
 
-/// What a neighbour looks like: bowel is seen as it is, the rest lies behind fat or peritoneum.
+/// Material of a neighbour: bowel is seen as it is, the rest lies behind fat or peritoneum.
 render::Material LookOf(roles::NeighbourRole role) noexcept;
 /// Whether it lies within the peritoneal cavity, so that the wall goes round it.
 bool IsInCavity(roles::NeighbourRole role) noexcept;

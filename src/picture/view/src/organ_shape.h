@@ -69,7 +69,7 @@ void RefineMarks(std::span<const geometry::Edge> edges, std::size_t coarse,
 /// How white tissue is that is stretched over so many times its area at rest: 0 to 255.
 std::uint8_t CalcPallor(double stretch) noexcept;
 
-/// What heat has left on a node.
+/// Marks that heat has left on a node.
 render::SurfaceMark HeatMark(const simulation::OperationSnapshot& operation, std::size_t row);
 
 }  // namespace trocar::view

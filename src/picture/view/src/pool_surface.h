@@ -62,7 +62,7 @@ class PoolSurface {
   std::vector<double> shares_, depths_;
 };
 
-/// What a liquid of that thickness hides of what is under it, 0 to 1. [m]
+/// Share of what lies below that a liquid hides, 0 to 1 [-]. \param depth  thickness of the liquid [m]
 double CalcPoolShare(double depth) noexcept;
 
 }  // namespace trocar::view

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file row_memory.h  What a vertex keeps while surgery changes the surface round it: its place in the patterns and its shade.
+/// \file row_memory.h  Memory of a vertex while surgery changes the surface round it: its place in the patterns and its shade.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file tip_clouds.h  What comes out of a tip: water of a suction-irrigator, what it sucks in, and steam of tissue that current heats.
+/// \file tip_clouds.h  Fluids at a tip: water of a suction-irrigator, what it sucks in, and steam of tissue that current heats.
 #pragma once
 
 #include "trocar/instrument/tool.h"

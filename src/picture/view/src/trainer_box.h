@@ -24,7 +24,7 @@ enum class DividedFaces { kAll, kTop };  ///< the top is the face with the large
 geometry::TriangleMesh MakeFacedBox(const math::Vec3& min, const math::Vec3& max,
                                     const Divisions& divisions = {}, DividedFaces faces = DividedFaces::kAll);
 
-/// What a task stands on: it lies flat, and is larger than what hands move.
+/// Whether a shape is a board that a task stands on: it lies flat, and is larger than what hands move.
 bool IsBoard(const rigid::RigidShape& shape);
 
 /// A board whose top is divided round the feet of what stands on it.

@@ -46,7 +46,7 @@ class TubeShape {
   void Add(render::Renderer& renderer, std::span<const double> ambient_occlusion, RowMemory& memory);
   void Upload(render::Renderer& renderer, const RowMemory& memory);
 
-  /// What dissection leaves on the wall of a living tube: rags of peritoneum and threads. A piece keeps its own through a
+  /// Adds what dissection leaves on the wall of a living tube: rags of peritoneum and threads. A piece keeps its own through a
   /// cut.
   void AddRemnants(render::Frame& frame) const;
 

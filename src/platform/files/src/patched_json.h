@@ -14,7 +14,7 @@ namespace trocar::files {
 /// \return the text's or the patch's error
 base::Result<host::JsonDocument> ParsePatched(const std::string& text, const std::string& source,
                                               const std::string& patch);
-/// The same of a file. \return its error, too
+/// ParsePatched() of a file. \return its error, too
 base::Result<host::JsonDocument> ReadPatched(const std::filesystem::path& path, const std::string& patch);
 
 }  // namespace trocar::files

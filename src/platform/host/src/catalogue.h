@@ -30,7 +30,8 @@ using PatternPlaces = std::vector<std::pair<std::string, std::string>>;
 /// \note Not real-time safe: reads a file.
 std::vector<CataloguePattern> ReadPatterns(const std::filesystem::path& file);
 
-/// What stands in the pattern's places where the text has its fixed parts, from the left, each as early as it can be; nothing where not.
+/// Texts at the pattern's places where the text has its fixed parts; else nothing. The parts are found from the left, each as
+/// early as it can be; the last one ends the text.
 std::optional<PatternPlaces> MatchPattern(const CataloguePattern& pattern, std::string_view text);
 
 /// The text with {name} replaced by what stood there; unknown names stay.

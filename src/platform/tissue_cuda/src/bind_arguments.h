@@ -14,7 +14,7 @@
 
 namespace trocar::tissue_cuda {
 
-/// What stays while the model does; positions, forces and factors come with each solve.
+/// Binds the arrays that stay as long as the model does. Positions, forces and factors come with each solve.
 template <typename Real, typename Heap>
 PaperArgs<Real, typename Heap::Memory> BindPaperArrays(const PaperArrays<Real>& arrays, Heap& heap) {
   PaperArgs<Real, typename Heap::Memory> args;
@@ -42,7 +42,7 @@ void SetPaperLoad(const tissue::TissueLoad& load, double alpha, PaperArgs<Real, 
                   static_cast<Real>(load.gravity.z)};
 }
 
-/// What stays while the model does, and the memory to work in.
+/// Binds the arrays that stay as long as the model does, and working memory.
 template <typename Real, typename Heap>
 TiledArgs<Real, typename Heap::Memory> BindTiledArrays(const TiledArrays<Real>& arrays, Heap& heap) {
   TiledArgs<Real, typename Heap::Memory> args;

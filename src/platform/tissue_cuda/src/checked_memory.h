@@ -12,7 +12,7 @@
 
 namespace trocar::tissue_cuda {
 
-/// Who runs now, and what was found wrong. One for a run of the executor; not for several threads.
+/// The kernel thread that runs now, and the errors found. One for a run of the executor; not for several threads.
 struct Watch {
   ThreadIndex where{};
   std::uint32_t grid_epoch = 1;   ///< counts launches and grid barriers
@@ -29,7 +29,7 @@ struct Watch {
   }
 };
 
-/// What is known of one element. Two accesses, one of them a write, are in order if one thread did both, if a
+/// Accesses to one element so far. Two accesses, one of them a write, are in order if one thread did both, if a
 /// grid barrier lies between them, or in one block any barrier.
 struct ElementHistory {
   struct Access {

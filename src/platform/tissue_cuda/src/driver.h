@@ -23,7 +23,7 @@ struct DriverSource {
   std::span<const unsigned char> code;  ///< fat binary of kernels/kernels.cu; empty in a build without nvcc
   int code_version = 0;                 ///< CUDA version that compiled it, 1000 major + 10 minor
 };
-/// What this build carries.
+/// Driver source of this build: the system's driver, and the GPU code that the build carries.
 DriverSource BuiltInSource();
 
 /// Oldest GPU that the kernels run on (Turing), 10 major + minor.
@@ -32,8 +32,8 @@ inline constexpr int kOldestCapability = 75;
 /// The driver's functions without a GPU; enough to say what there is.
 base::Result<DriverFunctions> LoadDriver(const DriverSource& source);
 
-/// What a call of the driver came to.
-/// \param what  what was tried, for the message: "copying positions to the GPU"
+/// Success or error of a call of the driver.
+/// \param what  the attempt, for the message: "copying positions to the GPU"
 base::Status CheckCall(const DriverFunctions& driver, CudaCode code, const char* what);
 
 /// Shape of a launch.
@@ -97,7 +97,7 @@ class Gpu {
   int max_shared_bytes_ = 0;
 };
 
-/// What there is, without starting it: one GPU's description, or why none can be used.
+/// Description of the GPU that can be used, without opening it; else an error that says why there is none.
 base::Result<GpuInformation> FindGpu(const DriverSource& source);
 
 }  // namespace trocar::tissue_cuda

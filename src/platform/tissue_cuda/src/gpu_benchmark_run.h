@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file gpu_benchmark_run.h  What the checks and the timings of the GPU benchmark share.
+/// \file gpu_benchmark_run.h  Data and functions that the checks and the timings of the GPU benchmark share.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace trocar::tissue_cuda {
 
-/// What is timed: the paper's meshes (its Table 1), unless a test asks for less.
+/// Sizes of the problems that are timed: the paper's meshes (its Table 1), unless a test asks for less.
 struct GpuBenchmarkSizes {
   std::vector<std::uint32_t> sides = {16, 112, 176, 208};  ///< of the grids whose steps are timed
   int steps = 50;                   ///< of the paper's layouts: as many as go without a look at the residual

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file gpu_solve.h  What stands behind GpuSolver: one class for the paper's layouts, one for ours.
+/// \file gpu_solve.h  Implementation of GpuSolver: one class for the paper's layouts, one for ours.
 #pragma once
 
 #include <memory>

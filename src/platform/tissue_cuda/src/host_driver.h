@@ -15,8 +15,7 @@ DriverFunctions HostDriver();
 /// A source that uses it.
 DriverSource HostSource();
 
-/// What it answers to cuDeviceGetAttribute for the number of multiprocessors: enough that any mesh of the
-/// tests stays resident.
+/// Number of multiprocessors that its cuDeviceGetAttribute returns: enough that any mesh of the tests stays resident.
 inline constexpr int kHostMultiprocessors = 4096;
 
 }  // namespace trocar::tissue_cuda

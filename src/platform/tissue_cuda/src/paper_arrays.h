@@ -23,7 +23,7 @@ std::optional<GridShape> FindGridShape(const tissue::TissueModel& model);
 bool IsCoalesced(Layout layout) noexcept;
 bool IsShared(Layout layout) noexcept;
 
-/// What stays while the model does.
+/// Arrays of a model in one of the paper's layouts, which stay as long as the model does.
 template <typename Real>
 struct PaperArrays {
   Layout layout = Layout::kPaperGlobal;

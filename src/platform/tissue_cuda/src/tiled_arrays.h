@@ -11,7 +11,7 @@
 
 namespace trocar::tissue_cuda {
 
-/// What stays while the model does; names and shapes as in TiledArgs.
+/// Arrays of a model in our layout, which stay as long as the model does; names and shapes as in TiledArgs.
 template <typename Real>
 struct TiledArrays {
   std::uint32_t nodes = 0, tiles = 0, max_border = 0, max_links = 0;

@@ -243,7 +243,7 @@ class CholecystectomySurgeon final : public Surgeon {
   std::array<HandMotion, kHandCount> hands_;
   std::array<HandControls, kHandCount> controls_;
   AssistantCommand assistant_ = AssistantCommand::kWait;
-  /// What this operator shows of the field.
+  /// Camera work of this operator: the laparoscope's joints now and to come, and the part of the field that it shows.
   struct Picture {
     instrument::TrocarJoints camera, to;
     Place field;               // what it is about
@@ -253,7 +253,7 @@ class CholecystectomySurgeon final : public Surgeon {
   };
   Picture picture_;
 
-  /// What is known of the patient before the first cut; constant.
+  /// Knowledge of the patient before the first cut; constant.
   struct Knowledge {
     std::vector<StrandInfo> strands;
     std::vector<SurfaceInfo> surfaces;

@@ -59,8 +59,7 @@ std::optional<double> FindClip(const DivisionField& field, double arc);
 /// How scissors cut this tube there and nothing else; nothing where they cannot.
 std::optional<ScissorsPose> FindCut(const DivisionField& field, double arc);
 
-/// What is to be done next so that in the end one clip lies on the gallbladder's side of the cut and two on the
-/// patient's.
+/// Next step of a division, which is to end with one clip on the gallbladder's side of the cut and two on the patient's.
 struct DivisionStep {
   enum class Kind { kClip, kCut, kNone } kind = Kind::kNone;
   double arc = 0;  ///< from the gallbladder [m]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file heat_memory.h  What a surgeon remembers of where current has flowed: a place that is warm is left alone.
+/// \file heat_memory.h  A surgeon's memory of the places where current has flowed: a place that is warm is left alone.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file operation_plan.h  What the surgeon of a cholecystectomy has in mind, as values: acts, places, work under way.
+/// \file operation_plan.h  Plan of the surgeon of a cholecystectomy, as values: acts, places, work under way.
 ///
 /// Nothing here refers to the surgeon or to a snapshot, so that a plan can be saved in the middle of an operation.
 #pragma once
@@ -204,7 +204,7 @@ struct DissectionGoal {
   void VisitState(base::StateArchive& archive);
 };
 
-/// What is dissected with the hook, until none is left that can be reached.
+/// Dissection of fibres with the hook, until none is left that can be reached.
 struct Dissection {
   DissectionGoal goal;
   std::vector<std::uint8_t> attempts;  ///< (strands)

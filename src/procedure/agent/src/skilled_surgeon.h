@@ -32,7 +32,7 @@ class SkilledSurgeon final : public Surgeon {
   std::unique_ptr<Surgeon> hands_;
   double tick_seconds_, drift_;
   std::array<std::array<double, kSines>, 2> frequency_{}, phase_{};  // of pan and tilt [Hz], [rad]
-  /// What of an input changes from tick to tick.
+  /// Part of an input that changes from tick to tick.
   struct Waiting {
     std::array<instrument::TrocarJoints, scene::kHandCount> hands;
     std::array<scene::HandControls, scene::kHandCount> controls;

@@ -15,7 +15,7 @@ namespace trocar::agent {
 
 using math::Vec3;
 
-/// What lies before the jaws.
+/// Field before the jaws: fibres to be parted, and the tubes and organs beside them.
 struct SpreadField {
   std::vector<collision::Segment> fibres;  ///< that are to be parted [m]
   std::vector<double> weights;             ///< (fibres) what parting one is worth
@@ -26,7 +26,7 @@ struct SpreadField {
   std::vector<Round> tubes;  ///< points of ducts and arteries that the jaws go beside
   Vec3 port;                 ///< [m]
   Vec3 tip;                  ///< where the hand is now [m]
-  double spin = 0;           ///< likewise [rad]
+  double spin = 0;           ///< of the hand now [rad]
   const instrument::Tool* tool = nullptr;
   /// Distance from a segment to the nearest organ [m].
   std::function<double(const collision::Segment&)> clearance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file state_fields.h  What a surgeon's memory is made of, as fields of a state.
+/// \file state_fields.h  Parts of a surgeon's memory as fields of a state.
 #pragma once
 
 #include <deque>

@@ -13,7 +13,7 @@
 
 namespace trocar::app {
 
-/// What is plugged in, and which device is tried.
+/// Card of the devices that are plugged in, and of the one that is tried.
 class FoundCard : public gui::Card {
  public:
   explicit FoundCard(presenter::DevicePresenter& presenter);

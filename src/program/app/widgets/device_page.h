@@ -22,7 +22,7 @@ class DevicePage : public Gtk::ApplicationWindow, private presenter::DeviceScree
   DevicePage(const presenter::Options& options, presenter::SessionControl* control);
   ~DevicePage() override;
 
-  /// What went wrong in a run that is not attended.
+  /// Error of a run that is not attended, if any.
   const std::optional<base::Error>& GetFailure() const { return presenter_.GetFailure(); }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file failure_card.h  What ended the simulation, over the picture, with the remedy.
+/// \file failure_card.h  Card over the picture with the error that ended the simulation, and its remedy.
 #pragma once
 
 #include <gtkmm.h>

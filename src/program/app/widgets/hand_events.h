@@ -30,7 +30,7 @@ class HandEvents {
   /// \param keys  by name, as GDK has it: "F13", "b"
   /// \return the names that are no key, or Escape, which always stops the force
   std::vector<std::string> SetKeys(const std::map<std::string, device::HandAct>& keys);
-  /// What keys and buttons do.
+  /// Sets the functions of keys and buttons.
   void SetBindings(const presenter::KeyBindings& bindings) { bindings_ = bindings; }
   /// The next key that is pressed is told to the function and does nothing else; Esc tells 0.
   void AskKey(std::function<void(std::uint32_t)> told);

@@ -15,7 +15,7 @@
 
 namespace trocar::app {
 
-/// What the card asks the window for.
+/// Services that the card asks of the window.
 struct KeyCardServices {
   /// The next key that is pressed is told to the function, and does nothing else; 0: Esc, none is wanted.
   std::function<void(std::function<void(std::uint32_t)>)> ask_key;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file opening_card.h  What is prepared before an attempt can begin, over the picture, and how to give it up.
+/// \file opening_card.h  Card over the picture with what is prepared before an attempt can begin, and a button to give it up.
 #pragma once
 
 #include <gtkmm.h>

@@ -93,7 +93,7 @@ class MeasuresCard : public gui::Card {
   Gtk::Label *residual_, *iterations_, *tick_, *late_, *pictures_, *time_;
 };
 
-/// Whose organs they are; hidden in a scene without a patient.
+/// Card of the patient whose organs are shown; hidden in a scene without a patient.
 class PatientCard : public gui::Card {
  public:
   PatientCard();

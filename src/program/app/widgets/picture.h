@@ -25,13 +25,13 @@ class Picture : public Gtk::GLArea {
  public:
   Picture();
 
-  /// What is drawn from now on; both must outlive the picture's last frame. The view itself is made in the
+  /// Sets the scene to draw; it and the data of both spans must outlive the picture's last frame. The view itself is made in the
   /// next frame.
   void SetScene(const scene::Scene* scene, std::span<const scene::SurfaceInfo> surfaces,
                 std::span<const scene::StrandInfo> strands);
   /// State of the next frame; null draws an empty picture. Valid until the next call.
   void SetSnapshot(const simulation::Snapshot* snapshot) { snapshot_ = snapshot; }
-  /// What is shown besides the scene, until the next call.
+  /// Sets what is shown besides the scene, until the next call.
   void SetOverlay(view::Overlay overlay) { overlay_ = std::move(overlay); }
   /// Angle that CirclePixels() span in the picture [rad].
   double FieldOfView() const;

@@ -11,7 +11,7 @@ namespace trocar::app {
 
 /// Saves the window's picture where the options say, prints the report and closes the window. Never within a frame.
 void SavePlayScreenshot(Gtk::Window& window, presenter::SimulatorPresenter& presenter);
-/// Likewise for the page of devices, as soon as it has something to show.
+/// As SavePlayScreenshot, for the page of devices, as soon as it has something to show.
 /// \param tries  so far
 void EndDeviceRun(Gtk::Window& window, presenter::DevicePresenter& presenter, int tries = 0);
 

@@ -29,7 +29,7 @@ class ReplayWindow : public Gtk::ApplicationWindow, private presenter::ReplayScr
   ReplayWindow(const presenter::Options& options, std::function<void(presenter::Branch)> take_over);
   ~ReplayWindow() override;
 
-  /// What went wrong, if anything did: the program's exit status follows it.
+  /// Error of the window, if any: the program's exit status follows it.
   const std::optional<base::Error>& GetFailure() const { return presenter_->GetFailure(); }
 
  private:

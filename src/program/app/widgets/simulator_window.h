@@ -34,7 +34,7 @@
 
 namespace trocar::app {
 
-/// What other windows do for this one.
+/// Services that other windows provide for this one.
 struct SimulatorServices {
   std::function<void()> open_centre;
   /// \param exam  that was sat, or nothing
@@ -61,7 +61,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   presenter::SimulatorPresenter& Presenter() { return *presenter_; }
   /// Writes what --haptic-record asks for; call it once the window has closed.
   void SaveHapticRecord() { presenter_->SaveHapticRecord(); }
-  /// What went wrong, if anything did: the program's exit status follows it.
+  /// Error of the window, if any: the program's exit status follows it.
   const std::optional<base::Error>& GetFailure() const { return presenter_->GetFailure(); }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file solver_times.h  What the GPU's benchmark says, as rows of figures 8 and 9.
+/// \file solver_times.h  Results of the GPU's benchmark, as rows of figures 8 and 9.
 #pragma once
 
 #include <string>

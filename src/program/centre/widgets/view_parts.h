@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pages are made of: texts, tables, plots side by side.
+// Building blocks of the pages: texts, tables, plots side by side.
 #pragma once
 
 #include <gtkmm.h>

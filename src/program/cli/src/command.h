@@ -17,7 +17,7 @@ struct DeviceStore;
 
 namespace trocar::cli {
 
-/// What the chosen subcommand left behind.
+/// Result of the chosen subcommand.
 struct Outcome {
   base::Status status;       ///< an error is printed by RunCommand
   bool has_finding = false;  ///< ran well, and what it found is not good (doctor): exit status 1

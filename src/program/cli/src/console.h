@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file console.h  What the commands print with, for people: texts, numbers, tables and progress.
+/// \file console.h  Output of the commands for people: texts, numbers, tables and progress.
 #pragma once
 
 #include <algorithm>

@@ -29,7 +29,7 @@ class InterruptWatch {
 
 using HandSamples = std::array<device::HandSample, device::kChannelCount>;
 
-/// What was seen of a device.
+/// Summary of watching a device.
 struct WatchReport {
   double seconds = 0;
   std::array<int, device::kChannelCount> fresh{};   ///< samples of each hand
@@ -49,7 +49,7 @@ base::Result<WatchReport> WatchDevice(device::Driver& driver, double seconds,
                                       const std::function<void(const HandSamples&, double)>& on_sample,
                                       const std::function<void(const HandSamples&, double)>& on_idle = {});
 
-/// What came and did not count, a line for each reason; nothing where all did.
+/// Prints why samples that came did not count, a line for each reason; nothing where all did.
 void PrintHeldBack(const WatchReport& report);
 
 /// Three lines, one a hand: numbers and bars. Ends with a newline.

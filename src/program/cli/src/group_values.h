@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file group_values.h  What the people of a group came to, beside the metrics of a report.
+/// \file group_values.h  Comparison of a report's metrics with the values of a group's people.
 #pragma once
 
 #include <string>

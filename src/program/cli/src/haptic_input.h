@@ -14,7 +14,7 @@
 
 namespace trocar::cli {
 
-/// What the command line says about force feedback.
+/// Options of force feedback on the command line.
 struct HapticOptions {
   std::string name;        ///< as device::MakeForceDriver reads it; empty: none
   bool has_force = false;  ///< the person asks for force

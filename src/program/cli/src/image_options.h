@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file image_options.h  What a person says about images on the command line, read from words.
+/// \file image_options.h  Options about images on the command line, parsed from text.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file label_console.h  What the labels of a segmentation were taken for, on the console.
+/// \file label_console.h  Listing on the console of what the labels of a segmentation were taken for.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file own_json.h  What another module has just written as JSON, to be part of a larger one.
+/// \file own_json.h  JSON that another module has just written, to be part of a larger one.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -9,7 +9,7 @@
 
 namespace trocar::cli {
 
-/// What is wrong with a pseudonym; empty where nothing is.
+/// Complaint about a pseudonym; empty where it is valid.
 inline std::string ComplainOfPseudonym(const std::string& text) {
   const base::Status sound = store::CheckPseudonym(text);
   return sound.ok() ? std::string() : host::TranslateComposed(sound.error().message);

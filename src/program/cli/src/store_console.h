@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the commands below `trocar store` share.
+// Functions that the commands below `trocar store` share.
 #pragma once
 
 #include <cstdio>

@@ -8,7 +8,7 @@
 
 namespace trocar::session {
 
-/// What reaches a tick from the loop.
+/// Input of a tick from the loop.
 struct HapticTickInput {
   double now = 0;       ///< [s]
   double lateness = 0;  ///< of this tick [s]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file supervisor_protocol.h  What simulator and supervisor share: a page of counters, and messages that carry wires.
+/// \file supervisor_protocol.h  Protocol of simulator and supervisor: a shared page of counters, and messages that carry wires.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file study_folder.h  What a study keeps: DIR/study.json, DIR/results/KEY.json, DIR/failures/KEY.json.
+/// \file study_folder.h  Files of a study: DIR/study.json, DIR/results/KEY.json, DIR/failures/KEY.json.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file table.h  What a study came to: one table, as CSV, SQLite and HDF5, and a page with plots.
+/// \file table.h  Results of a study: one table, as CSV, SQLite and HDF5, and a page with plots.
 #pragma once
 
 #include <filesystem>

@@ -29,7 +29,7 @@ std::vector<surgery::EnteringTube> FindEnteringTubes(const patient::Patient& pat
                                                      std::span<const scene::SurfaceInfo> surfaces,
                                                      std::span<const scene::StrandInfo> strands);
 
-/// What holds the gallbladder.
+/// Strands and tubes that hold the gallbladder.
 surgery::GallbladderAttachment MakeAttachment(const patient::Patient& patient,
                                               std::span<const scene::SurfaceInfo> surfaces,
                                               std::span<const scene::StrandInfo> strands);
@@ -44,7 +44,7 @@ cholecystectomy::TriangleWindow MakeTriangleWindow(std::span<const scene::Surfac
                                                    std::span<const std::uint32_t> main_arteries,
                                                    const cholecystectomy::JudgementSettings& settings);
 
-/// What an eye has to see of it, and the fat that hides it.
+/// Points of the hepatocystic triangle that an eye has to see, and the fat that hides them.
 /// \param rest       (nodes) [m]
 /// \param exposable  (entering) of CalcExposable
 cholecystectomy::TriangleSight MakeTriangleSight(const patient::Patient& patient,
@@ -75,7 +75,7 @@ cholecystectomy::DissectedAnatomy MakeDissectedAnatomy(const patient::Patient& p
 /// How many stones a patient has, and how large: by the patient's parameters, else by the scene.
 surgery::GallstoneSettings FindGallstones(const scene::Scene& scene);
 /// Gallstones of a scene; none where it has none.
-/// \param surfaces, rest  what the omentum passes under, where stones come to lie
+/// \param surfaces, rest  bodies under which the omentum passes, on which stones come to lie
 /// \return kMeshInvalid
 base::Result<surgery::GallstoneSpill> MakeGallstones(const scene::Scene& scene,
                                                      std::span<const scene::SurfaceInfo> surfaces,

@@ -37,7 +37,7 @@ using scene::StrandInfo;
 using scene::SurfaceInfo;
 using surgery::WallHoles;
 
-/// What a tick knows of the hands.
+/// State of the hands in a tick, with gravity, camera and time.
 struct HandsNow {
   const Input* input = nullptr;
   std::array<instrument::TrocarJoints, kHandCount> joints;
@@ -63,7 +63,7 @@ struct TissueNow {
   std::span<const std::uint32_t> torn_springs;  ///< of walls, in this tick
 };
 
-/// What the stages of an operation change beside the operation itself: the same tissue, and what hands hold of it.
+/// Data that the stages of an operation change beside the operation itself: the tissue of TissueNow, and the hands' grasps.
 struct OperatedTissue {
   tissue::TissueState& state;
   tissue::ConservationState& conserved;
@@ -87,7 +87,7 @@ class Operation {
   static base::Result<std::unique_ptr<Operation>> Make(const Scene& scene,
                                                        std::shared_ptr<const PatientTissue> tissue);
 
-  /// First of all in a tick: what the one before emitted is forgotten.
+  /// Begins a tick, before all other calls: clears the events and acts of the tick before.
   void BeginTick() noexcept;
 
   // --- tools
@@ -95,14 +95,14 @@ class Operation {
   const instrument::Tool& Tool(int hand) const {
     return scene_->instruments[hand].tray[active_[static_cast<std::size_t>(hand)]];
   }
-  /// What the hand's joints become: a tool that is exchanged is drawn out.
+  /// Adapts the wanted joints of a hand: a tool that is exchanged is drawn out.
   /// \param is_holding  then there is no exchange, unless it is the bag that holds
   /// \return false where an exchange was asked for and refused
   /// \note Real-time safe.
   bool MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
                 instrument::TrocarJoints& wanted) noexcept;
 
-  /// What stones between the jaws leave of their movement; stones are taken and let go here.
+  /// Opening that a stone between the jaws allows them [rad]. Stones are taken and let go here.
   /// \param is_holding  tissue
   /// \note Real-time safe.
   double StopJaw(int hand, double jaw_before, double jaw, bool is_holding) noexcept;
@@ -113,23 +113,23 @@ class Operation {
   /// Tools cut, clip, rinse, and let current flow.
   /// \note Real-time safe, as are all stages.
   void Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  /// What current has heated gives way.
+  /// Heat flows, and tissue that the current has heated gives way.
   void Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
   /// The third hand.
   void Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  /// What Act has cut. \return whether nodes or springs changed: then Change() says which
+  /// Completes the cuts of Act. \return whether nodes or springs changed: then Change() says which
   bool EndCuts() noexcept;
   const surgery::TopologyChange& Change() const { return change_; }
   /// After the solve: blood and bile run, stones leave with the bile, clips slip.
   void Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  /// What lies loose falls, is pushed and carried.
+  /// Loose stones and clips fall, are pushed and carried.
   void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
 
-  /// What a judge sees of this tick, which has to outlive it.
+  /// Observation of this tick for a judge. It refers to the state of the tick, which has to outlive it.
   /// \param camera  through which the trainee looks
   cholecystectomy::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
                                                 const Camera& camera) const noexcept;
-  /// What happened in this tick.
+  /// Events of this tick.
   std::span<const OperationEvent> Events() const { return std::span(emitted_.events).first(emitted_.count); }
 
   /// A judge who knows this operation's anatomy.
@@ -143,7 +143,7 @@ class Operation {
 
   void Size(OperationSnapshot& snapshot) const;
   void Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept;
-  /// Adds what this one knows.
+  /// Adds the operation's part of the result: injuries, fluids, stones, and how far the retrieval is.
   void AddTo(OperationResult& result) const;
 
   /// Meshes and lines with their cuts. Before VisitState.
@@ -210,7 +210,7 @@ class Operation {
   const Scene* scene_;  // outlives this
   std::vector<StrandInfo> strands_;
   std::shared_ptr<const PatientTissue> made_;
-  /// What is asked of the patient again and again; constant.
+  /// Anatomy of the patient that is asked for again and again; constant.
   struct AnatomyFacts {
     std::int32_t liver = -1, gallbladder = -1;
     std::vector<std::uint32_t> main_ducts, main_arteries;  // nodes of those that must stay
@@ -239,7 +239,7 @@ class Operation {
   std::optional<Assistant> assistant_;
   surgery::TopologyChange change_;
   surgery::FluidLedger fluids_;
-  /// What has become of the gallbladder's wall.
+  /// Damage to the gallbladder's wall, and the leak that has been booked.
   struct Wall {
     WallHoles holes;
     double open_area = 0;    // that cuts have made [m^2]
@@ -269,7 +269,7 @@ class Operation {
   Emitted emitted_;
 };
 
-/// Adds what a judge knows.
+/// Adds the judge's part: errors, facts of the dissection, critical view and phase.
 void Publish(const cholecystectomy::OperationJudge& judge, OperationSnapshot& snapshot) noexcept;
 void AddTo(const cholecystectomy::OperationJudge& judge, OperationResult& result);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file force_mailbox.h  What the haptic loop and a driver's own thread leave for each other: newest wins, nobody waits.
+/// \file force_mailbox.h  Mailbox between the haptic loop and a driver's own thread: newest wins, nobody waits.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class ForceMailbox {
     std::copy_n(reports_.Front().begin(), samples.size(), samples.begin());
     return is_fresh ? ReadStatus::kFresh : ReadStatus::kUnchanged;
   }
-  /// The same as hands in a virtual trocar, device frame [m].
+  /// Reads the reports as hands in a virtual trocar, device frame [m].
   ReadStatus Read(std::span<HandSample> samples, const math::Vec3& p_device_trocar) noexcept {
     if (IsLost()) return ReadStatus::kLost;
     const bool is_fresh = reports_.Update();

@@ -24,13 +24,13 @@ struct Frame {
 /// One whole frame from the front of `bytes`; garbage where it is not one of the four kinds, in parts, too long, or masked
 /// where it must not be, and the other way round.
 ///
-/// \param is_masked  what a client sends is masked, what a server sends is not
+/// \param is_masked  true for frames of a client, which are masked, false for those of a server, which are not
 Parsed ParseFrame(std::string_view bytes, bool is_masked, Frame& frame);
 
 /// \param mask  0: not masked, as servers send
 std::string FormatFrame(Opcode opcode, std::string_view payload, std::uint32_t mask);
 
-/// What a server answers to a client's key.
+/// A server's answer to a client's key.
 std::string CalcAccept(std::string_view key);
 /// A client's request, with its key of 24 characters.
 std::string FormatRequest(std::string_view host, std::string_view key);

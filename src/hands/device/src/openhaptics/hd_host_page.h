@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file hd_host_page.h  What the process of the maker's library shares with the simulator and with all that watch it, and how soon
-/// each calls the other, or the library, dead.
+/// \file hd_host_page.h  Memory that the process of the maker's library shares with the simulator and with all that watch it, and
+/// how soon each calls the other, or the library, dead.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file hd_host_process.h  What the process of a maker's library does, and the supervisor's in its place.
+/// \file hd_host_process.h  Work of the process of a maker's library, and of the supervisor's process in its place.
 #pragma once
 
 #include <string>

@@ -23,7 +23,7 @@ struct ChebyshevSettings {
   Real growth_limit = 4;
 };
 
-/// What an iteration found: maxima over all free nodes.
+/// Result of an iteration: maxima over all free nodes.
 template <typename Real>
 struct IterationMaxima {
   Real residual2 = 0;  ///< [N^2]

@@ -97,7 +97,7 @@ struct SpringSum {
   }
 };
 
-/// What follows the springs, alike in all four layouts: virtual spring, weight, external force, and the step.
+/// Finishes a point after its springs, alike in all four layouts: virtual spring, weight, external force, and the step.
 template <typename Real, typename Memory, bool kCoalesced>
 TROCAR_HD void FinishPaperPoint(const PaperArgs<Real, Memory>& args, std::uint32_t i, Triple<Real> here,
                                 SpringSum<Real> springs) {

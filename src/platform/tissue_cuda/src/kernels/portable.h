@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file portable.h  What a kernel body may use: it is compiled for the GPU and, unchanged, for the host
+/// \file portable.h  Types and functions that a kernel body may use: it is compiled for the GPU and, unchanged, for the host
 /// executor (block_executor.h). C++17, because older CUDA compilers know no newer one.
 ///
 /// A kernel is a struct with

@@ -45,7 +45,7 @@ struct ContactEntry {
   double stiffness;   ///< [N/m]
 };
 
-/// What comes back beside positions.
+/// Report of a solve, which comes back beside the positions.
 struct TiledReport {
   double residual, force_scale;
   std::uint32_t iterations, restarts, converged;
@@ -103,7 +103,7 @@ struct TiledArgs {
   bool is_resumed = false;
   Array<ChebyshevControl<Real>> control{};  ///< (1) out; in when resumed
   Array<Triple<double>>
-      before_positions{};  ///< likewise, in the model's order: the iteration before [m]; or none
+      before_positions{};  ///< out; in when resumed, in the model's order: the iteration before [m]; or none
 
   // work
   Array<Quad<Real>> displacements{};   ///< (2 * 256 tiles) two buffers [m]

@@ -80,7 +80,7 @@ TROCAR_HD Triple<Real> ReadDisplacement(const TiledArgs<Real, Memory>& args,
   return {Real(u.x), Real(u.y), Real(u.z)};
 }
 
-/// What stays for the solve; without the inverse block.
+/// Constants of a node for the solve, without the inverse block.
 template <typename Real, typename Memory>
 TROCAR_HD NodeConstants<Real> ReadConstants(const TiledArgs<Real, Memory>& args, std::uint32_t node,
                                             std::uint32_t model) {
@@ -132,7 +132,7 @@ TROCAR_HD NodeConstants<Real> LoadConstants(const TiledArgs<Real, Memory>& args,
       {a.x, a.y, a.z, a.w, b.x, b.y}, b.z, First3(c), (flags & 1) != 0, (flags & 2) != 0, (flags & 4) != 0};
 }
 
-/// What a launch begins with for one node.
+/// State of one node at the start of a launch.
 template <typename Real>
 struct NodeStart {
   NodeConstants<Real> constants;

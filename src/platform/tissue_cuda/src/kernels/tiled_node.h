@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file tiled_node.h  What one node does in our own layout: its forces, its 3 x 3 block, its step. Both
+/// \file tiled_node.h  Computation of one node in our own layout: its forces, its 3 x 3 block, its step. Both
 /// kernels of tiled_chebyshev.h share it; they differ in where they read.
 /// Source of the mathematics: tissue/chebyshev_jacobi_wang2015.cpp.
 #pragma once

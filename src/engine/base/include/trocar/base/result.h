@@ -12,7 +12,7 @@
 
 namespace trocar::base {
 
-/// What went wrong, where, and what to do next. Never holds patient data.
+/// Error: its code, and a message that says what went wrong, where, and what to do next. Never holds patient data.
 struct Error {
   ErrorCode code = ErrorCode::kNone;
   std::string message;

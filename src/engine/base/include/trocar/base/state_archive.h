@@ -83,7 +83,7 @@ class StateArchive {
     Leave();
   }
 
-  /// What was read is no state of this model: everything after it is left as it is.
+  /// Reports that what was read is no state of this model. Every later field keeps its value.
   void Fail(std::string reason);
   bool ok() const noexcept { return failure_.empty(); }
   /// Path of the field and the reason; empty while all is well.

@@ -10,7 +10,7 @@ namespace trocar::base {
 ///
 /// \param values    any order, any unit; copied because it is sorted
 /// \param fraction  [-] in [0, 1]; 0.5 is the median
-/// \return the same unit; 0 for no values
+/// \return the percentile in the unit of the values; 0 for no values
 double CalcPercentile(std::vector<double> values, double fraction);
 
 }  // namespace trocar::base

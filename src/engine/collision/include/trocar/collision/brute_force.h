@@ -11,7 +11,7 @@
 
 namespace trocar::collision {
 
-/// The same answer as CentroidHierarchy::FindNearest, to the bit, by testing every triangle.
+/// Nearest triangle to a point by testing every triangle: bit for bit the result of CentroidHierarchy::FindNearest.
 NearestTriangle FindNearestBruteForce(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                       const Vec3& p,
                                       double max_distance = std::numeric_limits<double>::infinity()) noexcept;
@@ -21,12 +21,12 @@ NearestTriangle FindNearestBruteForce(std::span<const Vec3> positions, std::span
 /// \return kNoTriangle for no centroid
 std::uint32_t FindNearestCentroidBruteForce(std::span<const Vec3> centroids, const Vec3& p) noexcept;
 
-/// The same answer as FindNearestToSegment, to the bit, by testing every triangle.
+/// Nearest triangle to a segment by testing every triangle: bit for bit the result of FindNearestToSegment.
 SegmentContact FindNearestToSegmentBruteForce(
     std::span<const Vec3> positions, std::span<const Triangle> triangles, const Segment& segment,
     double max_distance = std::numeric_limits<double>::infinity()) noexcept;
 
-/// The same answer as FindFarthestPair, by testing every pair.
+/// Farthest pair of points by testing every pair: the result of FindFarthestPair.
 /// \pre at least two members (TROCAR_ASSERT)
 FarthestPair FindFarthestPairBruteForce(std::span<const Vec3> points,
                                         std::span<const std::uint32_t> members) noexcept;

@@ -72,7 +72,7 @@ class CapsuleTree {
   WideTree tree_;
 };
 
-/// The same answer as CapsuleTree::FindNearest, to the bit, by testing every piece.
+/// Nearest piece of tube to a segment by testing every piece: bit for bit the result of CapsuleTree::FindNearest.
 NearestPiece FindNearestPieceBruteForce(
     std::span<const Vec3> positions, std::span<const TubePiece> pieces, const Segment& segment,
     double max_distance = std::numeric_limits<double>::infinity()) noexcept;

@@ -67,7 +67,7 @@ struct NearestTriangle {
   bool Found() const { return triangle != kNoTriangle; }
 };
 
-/// What a search may leave out.
+/// Bound and starting triangle of a search.
 struct SearchLimits {
   double max_distance = std::numeric_limits<double>::infinity();  ///< farther triangles are not found [m]
   /// Triangle to start from, for example the last tick's; it changes the time and never the answer.
@@ -98,8 +98,7 @@ class CentroidHierarchy {
   /// \note Real-time safe: no allocation, lock or throw.
   void UpdateAll(std::span<const Vec3> positions) noexcept;
 
-  /// The same for a list of modified triangles and the nodes above them (section 3.3.4); repeated entries do
-  /// no harm.
+  /// UpdateAll() for modified triangles and the nodes above them alone (section 3.3.4). Repeated entries do no harm.
   /// \param modified  indices of triangles, each < Triangles().size() (TROCAR_ASSERT)
   /// \note Real-time safe: no allocation, lock or throw.
   void Update(std::span<const Vec3> positions, std::span<const std::uint32_t> modified) noexcept;

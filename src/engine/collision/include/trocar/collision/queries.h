@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file queries.h  What instruments ask of an organ: how near is the shaft, is the tip inside, what lies
-/// between jaws.
+/// \file queries.h  Queries of an instrument against an organ: how near the shaft is, whether the tip is inside, what lies
+/// between the jaws.
 #pragma once
 
 #include <cstddef>
@@ -82,7 +82,7 @@ struct SurfaceSide {
 /// normal; where the normal is zero the side is not known and the distance is given as positive.
 ///
 /// \param vertex_triangles  triangles around each vertex, geometry::FindVertexTriangles of the same triangles
-/// \param nearest           what FindNearest answered for p, Found() (TROCAR_ASSERT)
+/// \param nearest           result of FindNearest for p, Found() (TROCAR_ASSERT)
 /// \note Real-time safe: no allocation, lock or throw.
 /// Source: Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE
 /// TVCG 2005.

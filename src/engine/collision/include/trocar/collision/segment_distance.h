@@ -20,7 +20,7 @@ struct SegmentSegmentPoints {
   double squared_distance = 0;              ///< [m^2]
 };
 
-/// The same with the ends tried too, which near-parallel segments need; either may have no length.
+/// Nearest points of two segments. Tests the ends, too, which near-parallel segments need. Either may have no length.
 /// \note Real-time safe: no allocation, lock or throw.
 SegmentSegmentPoints FindNearestSegmentSegment(const Segment& a, const Segment& b) noexcept;
 

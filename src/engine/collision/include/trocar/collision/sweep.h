@@ -54,7 +54,7 @@ using TubeSweep = Sweep<SegmentSegmentPoints>;
 /// Kim, "Interactive continuous collision detection for non-convex polyhedra", Visual Computer 22, 2006.
 TriangleSweep SweepToTriangle(const MovingSegment& segment, const MovingTriangle& triangle,
                               double reach) noexcept;
-/// The same against the axis of a piece of tube, or of another tool.
+/// SweepToTriangle() against a segment in place of the triangle: the axis of a piece of tube, or of another tool.
 TubeSweep SweepToSegment(const MovingSegment& segment, const MovingSegment& axis, double reach) noexcept;
 
 /// A capsule that holds every place which the moving segment passes.

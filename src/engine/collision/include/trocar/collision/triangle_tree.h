@@ -31,14 +31,14 @@ class TriangleTree {
 
   /// \param positions  (nv) [m]
   /// \param triangles  (nt), copied
-  /// \param simd       what the loops use; changes no answer
+  /// \param simd       instruction set of the loops; changes no answer
   /// \return kMeshInvalid for no triangle, an index out of range or a coordinate that is not finite or too large
   /// \pre base::HasSimdLevel(simd) (TROCAR_ASSERT)
   /// \note Not real-time safe: allocates.
   static base::Result<TriangleTree> Make(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                          base::SimdLevel simd = base::FindSimdLevel());
 
-  /// The same in place, for a mesh whose triangles have changed, as after a cut.
+  /// Rebuilds the tree in place for a mesh whose triangles have changed, as after a cut.
   ///
   /// \return kMeshInvalid as Make; then the tree is as before
   /// \note Allocates only where the mesh is larger than any before; well below 1 ms for 4,000 triangles.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file blade_sweep.h  What a blade's edge passes over from one tick to the next.
+/// \file blade_sweep.h  Surface that a blade's edge sweeps from one tick to the next.
 #pragma once
 
 #include <array>

@@ -25,7 +25,7 @@ namespace trocar::geometry {
 /// No half-edge, triangle or vertex.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// What a vertex was made from.
+/// Origin of a vertex.
 enum class VertexOrigin : std::uint8_t {
   kGiven,   ///< of the mesh as it came
   kSplit,   ///< on an edge or in a triangle
@@ -40,7 +40,7 @@ struct VertexSource {
 
 void VisitState(base::StateArchive& archive, VertexSource& source);
 
-/// What a triangle is part of.
+/// Part of the mesh to which a triangle belongs.
 enum class TriangleKind : std::uint8_t {
   kSurface,  ///< of the surface as it came, or a part of such a triangle
   kWall      ///< inside of a trench
@@ -91,7 +91,7 @@ class EditableMesh {
   std::uint32_t From(std::uint32_t h) const { return triangles_[h / 3][h % 3]; }
   std::uint32_t To(std::uint32_t h) const { return From(Next(h)); }
   std::uint32_t Opposite(std::uint32_t h) const { return From(Previous(h)); }
-  /// The same edge in the neighbour, or kNone at a boundary.
+  /// Twin half-edge: the same edge in the neighbouring triangle; kNone at a boundary.
   std::uint32_t Twin(std::uint32_t h) const { return twins_[h]; }
   bool IsScored(std::uint32_t h) const { return scored_[h] != 0; }
   /// Corner of the neighbour that faces the edge, or kNone at a boundary.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file mesh_measures.h  What can be said of a mesh: size, closedness, normals, quality.
+/// \file mesh_measures.h  Measures of a mesh: size, closedness, normals, quality.
 #pragma once
 
 #include <array>

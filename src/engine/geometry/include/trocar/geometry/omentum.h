@@ -18,7 +18,7 @@ struct Ball {
 
 /// Height field of fat lobules that passes under every ball.
 ///
-/// \param above  what must stay visible above it: gallbladder, ducts, vessels; world frame
+/// \param above  parts that must stay visible above it: gallbladder, ducts, vessels; world frame
 /// \return  open sheet that faces +z; the same bits for the same argument
 TriangleMesh MakeOmentum(std::span<const Ball> above);
 

@@ -39,7 +39,7 @@ struct CutFront {
 
 void VisitState(base::StateArchive& archive, CutFront& front);
 
-/// What a tick's cut did.
+/// Result of the cut of one tick: counts of the edits made and of the edges left uncut.
 struct CutReport {
   std::size_t crossings = 0;  ///< edges that the sweep crossed
   std::size_t splits = 0;     ///< of them split
@@ -68,7 +68,7 @@ class SurfaceCutter {
   ///
   /// \param before, now  the blade's edge [m]; a cut goes on from `front` even where the tissue moved
   /// \param[in,out] front  empty where the blade starts anew
-  /// \return what was done; the mesh's journal tells which triangles changed
+  /// \return counts of the edits; the mesh's journal tells which triangles changed
   /// \pre the mesh is the one that the cutter was made for, or a copy
   /// \note Real-time safe: no allocation, lock or throw. What is not finite cuts nothing.
   CutReport Cut(const BladeEdge& before, const BladeEdge& now, const CutSettings& settings, CutFront& front,

@@ -21,8 +21,8 @@ struct CentreLine {
 /// Arc length of the polygon through the points [m].
 double CalcLength(const CentreLine& line);
 
-/// The same line with points about `spacing` [m] apart along its cubic spline; ends stay exact, radii are
-/// linear.
+/// The line with points about `spacing` [m] apart along its cubic spline. The ends stay exact. Radii are interpolated
+/// linearly.
 CentreLine Resample(const CentreLine& line, double spacing);
 
 /// Connectivity of a tube's skin around n centre-line points: `sides` vertices a ring, capped at both ends by

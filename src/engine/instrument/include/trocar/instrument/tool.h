@@ -17,7 +17,7 @@ namespace trocar::instrument {
 using math::Pose;
 using math::Vec3;
 
-/// What a tool can do besides pushing.
+/// Kind of a tool: what it can do besides pushing.
 enum class ToolKind : std::uint8_t {
   kGrasper,    ///< atraumatic, with a ratchet
   kDissector,  ///< Maryland: spreads and tears, and carries current
@@ -67,8 +67,8 @@ struct Capsule {
   double radius = 0;  ///< [m]
 };
 
-/// What can touch tissue: the two jaws, then the shaft's last `shaft_reach` [m]. Where a tool has no jaws both are its
-/// tip piece, from the end of the shaft to the tip.
+/// Parts of a tool that can touch tissue: the two jaws, and the last `shaft_reach` [m] of the shaft. Of a tool without jaws
+/// both jaws are the tip piece, from the end of the shaft to the tip.
 struct ToolCapsules {
   Capsule upper_jaw, lower_jaw, shaft;
 };
@@ -82,7 +82,7 @@ struct ToolPart {
     kBore,       ///< the dark inside of a tube
     kPouch,      ///< of the retrieval bag
     kUpperJaw,   ///< turns about the hinge
-    kLowerJaw,   ///< likewise
+    kLowerJaw,   ///< turns about the hinge
     kUpperClip,  ///< leg of the clip that the upper jaw holds
     kLowerClip
   } kind;

@@ -21,7 +21,7 @@ struct TrocarJoints {
   friend bool operator==(const TrocarJoints&, const TrocarJoints&) = default;
 };
 
-/// What a shaft in a trocar can reach.
+/// Limits of the joints of a tool in its trocar.
 struct JointLimits {
   double max_pan = 1.3962634015954636;   ///< 80 deg [rad]
   double max_tilt = 1.3962634015954636;  ///< 80 deg [rad]

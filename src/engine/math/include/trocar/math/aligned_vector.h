@@ -30,7 +30,7 @@ struct CacheLineAllocator {
   friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) noexcept { return true; }
 };
 
-/// What the kernels read or write a vector register at a time.
+/// Vector that begins at a cache line, for kernels that read or write a whole vector register at a time.
 template <typename T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 

@@ -7,9 +7,9 @@
 /// have the special values of C's Annex F; where the result is no number, it is the one quiet NaN. They neither set errno
 /// nor promise anything about the flags of exceptions.
 ///
-/// What IEEE 754 or integer arithmetic decides alone stays with the standard library: std::sqrt, fabs, copysign, floor,
-/// ceil, trunc, round, lround, rint, nearbyint, fmod, remainder, ldexp, frexp. Which zero fmin and fmax give is open: vector.h
-/// has Min and Max. For squares and cubes write products.
+/// Functions that IEEE 754 or integer arithmetic defines completely stay with the standard library: std::sqrt, fabs, copysign,
+/// floor, ceil, trunc, round, lround, rint, nearbyint, fmod, remainder, ldexp, frexp. The sign of a zero from fmin and fmax is
+/// not defined: vector.h has Min and Max. For squares and cubes write products.
 #pragma once
 
 namespace trocar::math {

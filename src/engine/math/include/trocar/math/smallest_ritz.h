@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file smallest_ritz.h  What conjugate gradients learn about the softest mode that they have met.
+/// \file smallest_ritz.h  Smallest Ritz value: the estimate by conjugate gradients of the softest mode that they have met.
 ///
 /// The factors of k steps make a tridiagonal matrix whose eigenvalues (Ritz values) approach those of the preconditioned matrix, the
 /// smallest from above (Golub and Meurant, "Matrices, Moments and Quadrature with Applications", 2010,

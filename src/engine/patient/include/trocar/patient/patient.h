@@ -98,7 +98,7 @@ struct Parameter {
   friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 
-/// What lies beside the operated organs: it is seen, keeps tools out and gives way a little, and is not simulated.
+/// Structure beside the operated organs. It is seen, keeps tools out and gives way a little, but is not simulated.
 struct Neighbour {
   std::string name;             ///< "stomach"
   geometry::TriangleMesh mesh;  ///< closed, manifold, outward, of one part or several; world frame [m]
@@ -106,12 +106,12 @@ struct Neighbour {
   NeighbourRole role = roles::ConventionalRole<NeighbourRole>(name);
 };
 
-/// Whose port it is.
+/// Use of a port: for the laparoscope, a hand of the surgeon, or the assistant.
 enum class PortUse : std::uint8_t { kLaparoscope, kLeftHand, kRightHand, kAssistant };
 inline constexpr std::size_t kPortUseCount = 4;
 /// "laparoscope", "left_hand", "right_hand", "assistant": as files write it.
 const char* NameOf(PortUse use) noexcept;
-/// What it names, or nothing.
+/// The use of that name; nothing for an unknown one.
 std::optional<PortUse> FindPortUse(std::string_view name) noexcept;
 
 /// Where an instrument passes this patient's insufflated wall, in place of what a scene says.
@@ -131,7 +131,7 @@ struct Table {
   friend bool operator==(const Table&, const Table&) = default;
 };
 
-/// What a label of the segmentation that a patient was made of was taken for.
+/// Label of the segmentation that a patient was made from, with the structure that it was taken for.
 struct SourceLabel {
   int label = 0;
   std::string meaning;  ///< "gallbladder", "kidney_right"

@@ -103,8 +103,8 @@ class RigidWorld {
 
   /// Bit of each of the first 64 bodies that a body touched at the end of the last Step.
   std::uint64_t TouchedBodies(std::uint32_t body) const;
-  /// Bodies of no mass that a tool with its parts in these poses enters, or nearly: `reach` [m] before they touch.
-  /// What moves is pushed by Step; what does not has to keep the tool out, and the caller does that.
+  /// Finds the bodies without mass that a tool with its parts in these poses enters, or that are nearer than `reach` [m].
+  /// Step pushes the bodies with mass. Those without mass have to keep the tool out, and the caller sees to that.
   /// \param[out] obstacles  cleared first; the deepest of each part and body
   void FindObstacles(std::uint32_t tool, const Pose (&X_world_parts)[kToolPartCount], double reach,
                      std::vector<ToolObstacle>& obstacles);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file roles.h  What organs, ducts, vessels, regions, landmarks and materials are to surgery, and how files name it.
+/// \file roles.h  Roles of organs, ducts, vessels, regions, landmarks and materials in surgery, and their names in files.
 ///
 /// A role is resolved once, where a patient is read or made; programs ask for the role afterwards, never for a name. The
 /// names stand here and nowhere else (tests/anatomy_names looks for others).
@@ -53,7 +53,7 @@ enum class LandmarkRole : std::uint8_t {
   kHepatocysticTriangle
 };
 
-/// What lies beside the operated organs: not simulated, but seen and touched.
+/// Role of a structure beside the operated organs, which is seen and touched, but not simulated.
 enum class NeighbourRole : std::uint8_t {
   kOther,
   kStomach,
@@ -70,7 +70,7 @@ enum class NeighbourRole : std::uint8_t {
 };
 inline constexpr std::size_t kNeighbourRoleCount = 12;
 
-/// What a material is of.
+/// Tissue that a material describes.
 enum class TissueRole : std::uint8_t { kOther, kLiver, kGallbladder, kGallbladderBed, kDuct, kArtery };
 
 /// Names as files write them, in the order of the roles.
@@ -174,7 +174,7 @@ constexpr bool IsFixed(RegionRole role) noexcept {
   return role == RegionRole::kDiaphragmaticFace || role == RegionRole::kFalciform ||
          role == RegionRole::kCoronary || role == RegionRole::kHeld;
 }
-/// What an organ is made of.
+/// Tissue of which an organ is made.
 constexpr TissueRole TissueOf(OrganRole role) noexcept {
   return role == OrganRole::kLiver         ? TissueRole::kLiver
          : role == OrganRole::kGallbladder ? TissueRole::kGallbladder

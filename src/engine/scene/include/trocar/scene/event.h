@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file event.h  What happened in a tick, by its name: tasks ask for events, snapshots carry them.
+/// \file event.h  Events of a tick, by their names: tasks ask for them, snapshots carry them.
 #pragma once
 
 #include <cstdint>

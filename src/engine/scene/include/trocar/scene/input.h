@@ -16,7 +16,7 @@ using instrument::kHandCount;
 using instrument::kLeft;
 using instrument::kRight;
 
-/// What a hand and its foot do besides moving the tool.
+/// Controls of a hand and its foot besides the motion of the tool.
 struct HandControls {
   std::uint8_t tool = 0;  ///< wanted, by its place in InstrumentSetup::tray; exchanged when the shaft is free
   bool cut = false;       ///< yellow pedal
@@ -27,7 +27,7 @@ struct HandControls {
   friend bool operator==(const HandControls&, const HandControls&) = default;
 };
 
-/// What the assistant is commanded to do with the third grasper, at the fundus.
+/// Command to the assistant, who holds the third grasper, at the fundus.
 enum class AssistantCommand : std::uint8_t {
   kWait,     ///< out of the way
   kRetract,  ///< take the fundus and lift it over the liver's edge towards the right shoulder
@@ -35,7 +35,7 @@ enum class AssistantCommand : std::uint8_t {
   kRelease   ///< let go and withdraw
 };
 
-/// What the person or the instructor may change while the simulation runs; acts in the next tick.
+/// Settings that the person or the instructor may change while the simulation runs. They act in the next tick.
 struct LiveSettings {
   double stiffness_scale = 1;  ///< on every structural and attachment spring [-], 0.05 to 20
   double shape_scale = 1;      ///< on every virtual (shape) spring [-], 0 to 20

@@ -9,7 +9,7 @@
 
 namespace trocar::scene {
 
-/// What feeds and drains the ends of ducts and arteries. Pressures are above that of the abdomen, 12 mmHg of gas.
+/// Supply and drainage at the ends of ducts and arteries. Pressures are above that of the abdomen, 12 mmHg of gas.
 /// Source: decision 0026 for the aorta; the others are general knowledge, tunables.
 struct VesselSupplies {
   surgery::FlowJunction aorta{12e3, 1.25e-10}, artery_bed{1e3, 5e-12};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file pathology.h  What the patient's listed diseases do to the tissue: factors on the scene's materials,
+/// \file pathology.h  Effect of the patient's listed diseases on the tissue: factors on the scene's materials,
 /// and adhesions. docs/patients.md gives the sources.
 #pragma once
 

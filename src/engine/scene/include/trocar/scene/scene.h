@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file scene.h  What is fixed while a simulation runs: patient, ports, tools, script.
+/// \file scene.h  Scene: all that is constant while a simulation runs, such as patient, ports, tools, script.
 #pragma once
 
 #include <array>
@@ -64,7 +64,7 @@ struct AssistantSetup {
   Vec3 lift;            ///< from where it took it, when told to retract [m]
 };
 
-/// What makes a scene an operation: tissue to be dissected, and tools that do more than push and hold.
+/// Setup that makes a scene an operation: tissue to be dissected, and tools that do more than push and hold.
 struct OperationSetup {
   double fat_spacing = 0.0022;  ///< of the lobules in the hepatocystic triangle [m]; 0: none
   std::optional<AssistantSetup> assistant;
@@ -139,7 +139,7 @@ struct Scene {
 math::Pose CalcLaparoscopePose(const LaparoscopeSetup& setup,
                                const instrument::TrocarJoints& joints) noexcept;
 
-/// What a picture should show.
+/// Request for a view: the point in the middle of the picture, its distance, and the side from which it is seen.
 struct ViewRequest {
   Vec3 p_world;                ///< in its middle [m]
   double distance = 0.08;      ///< from the lens [m], > 0
@@ -150,7 +150,7 @@ struct ViewRequest {
 /// \note Real-time safe, as the one below.
 std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup,
                                                  const ViewRequest& request) noexcept;
-/// The same with the light post as it is; `facing` is not looked at.
+/// Joints of a laparoscope that shows it with the light post as given; nothing where none can. `facing` is ignored.
 /// \param spin  of the light post [rad]
 std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewRequest& request,
                                                  double spin) noexcept;

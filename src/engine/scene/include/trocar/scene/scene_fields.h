@@ -16,7 +16,7 @@
 namespace trocar::scene {
 namespace fields_detail {
 
-// What persons read, or where a file lay. All other fields of all structs are visited, those that somebody adds, too.
+// Fields for a person to read, and the place of a file. All other fields of all structs are visited, later additions, too.
 template <typename T>
 bool IsOnlyTold(const T& /*owner*/, const void* /*field*/) {
   return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file task.h  What a trainee has to do in a scene, as data: goals, errors and points over a small vocabulary.
+/// \file task.h  Task of a trainee in a scene, as data: goals, errors and points over a small vocabulary.
 /// Nothing here knows a particular task; docs/tasks.md shows how one is written.
 #pragma once
 
@@ -102,7 +102,7 @@ struct Goal {
 
 using cholecystectomy::Severity;
 
-/// What must not happen. Counts each time that it begins.
+/// Error rule of a task. Counts each time that one of its conditions begins to hold.
 struct ErrorRule {
   std::string name;   ///< key: "wire_touched"
   std::string about;  ///< for the trainee: "The ring touched the wire"

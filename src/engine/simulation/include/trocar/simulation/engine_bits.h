@@ -10,7 +10,7 @@ namespace trocar::simulation {
 /// Whoever changes what a tick computes raises it. 1: results depended on the processor and on its C library (before 2026-11-29).
 inline constexpr int kEngineBits = 2;
 
-/// What a fingerprint of the model covers.
+/// Coverage of a fingerprint of the model.
 enum class ModelFingerprintKind : std::uint8_t {
   kFirst =
       1,  ///< tissue, ports, neighbours; how many objects and goals there are: recordings until 2026-11-29

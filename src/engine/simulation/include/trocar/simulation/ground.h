@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file ground.h  What lies under the organs of a scene.
+/// \file ground.h  Ground under the organs of a scene: the omentum.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace trocar::simulation {
 
 using math::Vec3;
 
-/// What the omentum passes under, for geometry::MakeOmentum: everything but the liver, which lies on it.
+/// Balls under which geometry::MakeOmentum leads the omentum: around all organs and tubes but the liver, which touches it.
 /// \param surfaces   of Simulation::Surfaces()
 /// \param positions  (nodes) of the first snapshot [m]
 std::vector<geometry::Ball> FindOmentumBalls(std::span<const SurfaceInfo> surfaces,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file model_description.h  What of a scene's tissue is constant, in the rows of Snapshot: its surfaces, strands and vessels.
+/// \file model_description.h  Constant data of a scene's tissue, in the rows of Snapshot: its surfaces, strands and vessels.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,7 @@ using scene::Scene;
 using scene::StrandInfo;
 using scene::SurfaceInfo;
 
-/// What one may know of the patient before the operation, as from images and a textbook. Rows are those of
-/// Snapshot::positions.
+/// Knowledge of the patient before the operation, as from images and a textbook. Rows are those of Snapshot::positions.
 struct ModelDescription {
   std::vector<SurfaceInfo> surfaces;  ///< organs, then tubes, as Simulation::Surfaces()
   std::vector<StrandInfo> strands;    ///< as Simulation::Strands()

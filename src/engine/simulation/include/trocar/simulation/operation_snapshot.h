@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file operation_snapshot.h  What surgery has changed: cut surfaces and tubes, clips, burns, what runs and what lies there.
+/// \file operation_snapshot.h  Changes by surgery: cut surfaces and tubes, clips, burns, running fluids and loose things.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ using surgery::StonePlace;
 using surgery::StoneSnapshot;
 using surgery::TubePiece;
 
-/// What cutting has made of surfaces and tubes.
+/// Surfaces and tubes as cutting has left them.
 struct TopologySnapshot {
   std::uint32_t version = 0;  ///< grows when triangles or tube pieces change
   /// Triangles of each organ over the rows of Snapshot::positions: organ i has triangles[first[i]] to
@@ -49,7 +49,7 @@ struct TopologySnapshot {
   }
 };
 
-/// What runs out, and where it gathers.
+/// Leaks and oozing blood, and where the fluids gather.
 struct FlowSnapshot {
   std::array<LeakSnapshot, 32> leaks{};  ///< the first leak_count count
   std::size_t leak_count = 0;

@@ -27,7 +27,7 @@ namespace trocar::simulation {
 using scene::Hand;
 using scene::Input;
 
-/// What the program gives a simulation from outside.
+/// Services that the program gives a simulation from outside: threads, a device's solver, a clock.
 struct Services {
   base::Threads threads{};
   /// Makes the solver of another device, which has other bits than the processor's; empty: the processor solves.
@@ -38,7 +38,7 @@ struct Services {
   std::int64_t (*now)() noexcept = nullptr;
 };
 
-/// What is constant while a surgery runs: scene, patient, the tissue at rest. Shared by any number of simulations.
+/// Constant data of a surgery: scene, patient, the tissue at rest. Shared by any number of simulations.
 struct SimulationModel;
 
 /// \param threads  used to fill tense organs
@@ -85,9 +85,9 @@ class Simulation {
   const Scene& GetScene() const;
   /// Organs, then tubes; constant.
   std::span<const SurfaceInfo> Surfaces() const;
-  /// What dissection divides, constant; empty where the scene is no operation.
+  /// Strands that dissection divides, constant; empty where the scene is no operation.
   std::span<const StrandInfo> Strands() const;
-  /// What Make, Step, Restore or Reset has published last; overwritten by the next of them.
+  /// Snapshot that Make, Step, Restore or Reset has published last; overwritten by the next of them.
   const Snapshot& GetSnapshot() const;
   /// How the operation stands; nothing where the scene is none.
   /// \note Allocates.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file snapshot.h  What a tick publishes: read-only, complete for drawing, read-outs and metrics.
+/// \file snapshot.h  Snapshot that a tick publishes: read-only, complete for drawing, read-outs and metrics.
 #pragma once
 
 #include <array>

@@ -30,7 +30,7 @@ class BedOoze {
   BedOoze(std::span<const LiverFibre> fibres, double bleeding, const BedOozeSettings& settings = {});
 
   /// One tick.
-  /// \return what ran out [m^3]
+  /// \return the blood that ran out [m^3]
   /// \note Real-time safe.
   double Update(const tissue::TissueState& tissue, const Electrosurgery& heat, std::size_t node_count,
                 double seconds) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file cavity.h  What the organs lie in: the insufflated abdominal wall in front, the dome of the diaphragm above the
+/// \file cavity.h  Cavity around the organs: the insufflated abdominal wall in front, the dome of the diaphragm above the
 /// liver, and the floor behind. Images of the organs do not show them, so they are analytic surfaces, fitted to the ports
 /// and to the organs themselves.
 ///

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file clip_hold.h  What a closed clip withstands before it slips along its vessel.
+/// \file clip_hold.h  Load that a closed clip withstands before it slips along its vessel.
 ///
 /// Sources: Deans, Wilson and Brough, Arch Surg 1995;130:439 (no clip of 90 was displaced by 300 mmHg); Nelson et al., Arch
 /// Surg 1992;127:718 (4.1 to 4.8 N along the vessel dislodge a clip on a tube). How much a partial, a crossed or a strained
@@ -15,7 +15,7 @@ struct ClipGrip {
   double vessel_radius = 0;  ///< outside [m], > 0
 };
 
-/// What clips withstand, and how fast they slip beyond that.
+/// Load that clips withstand, and how fast they slip beyond it.
 struct ClipHoldSettings {
   double pressure = 40e3;        ///< 300 mmHg: Deans 1995 [Pa]
   double pull = 4.4;             ///< between 4.08 and 4.78 N: Nelson 1992 [N]
@@ -28,7 +28,7 @@ struct ClipHoldSettings {
   friend bool operator==(const ClipHoldSettings&, const ClipHoldSettings&) = default;
 };
 
-/// What it withstands, each alone.
+/// Largest pressure and pull that a clip withstands, each alone.
 struct ClipHold {
   double pressure = 0;  ///< on its closed side above the other [Pa]
   double pull = 0;      ///< along the vessel, at its free end [N]

@@ -56,7 +56,7 @@ bool ClosesAroundTubes(const instrument::Tool& tool) noexcept;
 bool IsPinch(const instrument::Tool& tool, ToolBody body, const Pose& X_world_tool,
              const Vec3& normal) noexcept;
 
-/// What a tool touches. Surfaces are counted as organs first, then tubes.
+/// Tissue that a tool may touch. Surfaces are counted as organs first, then tubes.
 struct ContactCandidates {
   std::span<const OrganSurface> organs;
   const TubeSet* tubes = nullptr;          ///< or nullptr for none
@@ -110,7 +110,7 @@ struct ToolMotion {
 void FindContacts(const ToolMotion& motion, const ContactCandidates& candidates,
                   const ContactSettings& settings, const ContactSet& last, ContactSet& contacts) noexcept;
 
-/// What one hand's contacts amount to after the solve.
+/// Reaction of one hand's contacts after the solve.
 struct ContactReaction {
   Vec3 force;                 ///< of the tissue on the tool [N]
   std::int32_t surface = -1;  ///< pressed most, or -1

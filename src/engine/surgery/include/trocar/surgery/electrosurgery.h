@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file electrosurgery.h  What the electrode's current does: heat in nodes and strands, and what parts of it.
+/// \file electrosurgery.h  Effect of the electrode's current: heat in nodes and strands, and the parting of those that it heats.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ class Electrosurgery {
     double distance = 0;     ///< from the metal [m]
     double share = 1;        ///< of one contact: a surface is touched once, by the corners of a triangle
   };
-  /// What the metal touches, and so has current: strands that hold, and the nearest organ or tube.
+  /// Finds the parts that the metal touches, through which the current flows: strands that hold, and the nearest organ or tube.
   /// \return how many were put into `found`
   /// \note Real-time safe.
   std::size_t FindTargets(const Electrode& electrode, std::span<const OrganSurface> organs,

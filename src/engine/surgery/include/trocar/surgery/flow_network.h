@@ -71,11 +71,11 @@ struct VesselOpening {
                  ///< pressed shut, 0 to 1 [-]; a hole uses the first
 };
 
-/// What has been done to the vessels; belongs to the state of a surgery.
+/// Clips on the vessels and openings in them; part of the state of a surgery.
 struct VesselActs {
   static constexpr std::size_t kMostClips = 32, kMostOpenings = 16;
   std::vector<VesselClip> clips;        ///< in the order in which they were placed
-  std::vector<VesselOpening> openings;  ///< likewise
+  std::vector<VesselOpening> openings;  ///< in the order in which they were made
 
   /// Reserves, so that acts allocate nothing later.
   VesselActs();
@@ -84,7 +84,7 @@ struct VesselActs {
 /// \pre when restoring: of the same network
 void VisitState(base::StateArchive& archive, VesselActs& acts);
 
-/// What runs out of one end of an opening [m^3/s], >= 0.
+/// Leak from one end of an opening; its rate is in [m^3/s], >= 0.
 struct Leak {
   std::uint32_t opening = 0;
   std::uint8_t end = 0;  ///< 0 towards `from` (or the hole), 1 towards `to`

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file gallbladder_attachment.h  What still holds the gallbladder: bed, adhesions, and the tubes that enter it.
+/// \file gallbladder_attachment.h  Attachment of the gallbladder: bed, adhesions, and the tubes that enter it.
 #pragma once
 
 #include <cstdint>

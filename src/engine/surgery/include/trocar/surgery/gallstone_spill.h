@@ -39,14 +39,14 @@ class GallstoneSpill {
 
   bool HasInside() const noexcept;
 
-  /// What ran out of the hole in this tick takes stones with it.
+  /// Spills the stones that the bile takes with it as it runs out of a hole in this tick.
   /// \param leaked, content  see CalcStoneOutflow
   /// \return how many
   int Spill(double leaked, double content, const WallHole& hole) noexcept;
 
   /// Falling, sliding, lying; those that are held move with their tools.
   /// \param ground  without the omentum, which is this one's
-  /// \param others  what falls as stones do, before them: lost clips; without an omentum they stay where they are
+  /// \param others  lost clips, which fall as stones do, before them; without an omentum they stay where they are
   void Move(StoneGround ground, std::span<const Pose> X_world_tools, std::span<LooseStone* const> others,
             double seconds) noexcept;
   /// The triangles of organs have changed.
@@ -62,10 +62,10 @@ class GallstoneSpill {
   std::int32_t HeldBy(int hand) const noexcept { return held_[static_cast<std::size_t>(hand)]; }
   double HeldDiameter(int hand) const noexcept;
 
-  // What retrieves stones; each returns how many
+  // Retrieval of stones; each function returns how many
   /// \param bore  diameter of the sucker's bore [m]
   int Aspirate(const Vec3& p_world_tip, double bore) noexcept;
-  /// What was let go over the open bag falls into it.
+  /// Catches the stones that fall into the open bag because they were let go over it.
   int CatchInBag(const Pose& X_world_bag) noexcept;
   /// The stone that a hand holds leaves through its trocar.
   int TakeOut(int hand) noexcept;

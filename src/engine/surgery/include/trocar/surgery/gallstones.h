@@ -50,7 +50,7 @@ struct StonePusher {
   double radius = 0;  ///< [m]
 };
 
-/// What loose stones fall on.
+/// Surroundings of loose stones: the surfaces on which they fall, gravity, and the tools that push them.
 struct StoneGround {
   std::span<const OrganSurface> organs;
   std::span<const Vec3> positions;      ///< (n) of the nodes under the organs [m]
@@ -68,7 +68,7 @@ struct LooseStone {
   double radius = 0;  ///< [m], > 0
   Vec3 position;      ///< of its centre, world frame [m]
   Vec3 velocity;      ///< [m/s]
-  /// What it lies on: an index of StoneGround::organs, or one of the above.
+  /// Surface on which it lies: an index of StoneGround::organs, or one of the constants above.
   std::int32_t support = kOnNothing;
   std::uint32_t triangle = 0;       ///< of the support
   std::array<double, 3> weights{};  ///< barycentric, of the point under it

@@ -31,7 +31,7 @@ struct GraspSettings {
   int slip_ticks = 6;            ///< the pull must exceed friction * pinch this many ticks in a row
 };
 
-/// What one tool holds. Fixed capacity: the nearest nodes when there are more.
+/// Grasp of one tool: the nodes that it holds. Fixed capacity: the nearest nodes when there are more.
 struct Grasp {
   static constexpr std::size_t kCapacity = 32;
   bool are_jaws_closed =

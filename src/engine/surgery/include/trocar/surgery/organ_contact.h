@@ -60,7 +60,7 @@ struct OrganPair {
 };
 inline constexpr std::uint32_t kNoSpring = ~std::uint32_t{0};
 
-/// What is found anew in every tick is left out.
+/// Saves and restores a pair's state, but for that which is found anew in every tick.
 void VisitState(base::StateArchive& archive, OrganPair& pair);
 
 /// \param positions  (n) of the whole system, at rest [m]

@@ -61,7 +61,7 @@ struct ElectrosurgerySettings {
   /// The shortest strands, those of the bed, stand for a patch of areolar tissue of which so much is fibre [kg].
   double least_strand_mass = 0.5e-6;
   double least_node_mass = 2e-6;  ///< [kg]
-  /// What lies as far from the metal as this gets a quarter of what touches it gets [m].
+  /// Distance from the metal at which a part gets a quarter of the power that it would get by touching it [m].
   double quarter_power = 0.0004;
 
   friend bool operator==(const ElectrosurgerySettings&, const ElectrosurgerySettings&) = default;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file surgery_snapshot.h  What is seen of clips, ducts, arteries, bleeding and gallstones: plain values, complete for drawing,
-/// tasks and metrics.
+/// \file surgery_snapshot.h  Visible state of clips, ducts, arteries, bleeding and gallstones: plain values, complete for
+/// drawing, tasks and metrics.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct ClipSnapshot {
   bool IsGood() const { return !is_lost && !is_crossed && closure > 0.999; }
 };
 
-/// What runs out of a cut or a hole.
+/// Leak from a cut or a hole.
 struct LeakSnapshot {
   math::Vec3 position;   ///< world frame [m]
   math::Vec3 direction;  ///< unit, out of the opening
@@ -61,7 +61,7 @@ struct StoneSnapshot {
   std::int32_t hand = -1;  ///< that holds it
 };
 
-/// What has become of the patient's gallstones.
+/// Numbers of the patient's gallstones by where they are.
 struct StoneCount {
   int all = 0;
   int inside = 0;   ///< of the gallbladder

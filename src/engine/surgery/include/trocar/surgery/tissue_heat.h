@@ -52,7 +52,7 @@ struct HeatLink {
 double CalcHeatConductance(const HeatConstants& constants, double width, double depth,
                            double length) noexcept;
 
-/// What a tick changes.
+/// State of the heat: all that a tick changes.
 struct HeatState {
   std::vector<double> temperature;  ///< (n) [deg C]
   std::vector<double> water;        ///< (n) left, of the water at the start, 0 to 1 [-]
@@ -62,7 +62,7 @@ struct HeatState {
 
 void VisitState(base::StateArchive& archive, HeatState& state);
 
-/// What a node's past amounts to, from worst to none.
+/// Heat injury that a node has suffered so far, from none to worst.
 enum class HeatInjury : std::uint8_t {
   kNone,
   kBlanched,  ///< damage >= 1: white, and its small vessels are sealed

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file topology_change.h  What a cut changes in the mass-spring system: the list from which a solver takes it in the same
+/// \file topology_change.h  Changes of the mass-spring system by a cut: the list from which a solver takes them in the same
 /// tick.
 ///
 /// Nodes are never renumbered. The capacity for new ones is in the system from the start, as spare nodes that are fixed and
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> ApplyChange(const TopologyChange& change, tissue::Tis
 /// Takes a change into a state of the model that was made from the changed description: new nodes get their positions and
 /// follow the balance of forces unless fixed, springs keep their factor and damage or inherit it, strands are cut.
 ///
-/// \param spring_origins  what the other ApplyChange returned
+/// \param spring_origins  result of the other ApplyChange
 void ApplyChange(const TopologyChange& change, std::span<const std::uint32_t> spring_origins,
                  const tissue::TissueModel& model, tissue::TissueState& state);
 

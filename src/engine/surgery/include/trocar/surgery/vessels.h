@@ -27,7 +27,7 @@ struct TubePlace {
   double arc = 0;  ///< from the tube's first point, at rest [m]
 };
 
-/// What closing a clip applier's jaws came to.
+/// Result of closing a clip applier's jaws.
 struct ClipResult {
   enum class Kind : std::uint8_t {
     kClosed,   ///< around the whole vessel
@@ -90,7 +90,7 @@ class Vessels {
     double radius = 0;           ///< [m]
     void VisitState(base::StateArchive& archive);
   };
-  /// What lies between open jaws.
+  /// Finds the place of a vessel that lies between open jaws; nothing where there is none.
   /// \note Real-time safe.
   std::optional<Caught> Catch(const instrument::Tool& tool, const Pose& X_world_tool, double jaw,
                               std::span<const Vec3> position) const noexcept;
@@ -127,7 +127,7 @@ class Vessels {
   /// Cuts through one tube.
   std::size_t CountCuts(std::uint32_t tube) const noexcept;
 
-  // What is seen; each fills the span as far as it goes and returns how many.
+  // Visible state; each function fills the span as far as it goes and returns how many.
   /// \param first_surface  index of the first tube's surface in the scene
   std::size_t PublishPieces(std::size_t first_surface, std::span<TubePiece> pieces) const noexcept;
   std::size_t PublishClips(std::span<const Vec3> position, std::span<ClipSnapshot> clips) const noexcept;
@@ -155,7 +155,7 @@ class Vessels {
     TubePlace place;
     void VisitState(base::StateArchive& archive);
   };
-  /// What is left of a vessel on one side of a cut.
+  /// Part of a vessel that is left on one side of a cut.
   struct Stump {
     std::uint32_t vessel = 0;
     double sign = 1;           // +1: the cut lies towards the vessel's `to` end, as seen from the stump

@@ -13,7 +13,7 @@ namespace trocar::surgery {
 
 using math::Vec3;
 
-/// What a wall is made of, by area.
+/// Material of a wall, by area.
 struct WallMaterial {
   double membrane_modulus = 0;  ///< E t, Young's modulus times thickness [N/m]
   double bending_share = 0;     ///< of it that bending springs carry, see tissue::CalcBendingShare [-]

@@ -58,7 +58,7 @@ struct VolumeResponses {
   int ticks_waited = 0;                         ///< ticks without time that left them to a later one
 };
 
-/// What every tick changes: a tick that went wrong is taken back by copying it.
+/// Part of the conservation's state that every tick changes. A tick that went wrong is undone by copying it back.
 struct ConservationTick {
   std::vector<OrganVolume> organs;
   FreeRegions regions;

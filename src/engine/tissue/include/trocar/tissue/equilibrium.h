@@ -93,7 +93,7 @@ class ConstraintSet {
 };
 inline constexpr std::size_t kMaxConstraints = 8;
 
-/// What all solvers of one model share: its nodes in the order of their memory, and the levels of the multigrid. Constant.
+/// Constant data that all solvers of one model share: its nodes in the order of their memory, and the levels of the multigrid.
 struct SolverModel;
 
 /// The solvers of one model and their memory.

@@ -28,7 +28,7 @@ class LinearResponse {
   /// Takes the stiffness K of the tissue as it lies; contacts are not counted.
   /// \note Real-time safe.
   void SetStiffness(const TissueState& state, const TissueLoad& load) noexcept;
-  /// The same where only strands have parted since: a small part of the work.
+  /// Updates the stiffness where only strands have parted since: a small part of the work.
   /// \pre SetStiffness() with these positions, conditions, spring factors and scales
   /// \note Real-time safe.
   void FollowStrands(const TissueState& state, const TissueLoad& load) noexcept;

@@ -79,14 +79,14 @@ struct LocalPatch {
   std::array<Contact, kMaxContacts> contacts;
 };
 
-/// What a segment is cut from; views into a simulation after its tick.
+/// Input of the cutter: views into a simulation after its tick.
 struct PatchSource {
   const TissueModel& model;
   const TissueState& state;
   const TissueLoad& load;                       ///< for the scales
   std::span<const ContactSpring> contacts;      ///< of all tools
-  std::span<const std::uint8_t> contact_tools;  ///< whose each contact is
-  std::uint8_t tool = 0;                        ///< whose segment is wanted
+  std::span<const std::uint8_t> contact_tools;  ///< tool of each contact
+  std::uint8_t tool = 0;                        ///< tool whose segment is cut
   std::span<const std::uint32_t> held;          ///< nodes between this tool's jaws
   math::Pose X_world_tool;
   math::Vec3 force;  ///< of the tissue on the tool [N]

@@ -13,7 +13,7 @@
 
 namespace trocar::tissue {
 
-/// What CheckTissue put right.
+/// Repairs that CheckTissue made.
 struct TissueRepairs {
   std::size_t merged_springs = 0;  ///< second springs between two nodes, joined with the first
   std::size_t held_nodes = 0;  ///< nodes that nothing holds: no spring, strand or virtual spring; now fixed
@@ -27,7 +27,7 @@ struct TissueRepairs {
 /// k l = k1 l1 + k2 l2; a node that nothing holds is fixed, because it has no equilibrium.
 ///
 /// \param[in,out] definition
-/// \param memory_bytes  what model and solvers may take, of the memory that the program finds
+/// \param memory_bytes  memory that model and solvers may take, out of that found by the program
 /// \return kTissueInvalid: sizes that differ, an index out of range, a link from a node to itself, a number
 /// that is
 ///         negative or not finite, a spring whose ends lie in one point at rest although its length is not

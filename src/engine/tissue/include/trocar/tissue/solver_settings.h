@@ -35,7 +35,7 @@ struct RelaxationSettings {
 struct NewtonSettings {
   int max_steps = 40;              ///< per tick; two as a rule, many in a snap-through
   int max_linear_iterations = 60;  ///< of conjugate gradients, per step
-  /// The same of all steps of a tick together, with the halvings of steps that led uphill, >= 1: bounds its time.
+  /// Most iterations in all steps of a tick together, halvings of steps that led uphill included, >= 1: bounds the tick's time.
   int max_linear_total = 100000;
   /// With constraints: whether to follow a fold through its snap-through. The few nodes that move far are then brought to
   /// rest by a local solve, the stiffness has the follower stiffness of pressures, and steps are solved until a mode that

@@ -55,7 +55,7 @@ struct TangentSpring {
   double rest_length = 0;  ///< [m]
 };
 
-/// \param factor  what is left of the spring, TissueState::spring_factor [-]
+/// \param factor  share of the spring that is left, TissueState::spring_factor [-]
 /// \note Real-time safe.
 inline TangentSpring CalcTangentSpring(const SpringLaw& law, double factor, double stiffness,
                                        double rest_length, double length) noexcept {

@@ -34,7 +34,7 @@ class StateGuard {
   /// \pre as many nodes as before; the model outlives this
   void UpdateTopology(const TissueModel& model, const TissueState& state) noexcept;
   bool IsFrozen() const noexcept { return bad_in_a_row_ >= kMaxRetries; }
-  /// What the last Check said, also where that was before the state was saved and restored.
+  /// Verdict of the last Check(), also of one before the state was saved and restored.
   GuardVerdict LastVerdict() const noexcept {
     if (bad_in_a_row_ == 0) return GuardVerdict::kGood;
     return IsFrozen() ? GuardVerdict::kFrozen : GuardVerdict::kRestored;

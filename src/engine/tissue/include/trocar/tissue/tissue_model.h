@@ -21,7 +21,7 @@ namespace trocar::tissue {
 
 using math::Vec3;
 
-/// What a spring does beyond Hooke's law; strains are eps = (|x_b - x_a| - l) / l. See spring_law.h.
+/// Stiffening, damage and failure of a spring beyond Hooke's law. Strains are eps = (|x_b - x_a| - l) / l. See spring_law.h.
 struct SpringLaw {
   double stiffening = 0;           ///< beta: growth of the stiffness with strain [-], >= 0; 0 is Hooke's law
   double stiffening_strain = 0.2;  ///< eps_0: up to here Hooke's law holds [-], >= 0
@@ -54,7 +54,7 @@ struct Strand {
 /// The paper's three boundary conditions (section 3.2.2).
 enum class NodeCondition : std::uint8_t {
   kFree,           ///< follows the balance of forces
-  kExternalForce,  ///< the same, loaded by a tool
+  kExternalForce,  ///< free, and loaded by a tool
   kPrescribed      ///< position given: by anatomy, or by a grasper
 };
 
@@ -69,9 +69,9 @@ struct TissueDefinition {
   std::vector<Strand> strands;          ///< attachments: can be dissected
 };
 
-/// What cutting changes of a description, for saving and restoring a system that was cut: nodes' constants, which nodes
-/// are fixed, and springs. Laws and strands stay those of the uncut description. MakeTissueModel makes the model again;
-/// the model holds nothing else.
+/// Saves and restores the parts of a description that cutting changes: nodes' constants, which nodes are fixed, and springs.
+/// Laws and strands stay those of the uncut description. MakeTissueModel makes the model again; the model holds nothing
+/// else.
 ///
 /// Restoring refuses numbers of which no model can be made.
 /// \pre when restoring: `definition` is the uncut description, with its spare nodes
@@ -112,7 +112,7 @@ struct TissueModel {
 /// \pre sizes agree, indices are in range, stiffness and masses are finite and >= 0 (TROCAR_ASSERT)
 TissueModel MakeTissueModel(const TissueDefinition& definition);
 
-/// What a tick changes.
+/// State of the tissue: all that a tick changes.
 struct TissueState {
   std::vector<Vec3> position;                  ///< (n) [m]
   std::vector<NodeCondition> condition;        ///< (n)
@@ -141,7 +141,7 @@ struct ContactSpring {
 /// Most contacts that a solver has the capacity for.
 inline constexpr std::size_t kMaxContacts = 1024;
 
-/// What acts on the system in one solve.
+/// Load on the system in one solve, and the scales of its stiffness.
 struct TissueLoad {
   /// Gravity now minus gravity in which the rest shape was imaged [m/s^2]: organs are photographed under
   /// their own weight, so only the difference moves them. For the paper's own experiments, the whole of

@@ -39,7 +39,7 @@ base::Result<DeviceSpec> ParseDeviceSpec(std::string_view text);
 base::Result<std::unique_ptr<Driver>> MakeDriver(std::string_view text, const DeviceStore& store,
                                                  Clock& clock);
 
-/// What the buttons of a device do, by the settings of its kind.
+/// Acts of a device's buttons, by the settings of its kind.
 /// \param text  as MakeDriver() takes it
 ButtonMap FindButtons(std::string_view text, const DeviceStore& store);
 
@@ -55,7 +55,7 @@ struct FoundDevice {
   std::string spec;         ///< for MakeDriver(); "KIND:" stands open where the kind cannot be told
   std::string description;  ///< for a person
 };
-/// What is plugged in. Opens nothing that could disturb a device.
+/// Devices that are plugged in. Opens nothing that could disturb a device.
 std::vector<FoundDevice> ListDevices();
 
 }  // namespace trocar::device

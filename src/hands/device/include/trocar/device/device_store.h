@@ -40,7 +40,7 @@ struct DeviceStore {
 
   /// The entry of that kind, or the defaults.
   TrackerEntry Tracker(const std::string& kind) const;
-  /// What the buttons of that kind do, or the defaults; "haptics" without clutch and freeze.
+  /// Acts of the buttons of that kind, or the defaults; "haptics" without clutch and freeze.
   ButtonMap Buttons(const std::string& kind) const;
   friend bool operator==(const DeviceStore&, const DeviceStore&) = default;
 };

@@ -67,7 +67,7 @@ class Driver {
   /// A sample that is not finite is ignored.
   virtual void PlaceHand(int /*channel*/, const HandSample& /*home*/) noexcept {}
 
-  /// What came in and was not used, where a person should know of it: a sentence for each reason, with what to do. English;
+  /// Input that was not used, where a person should know of it: a sentence for each reason, with what to do. English;
   /// TranslateComposed knows them. Another sentence means another reason; counts in them change.
   /// \note Not real-time safe: allocates.
   virtual std::vector<std::string> DescribeHeldBack() const { return {}; }

@@ -74,7 +74,7 @@ std::unique_ptr<Emulator> MakeJawEmulator(JawEmulation emulation);
 /// An OpenIGTLink server: 60 times a second the left hand as TRANSFORM, the right one as TDATA.
 std::unique_ptr<Emulator> MakeIgtlEmulator(SensorMotion motion);
 
-/// What a person does with a SpaceMouse's cap at a time [s].
+/// Motion of a SpaceMouse's cap by a person: its state at a time [s].
 using CapMotion = std::function<SpaceMouseState(double time)>;
 /// Pushed and turned to and fro in all axes; the left button goes down and up.
 SpaceMouseState CalcCapMotion(double time) noexcept;
@@ -89,7 +89,7 @@ struct HaplyEmulation {
   /// Of the grip, held at a time [s], bit 0 is the first; may be empty.
   std::function<std::uint32_t(double time)> buttons = {};
 };
-/// What a driver last sent to the emulated service.
+/// Forces that a driver last sent to the emulated service.
 struct HaplyForces {
   std::array<Vec3, 2> newtons;  ///< device frame [N]
   std::uint64_t messages = 0;

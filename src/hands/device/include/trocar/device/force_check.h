@@ -7,7 +7,7 @@
 
 namespace trocar::device {
 
-/// What one tick of a millisecond may add to a force; a fall is free [N].
+/// Largest rise of a force in one tick of a millisecond; a fall is free [N].
 inline constexpr double kMaxForceRise = 0.5;
 /// Rounding that is no violation, as a share of a force and in newtons.
 inline constexpr double kForceRounding = 1e-9;
@@ -28,7 +28,7 @@ class ForceCheck {
   /// \param max_force  the device's nominal maximum [N]; with one that is implausible nothing passes
   explicit ForceCheck(double max_force) noexcept;
 
-  /// What may go out, about once a millisecond [N].
+  /// The force that may go out in place of `force`, about once a millisecond [N].
   /// \note Real-time safe: no allocation, lock or throw.
   math::Vec3 Pass(const math::Vec3& force) noexcept;
   /// Something else came than a gate lets out; only a new check passes forces again.

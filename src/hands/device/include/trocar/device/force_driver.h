@@ -35,7 +35,7 @@ class GatedForce {
   math::Vec3 force_;
 };
 
-/// What one device can do and bear, by its maker or by measurement. 0 where it is not known, except max_force.
+/// Capabilities and limits of one device, by its maker or by measurement. 0 where not known, except max_force.
 struct ForceLimits {
   double max_force = 0;                     ///< nominal maximum [N], > 0
   double max_continuous_force = 0;          ///< that the motors bear for ever [N]
@@ -63,8 +63,8 @@ enum class ForceDeviceStatus : std::uint8_t {
   kLost   ///< gone, or an error that does not pass; the driver must be configured again
 };
 
-/// What one device reports, as it reports it: a driver makes no good pose of a bad one, and leaves it to the guard of the
-/// haptic loop to judge. Device frame: x to the person's right, y up, z towards the person; metres.
+/// Report of one device, unchanged: a driver makes no good pose of a bad one, but leaves that judgement to the guard of the
+/// haptic loop. Device frame: x to the person's right, y up, z towards the person; metres.
 struct ForceSample {
   math::Vec3 position;  ///< of the point where the force acts [m]
   math::Vec3 velocity;  ///< of that point, measured or derived by the driver [m/s]

@@ -9,7 +9,7 @@
 
 namespace trocar::device {
 
-/// What a parser says about the first bytes of what is there.
+/// Verdict of a parser on the first of the bytes that are there.
 struct Parsed {
   enum class Verdict {
     kIncomplete,  ///< could become a record

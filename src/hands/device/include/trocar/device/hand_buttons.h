@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file hand_buttons.h  What the buttons and pedals of a device do: debounced, and let go of when the device is lost.
+/// \file hand_buttons.h  Buttons and pedals of a device and their acts: debounced, and let go of when the device is lost.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace trocar::device {
 
-/// What a button does for the hand that it belongs to.
+/// Act of a button, for the hand to which it belongs.
 enum class HandAct : std::uint8_t {
   kNone,
   kCut,           ///< yellow pedal, while held
@@ -23,13 +23,13 @@ enum class HandAct : std::uint8_t {
   kPreviousTool,  ///< of the hand's tray
   kAssistant,     ///< the next command to the assistant
   kClutch,        ///< while held the tool stands still; then it goes on from there, wherever the hand is
-  kFreeze,        ///< the same from one press to the next
+  kFreeze,        ///< as kClutch, from one press to the next
   kCount
 };
 inline constexpr std::size_t kActCount = static_cast<std::size_t>(HandAct::kCount);
 /// "none", "cut", "coagulate", "rinse", "aspirate", "next_tool", "previous_tool", "assistant", "clutch", "freeze"
 std::string_view ActName(HandAct act) noexcept;
-/// Whose name it is, or nothing.
+/// The act of that name; nothing for an unknown one.
 std::optional<HandAct> FindAct(std::string_view name) noexcept;
 
 /// Left and right hand.
@@ -40,7 +40,7 @@ using ButtonMap = std::array<std::array<HandAct, kMostButtons>, kButtonHands>;
 /// Cut, coagulate, previous tool, next tool, clutch, freeze: the same for both hands of every device.
 ButtonMap DefaultButtons() noexcept;
 
-/// What a hand's buttons say at one time.
+/// State of a hand's acts at one time: which are held, and how often each was pressed.
 struct HandActs {
   std::array<bool, kActCount> is_held{};
   std::array<std::uint32_t, kActCount>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file hand_recording.h  What a device said, kept in a file and played again in its place.
+/// \file hand_recording.h  Recording of a device's samples, kept in a file and played again in its place.
 #pragma once
 
 #include <array>

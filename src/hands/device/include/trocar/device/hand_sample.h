@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file hand_sample.h  What an input device says about one hand at one time.
+/// \file hand_sample.h  Sample of an input device: one hand at one time.
 #pragma once
 
 #include <cmath>

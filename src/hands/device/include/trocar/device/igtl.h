@@ -44,9 +44,9 @@ enum class IgtlFault : std::uint8_t {
   kScale,           ///< axes, or a quaternion, of another length than 1
 };
 
-/// What came of one kind by one name: of messages, and of each tool in a message of several.
+/// Count of what came by one kind and name: of messages, and of each tool in a message of several.
 struct IgtlSeen {
-  std::array<char, 12> type{};  ///< zeros behind its end; likewise:
+  std::array<char, 12> type{};  ///< zeros behind its end, as in `name`
   std::array<char, 20> name{};
   std::uint64_t came = 0, refused = 0;
   std::uint64_t poses = 0;  ///< good ones
@@ -56,7 +56,7 @@ struct IgtlSeen {
   std::array<double, 3> numbers{};  ///< the axes' lengths, the angle between them [degrees off a right one]
 };
 
-/// What came in, and what was held back.
+/// Counts of messages: good, skipped and bad.
 struct IgtlCounts {
   std::uint64_t messages = 0;  ///< whole and right
   std::uint64_t skipped = 0;   ///< of kinds that are not read here
@@ -80,9 +80,9 @@ class IgtlReader {
   bool Feed(std::string_view bytes, const Sink& sink);
   void Restart() noexcept;
   const IgtlCounts& Counts() const noexcept { return counts_; }
-  /// What came and does not count, a sentence for each reason:
+  /// Messages and poses that came and do not count, a sentence for each reason:
   /// "TRANSFORM \"LeftTool\": 119 of 119 do not count, because ...".
-  /// \note Not real-time safe: allocates; likewise below.
+  /// \note Not real-time safe: allocates, as the two below.
   std::vector<std::string> DescribeRefused() const;
   /// All that came by kind and name: "TRANSFORM \"LeftTool\" (119), STATUS \"PlusServer\" (60)".
   std::string DescribeReceived() const;

@@ -57,7 +57,7 @@ inline constexpr std::size_t kHidReportSize = 2 * (kJawTools + 1),
                              kHidReportSizeWithoutClock = 2 * kJawTools;  ///< [bytes]
 /// Nothing where the report has another size.
 HidReport ParseHidReport(std::string_view bytes) noexcept;
-/// What ParseHidReport() reads.
+/// Report that ParseHidReport() reads.
 std::string FormatHidReport(const std::array<int, kJawTools>& raw, std::uint16_t milliseconds);
 
 /// "J,1,1234,512\r\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file library_guard.h  What the supervisor does for devices that a maker's library holds in a process of its own.
+/// \file library_guard.h  Guard by the supervisor of devices that a maker's library holds in a process of its own.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ namespace trocar::device {
 enum Channel { kLeftHand = 0, kRightHand = 1, kLaparoscope = 2 };
 inline constexpr int kChannelCount = 3;
 
-/// What a key or mouse button does while it is held.
+/// Motion by a key or mouse button while it is held.
 enum class Motion {
   kRight,
   kLeft,
@@ -36,7 +36,7 @@ struct JointRates {
   double depth = 0;  ///< [m/m]
 };
 
-/// What moves the tip along the picture's axes.
+/// Joint rates that move the tip along the picture's axes.
 struct PointerMap {
   JointRates right, up, away;
 };

@@ -16,7 +16,7 @@ namespace trocar::device {
 enum class PolhemusFormat { kFastrakAscii, kFastrakBinary, kLiberty, kPatriot };
 /// "fastrak", "fastrak-binary", "liberty", "patriot"
 std::string_view FormatName(PolhemusFormat format) noexcept;
-/// Whose name it is, or nothing.
+/// The format of that name; nothing for an unknown one.
 std::optional<PolhemusFormat> FindFormat(std::string_view name) noexcept;
 
 /// Stations that a record can name: 1 to this.
@@ -67,9 +67,9 @@ std::string FormatRecord(PolhemusFormat format, std::span<const int> items, cons
 /// The output list that SetUpCommands() asks for.
 std::span<const int> RequestedItems(PolhemusFormat format) noexcept;
 
-/// What makes a tracker send the records above: no continuous sending, inches, the output list, the hemisphere.
+/// Commands that make a tracker send the records above: no continuous sending, inches, the output list, the hemisphere.
 ///
-/// \param stations    those that are used, from 1
+/// \param stations    stations that are used, from 1
 /// \param hemisphere  unit vector from the source to where the sensors are, source frame
 std::string SetUpCommands(PolhemusFormat format, std::span<const int> stations, const math::Vec3& hemisphere);
 /// Asks for one record of every station that is on.

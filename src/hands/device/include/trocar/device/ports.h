@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file ports.h  What a driver needs from outside, so that tests can put faults and their own time in its place.
+/// \file ports.h  Clock and transport of a driver: interfaces, so that tests can put faults and their own time in their place.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ class ManualClock : public Clock {
   double time_ = 0;
 };
 
-/// What became of a read or write.
+/// Result of a read or write.
 struct IoResult {
   std::size_t count = 0;  ///< bytes; 0 means that there is nothing to read, or no room to write, just now
   bool is_lost = false;   ///< the other side is gone for good: hang-up, end of file or an I/O error alike

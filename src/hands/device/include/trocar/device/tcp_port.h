@@ -26,7 +26,7 @@ class TcpListener {
  public:
   /// \param port          0 lets the system choose
   /// \param is_local_only true: only this machine can connect
-  /// \param send_buffer   what the system keeps for a caller that does not read, about [bytes]; 0: as the system likes (megabytes)
+  /// \param send_buffer   memory for a caller that does not read, about [bytes]; 0: as the system likes (megabytes)
   /// \return kDeviceBusy where the port is taken
   static base::Result<std::unique_ptr<TcpListener>> Make(int port, bool is_local_only = true,
                                                          int send_buffer = 0);

@@ -18,12 +18,12 @@ struct TrackedHandsSettings {
   Vec3 hemisphere{1, 0, 0};          ///< unit vector from the source to where the hands are, source frame
   bool has_hemisphere_doubt = true;  ///< the tracker may report -x for x; false for optical ones
   double max_speed = 2.0;            ///< of a sensor; what is faster is a glitch [m/s], > 0
-  double max_turn_rate = 25.0;       ///< likewise [rad/s], > 0
+  double max_turn_rate = 25.0;       ///< of a sensor; what is faster is a glitch [rad/s], > 0
   double stale_after = 0.050;        ///< without a good pose a hand is not seen any more [s], > 0
   double lost_after = 0.500;         ///< without any record the device is lost [s], > stale_after
 };
 
-/// What was held back, since the last Reset().
+/// Counts of poses since the last Reset(): accepted, turned back, and held back.
 struct PoseCounts {
   std::uint64_t accepted = 0;
   std::uint64_t jumps = 0;        ///< faster than a hand

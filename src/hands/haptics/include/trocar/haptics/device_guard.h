@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file device_guard.h  What of a haptic device's reports is believed, and how late the loop that reads them is.
+/// \file device_guard.h  Guards of a haptic device: which of its reports are believed, and how late the loop that reads them is.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct DeviceGuardSettings {
   double velocity_time = 0.003;  ///< time constant of the velocity that is derived from positions [s]
 };
 
-/// What is believed of a device in one tick.
+/// State of a device that is believed in one tick.
 struct GuardedDevice {
   math::Vec3 position;           ///< the last good one [m], device frame
   math::Vec3 velocity;           ///< derived from good positions [m/s]
@@ -80,7 +80,7 @@ struct LoopGuardSettings {
   double recovery_time = 0.5;      ///< back to the whole [s]
 };
 
-/// What the lateness of a tick means.
+/// Consequence of a tick's lateness.
 struct LoopTiming {
   double stiffness_scale = 1;  ///< [-]
   Fault fault = Fault::kNone;  ///< kOverrun

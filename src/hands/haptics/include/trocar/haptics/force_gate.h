@@ -41,7 +41,7 @@ struct GateSettings {
 /// \param tick  [s]
 GateSettings MakeGateSettings(const device::ForceLimits& limits, double tick) noexcept;
 
-/// What has to hold before and while forces are sent.
+/// Conditions that have to hold before and while forces are sent.
 struct ArmingConditions {
   bool is_supervised = false;          ///< the supervisor process watches (D10)
   bool is_calibrated = false;          ///< D13

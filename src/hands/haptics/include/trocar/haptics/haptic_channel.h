@@ -19,7 +19,7 @@ struct ChannelSettings {
       1;  ///< buttons of the device of which one must be held; 0: only a pedal counts
 };
 
-/// What holds for all channels of a loop in one tick.
+/// Conditions of all channels of a loop in one tick.
 struct ChannelConditions {
   bool is_supervised = false;
   bool is_pose_confirmed = false;

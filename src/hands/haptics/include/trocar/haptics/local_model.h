@@ -20,7 +20,7 @@ struct LocalModelSettings {
   double tick = 0.001;              ///< [s], > 0
 };
 
-/// What the hand feels, and where the tool is.
+/// Result of a tick: force on the hand, its Jacobian, and the position of the tool.
 struct LocalAnswer {
   math::Vec3 force;                ///< on the hand, before the scales of the device [N], world frame
   tissue::Matrix3Rows jacobian{};  ///< dF / d(hand) [N/m]; without the sweeps' lag

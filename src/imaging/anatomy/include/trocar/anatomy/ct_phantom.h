@@ -30,7 +30,7 @@ struct CtPhantom {
 base::Result<CtPhantom> MakeCtPhantom(const images::LabelVolume& labels, const images::CtSettings& settings,
                                       std::stop_token stop = {}, const images::Progress& progress = {});
 
-/// What the labels of the Visible Human's reference map are called (docs/measurements.md); the file does not say it.
+/// Names and labels of the Visible Human's reference map (docs/measurements.md); the file itself has no names.
 std::vector<std::pair<std::string, int>> VisibleHumanLabels();
 
 /// The organs of a patient as a label map, to make a phantom of.

@@ -62,7 +62,7 @@ class PatientDocument {
   void DiscardAutosave();
 
  private:
-  /// What an edit can change; only the parts that it did change are kept.
+  /// Parts of a patient that an edit can change; a step keeps only the parts that its edit did change.
   struct Parts {
     std::optional<std::vector<std::vector<patient::Region>>> regions;  // (organs)
     std::optional<std::vector<patient::Attachment>> attachments;

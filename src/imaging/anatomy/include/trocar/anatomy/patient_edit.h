@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patient_edit.h  What a person may change about a patient: regions, ducts and arteries, landmarks.
+/// \file patient_edit.h  Edits of a patient: regions, ducts and arteries, landmarks.
 /// Every operation leaves the patient as it was when it returns an error.
 #pragma once
 

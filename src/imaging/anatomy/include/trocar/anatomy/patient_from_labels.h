@@ -24,7 +24,7 @@ struct LabelOptions {
       images;  ///< the series that the labels were drawn on, for their densities; empty: none
   images::ImageSeriesOptions opening;  ///< of `images`
   int liver = 0;                       ///< label, 1 to kLargestLabel; 0: found by FindLabels
-  int gallbladder = 0;                 ///< likewise
+  int gallbladder = 0;                 ///< as `liver`
   double spacing_mm = 1.0;             ///< of the volume's lattice, 0.4 to 4
   double gap_mm = 0.7;                 ///< left free around the gallbladder
   bool is_mirrored = false;            ///< left and right of the map are swapped: take it the other way round

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patient_lint.h  What is wrong with a patient, and where. docs/patient-check.md lists every finding.
+/// \file patient_lint.h  Check of a patient: its faults, and where they are. docs/patient-check.md lists every finding.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patient_parameters.h  What differs from patient to patient: dimensions, variations, pathologies, and
+/// \file patient_parameters.h  Parameters that differ from patient to patient: dimensions, variations, pathologies, and
 /// the distributions they are drawn from. docs/patients.md lists the sources.
 #pragma once
 

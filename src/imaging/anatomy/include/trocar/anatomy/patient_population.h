@@ -36,7 +36,7 @@ struct VariationCount {
 
 /// Counts the variations of many patients' parameters: yes or no, and choices.
 ///
-/// What was set, and what follows from another parameter, is left out. Insertions are counted for each
+/// Parameters that were set, or that follow from another parameter, are left out. Insertions are counted for each
 /// series.
 std::vector<VariationCount> CountVariations(std::span<const std::vector<patient::Parameter>> patients);
 
@@ -58,7 +58,7 @@ struct PopulationSettings {
   std::vector<ParameterSetting> parameters;
 };
 
-/// What came of a population.
+/// Result of generating and checking a population of patients.
 struct PopulationReport {
   std::size_t patients = 0;
   std::vector<std::pair<std::uint64_t, base::Error>> failures;  ///< seeds that gave no patient

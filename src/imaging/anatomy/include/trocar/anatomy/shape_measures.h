@@ -30,7 +30,7 @@ struct ShapeMeasure {
 /// \note Not real-time safe; pure.
 base::Result<std::vector<ShapeMeasure>> MeasureShapes(const patient::Patient& patient);
 
-/// What the literature gives for a measure.
+/// Range of a measure in the literature.
 struct ShapeRange {
   std::string_view measure;
   double low = 0, high = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file structure.h  What a label of a segmentation can be, and what people and programs call it.
+/// \file structure.h  Structures that a label of a segmentation can be, and the names that people and programs give them.
 #pragma once
 
 #include <cstdint>
@@ -60,15 +60,15 @@ enum class Structure : std::uint8_t {
 /// "liver", "kidney_right"
 const char* NameOf(Structure structure) noexcept;
 
-/// What a segment's name means. Case, accents, blanks and lines between words, their order, and words such as "mask" or "whole" do
-/// not matter; the table holds Latin (Terminologia Anatomica), English, German, French, Spanish, Italian, Portuguese, Dutch, Russian,
-/// Chinese, Japanese and Korean names and what public data sets write. Nothing is guessed: "liver 2" is unknown.
+/// Finds the structure that a segment's name means. Case, accents, separators, the order of words, and words such as "mask" or
+/// "whole" do not matter. The table holds Latin (Terminologia Anatomica), English, German, French, Spanish, Italian, Portuguese,
+/// Dutch, Russian, Chinese, Japanese and Korean names, and those in public data sets. Nothing is guessed: "liver 2" is unknown.
 /// \param name  UTF-8, or Latin-1
 Structure FindStructure(std::string_view name);
 
-/// What a code of SNOMED means, of SNOMED CT or of its predecessor SRT that DICOM had before: "10200004" and "T-62000" are the liver. A
-/// side may stand behind it ("64033007 24028007": the right kidney), or the organ that something has changed ("108369006 @10200004": a
-/// neoplasm of the liver).
+/// Finds the structure that a code means, of SNOMED CT or SRT, its predecessor in DICOM: "10200004" and "T-62000" are the liver.
+/// A side may follow it ("64033007 24028007": the right kidney), or "@" and the organ that something has changed ("108369006
+/// @10200004": a neoplasm of the liver).
 /// \return kUnknown for codes that the table has not
 Structure FindCodedStructure(std::string_view code);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file unseen_anatomy.h  What images of liver and gallbladder do not show: ducts, arteries, the wall's thickness,
+/// \file unseen_anatomy.h  Anatomy that images of liver and gallbladder do not show: ducts, arteries, the wall's thickness,
 /// adhesions, stones. The variations in the order of their probability, and a patient completed by one of them.
 /// The distributions are ParameterRules(); docs/patients.md lists their sources.
 #pragma once
@@ -17,7 +17,7 @@
 
 namespace trocar::anatomy {
 
-/// What one variation is, and in what share of people it is so.
+/// One variation with its value, and the share of people who have it.
 struct VariationShare {
   std::string name, value;  ///< "moynihan_hump", "yes"
   double probability = 0;   ///< given the shares before it [-], 0 to 1

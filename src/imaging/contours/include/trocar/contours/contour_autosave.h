@@ -18,7 +18,7 @@ namespace trocar::contours {
 /// "control_points.json" has its side file in "control_points.json.autosave".
 std::filesystem::path AutosavePath(const std::filesystem::path& points_file);
 
-/// What an earlier program left behind because it ended without saving.
+/// Finds the contours that an earlier program autosaved and had not saved when it ended.
 ///
 /// A side file that cannot be read is kept under "....unreadable", where no autosave writes over it.
 /// \return nothing when there is none, or when it says the same as `saved_text`; the error of a side file

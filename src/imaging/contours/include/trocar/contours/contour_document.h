@@ -46,7 +46,7 @@ class ContourDocument {
   explicit ContourDocument(ControlPoints points, std::size_t history_bytes = 64u << 20);
 
   const ControlPoints& Points() const { return points_; }
-  /// What stands in a slice; empty where nothing does.
+  /// Contours of a structure in a slice; empty where there are none.
   const SliceContours& At(int structure, int slice) const;
   /// Points of a contour; empty when there is no such contour.
   std::span<const Vec2> Find(const ContourId& id) const;
@@ -96,7 +96,7 @@ class ContourDocument {
   /// \return the place; nothing when there is nothing to undo
   std::optional<EditPlace> Undo();
   std::optional<EditPlace> Redo();
-  /// What would be undone or redone; empty when nothing would.
+  /// Description of the edit that would be undone or redone; empty when there is none.
   std::string UndoText() const { return CanUndo() ? done_.back().place.what : std::string(); }
   std::string RedoText() const { return CanRedo() ? undone_.back().place.what : std::string(); }
 

@@ -63,7 +63,7 @@ struct ContourFit {
 ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> clicked,
                              const ContourFitSettings& settings = {});
 
-/// The same for a picture that is used once.
+/// As above, for an image that is used once.
 ContourFit FitContourToEdges(const images::ColorImage& image, std::span<const Vec2> clicked,
                              const ContourFitSettings& settings = {});
 

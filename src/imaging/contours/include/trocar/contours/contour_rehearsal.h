@@ -46,7 +46,7 @@ std::vector<Vec2> SimulateClicks(const Outline& outline, int count, double noise
 Structure SimulateUser(const images::LabelVolume& labels, const ControlPoints& series,
                        const Structure& structure, const ClickSettings& settings, std::uint64_t seed);
 
-/// What one simulated user reached with one organ.
+/// Result of one simulated user with one organ.
 struct RehearsalRun {
   std::uint64_t seed = 0;
   std::size_t slices = 0, points = 0, inserted = 0, notes = 0;

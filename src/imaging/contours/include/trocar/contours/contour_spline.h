@@ -40,7 +40,7 @@ struct ContourCurve {
 /// \pre n >= 3 (TROCAR_ASSERT)
 std::vector<Vec2> FitContour(std::span<const Vec2> points, const ContourSplineSettings& settings = {});
 
-/// The same, with where each point belongs.
+/// As FitContour, with the control point that each point of the curve follows.
 ContourCurve FitContourCurve(std::span<const Vec2> points, const ContourSplineSettings& settings = {});
 
 }  // namespace trocar::contours

@@ -22,7 +22,7 @@
 
 namespace trocar::contours {
 
-/// What a person names to begin.
+/// Files and options that a workspace is opened with.
 struct WorkspaceOptions {
   std::filesystem::path images;       ///< any series that ImageSeries opens
   std::filesystem::path points;       ///< file of contours; need not exist yet. Empty: none
@@ -81,7 +81,7 @@ class ContourWorkspace {
   /// A copy of what the organ's surface depends on.
   MeshRequest MakeMeshRequest(int structure) const;
 
-  /// What GrowOrgan needs for a click into an organ; a copy, for a thread.
+  /// Copy of what GrowOrgan needs for a click into an organ, for use in a thread.
   /// \pre the structure is there (TROCAR_ASSERT)
   GrowthRequest MakeGrowthRequest(int structure, int slice, const Vec2& click) const;
 
@@ -115,7 +115,7 @@ class ContourWorkspace {
   std::unique_ptr<ContourDocument> document_;
   std::string saved_text_;
   std::shared_ptr<SliceStore> store_;  // shared with threads that fit
-  std::shared_ptr<SliceFits> fits_;    // likewise
+  std::shared_ptr<SliceFits> fits_;    // also shared with threads that fit
   std::optional<images::LabelVolume> reference_;
   // scissors, ready for the slice and seed that were last asked for
   std::unique_ptr<IntelligentScissors> scissors_;

@@ -81,7 +81,7 @@ struct ControlPoints {
 /// \pre axes were checked by ParseControlPoints
 std::array<std::array<double, 3>, 3> AxisDirections(const ControlPoints& points);
 
-/// What a file of control points must hold.
+/// Required completeness of a file of control points.
 enum class Completeness {
   kPatient,  ///< a volume can be made: every structure has contours in two slices, none is open
   kDraft,    ///< work in progress: structures and slices may still be empty, contours open

@@ -44,7 +44,7 @@ struct EdgeAdaptionSettings {
 std::vector<Vec2> AdaptToEdges(const images::ColorImage& image, std::span<const Vec2> contour,
                                const EdgeAdaptionSettings& settings);
 
-/// The same on a picture that was made ready; settings.blur_px is the field's affair.
+/// As above, on a prepared edge field, whose own blur takes the place of settings.blur_px.
 std::vector<Vec2> AdaptToEdges(const EdgeField& field, std::span<const Vec2> contour,
                                const EdgeAdaptionSettings& settings);
 

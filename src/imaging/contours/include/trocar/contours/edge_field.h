@@ -30,7 +30,7 @@ class EdgeField {
   /// Colour between pixels, bilinear; beyond the picture its border repeats.
   /// \param p  finite [pixels]
   Colour Sample(const Vec2& p) const;
-  /// The same of the picture as it was, without the blur.
+  /// As Sample, from the original image without the blur.
   Colour SampleSharp(const Vec2& p) const;
 
  private:

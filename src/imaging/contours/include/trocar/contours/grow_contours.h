@@ -52,7 +52,7 @@ struct GrownOrgan {
 /// Grows the organ and draws contours around it: about 6 mm apart for the liver and 4 mm for the gallbladder, each
 /// with as few points as follow the region within 0.8 mm, at most 28.
 ///
-/// What other structures' contours enclose stays theirs. The liver must lie right of the body's midline on CT, the
+/// Areas that other structures' contours enclose stay theirs. The liver must lie right of the body's midline on CT, the
 /// gallbladder within 60 mm of liver contours where there are some.
 /// \return kEditRefused where the structure is neither liver nor gallbladder, the pictures are coloured, the click lies
 ///         outside of them, or nothing like the organ grew, each with what to do; kCancelled; what reading returns

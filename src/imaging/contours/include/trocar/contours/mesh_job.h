@@ -61,7 +61,7 @@ double CalcPreviewSpacing(double extent_mm, double pixel_mm, MeshLevel level);
 base::Result<OrganMesh> MakePreviewMesh(const MeshRequest& request, SliceFits& fits, MeshLevel level,
                                         const MeshProgress& progress = {});
 
-/// What became of a request.
+/// Result of a request for the mesh of one organ.
 struct MeshOutcome {
   int structure = 0;
   base::Result<OrganMesh> result;

@@ -32,7 +32,7 @@ struct GreyVolume {
   }
 };
 
-/// What is known of an organ before the picture is looked at.
+/// Prior knowledge of an organ, before the image is looked at.
 struct ShapePrior {
   double click_mm = 4.0;    ///< radius of the click's neighbourhood whose greys are the organ's, > 0
   double opening_mm = 4.0;  ///< bridges thinner than twice this are cut, >= 0

@@ -25,7 +25,7 @@ struct ContourStages {
   std::size_t notes = 0;       ///< places where the curve does not fit, see contour_fit.h
 };
 
-/// What is drawn on one slice.
+/// Everything that is drawn on one slice.
 struct Overlay {
   std::vector<ContourStages> contours;
   std::vector<images::Mask> areas;           ///< tinted

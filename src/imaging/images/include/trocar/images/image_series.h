@@ -25,7 +25,7 @@ struct DisplayWindow {
   double width = 255.0;  ///< > 0
 };
 
-/// What a series is, once opened.
+/// Properties of an open series.
 struct ImageSeriesInfo {
   std::string format;              ///< "DICOM", "NIfTI", "NRRD", "MetaImage", "JPEG", "PNG" or "TIFF"
   int width = 0, height = 0;       ///< of every picture that ReadSlice gives [pixels]
@@ -47,12 +47,12 @@ struct ImageSeriesInfo {
   std::size_t ignored_files = 0;  ///< in the folder, that are no part of the series
   int series = 0,
       series_id = 0;  ///< of a DICOM volume: what ImageSeriesOptions::series chooses it by; else 0
-  /// What a person should know of how it was read: why this series was taken, what was passed over, what was interpolated.
+  /// Remarks for a person on how it was read: why this series was taken, what was passed over, what was interpolated.
   std::vector<std::string> notes;
 };
 
-/// What a person adds where the files do not say it, and what the import may use up. Where a file does say
-/// it, what is given here must agree.
+/// Properties that a person gives where the files lack them, and limits of the import. Where a file does state
+/// one, the value given here must agree.
 struct ImageSeriesOptions {
   std::optional<double> pixel_mm;  ///< side of a square pixel, 0.01 to 20
   std::optional<double> slice_mm;  ///< between slice number n and n + 1, 0.01 to 50

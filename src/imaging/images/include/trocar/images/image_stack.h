@@ -46,8 +46,8 @@ struct LabelVolume {
   std::array<double, 3> origin = {0, 0, 0};             ///< centre of the first voxel, LPS [mm]
   std::vector<std::int32_t> labels;                     ///< (size product), 0 to kLargestLabel
   std::vector<std::pair<std::string, int>> names;       ///< of labels, where the file has them
-  /// What labels are in SNOMED CT or its predecessor SRT, where the file says so: "10200004", "T-62000"; with the side behind it,
-  /// "64033007 24028007"; with the region behind "@", as of what has changed an organ, "108369006 @10200004".
+  /// Codes of labels in SNOMED CT or its predecessor SRT, where the file has them: "10200004", "T-62000"; with the side behind,
+  /// "64033007 24028007"; with the region behind "@", for something that has changed an organ, "108369006 @10200004".
   std::vector<std::pair<std::string, int>> codes;
 };
 

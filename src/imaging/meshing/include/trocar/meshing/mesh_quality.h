@@ -30,7 +30,7 @@ struct SurfaceDistance {
 SurfaceDistance CalcSurfaceDistance(const geometry::TriangleMesh& mesh,
                                     const geometry::TriangleMesh& reference, std::size_t samples);
 
-/// What is said of every mesh that was made from a volume. Lengths and volumes in the mesh's unit.
+/// Quality of a mesh that was made from a volume. Lengths and volumes are in the mesh's unit.
 struct MeshQuality {
   geometry::MeshReport surface;        ///< closed, manifold, outward, genus, angles, volume
   std::size_t self_intersections = 0;  ///< pairs of triangles

@@ -9,14 +9,14 @@
 
 namespace trocar::meshing {
 
-/// What is repaired, and within what limits.
+/// Criterion and limits of a repair.
 struct RepairSettings {
   double min_angle_deg = 8.0;        ///< triangles with a smaller angle are slivers
   std::size_t fewest_triangles = 0;  ///< no edge is collapsed below this count
   int rounds = 12;                   ///< of looking for defects, at most
 };
 
-/// What was done and what is left.
+/// Result of a repair: edits that were made, and defects that are left.
 struct RepairReport {
   std::size_t flips = 0, collapses = 0, moves = 0;
   std::size_t slivers = 0;             ///< left

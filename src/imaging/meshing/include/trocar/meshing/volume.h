@@ -53,7 +53,7 @@ std::vector<double> CalcSignedDistances(std::span<const std::uint8_t> set, int w
 
 /// Adds slices between slices, so that no two are further apart than `step_mm`.
 ///
-/// What two neighbours share is inside all the way. Where only one of them is inside, the border moves evenly
+/// The area that two neighbours share is inside all the way. Where only one of them is inside, the border moves evenly
 /// from the shared part outwards along the lines of nearest distance: a thin lobe whose end lies elsewhere in
 /// each slice gets a straight edge, where interpolated distances would leave a tooth at every slice. Parts
 /// that touch nothing shared shrink as their signed distances say.

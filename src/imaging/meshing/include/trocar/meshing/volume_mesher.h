@@ -20,7 +20,7 @@ struct MeshingSettings {
   SmoothingSettings smoothing;            ///< of the surface at the volume's own spacing
   double oversampling = 12.0;             ///< least triangles of the first surface for each one wanted
   double min_angle_deg = 8.0;             ///< smaller angles are repaired where a single edit does it
-  /// What stays below it is a sliver: all vertices around it are moved together, and where that does not help either,
+  /// Triangles with a smaller angle are slivers: all vertices around one are moved together, and where that does not help either,
   /// the surface is made anew with another smoothing. Below 5 degrees a triangle's springs and normal are useless, and
   /// the patient check warns; the hundredth outlasts the rounding of a file's numbers. 0: slivers are left.
   double sliver_angle_deg = 5.01;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file attempt.h  What is kept of one attempt, to be judged by thresholds and courses.
+/// \file attempt.h  Data kept of one attempt, to be judged by thresholds and courses.
 /// Files: schemas/attempts.schema.json.
 #pragma once
 

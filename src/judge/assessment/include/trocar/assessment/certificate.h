@@ -2,7 +2,7 @@
 /// \file certificate.h  A signed statement of what an exam came to, down to the bytes of its recording: anybody can check it offline, by
 /// signature, by hash, and by computing the recording again. docs/exams.md describes the file.
 ///
-/// What is certified is that this recording was played under these settings, and what it came to; not that somebody is competent:
+/// A certificate says that this recording was played under these settings, and with what result; not that somebody is competent:
 /// docs/intended-use.md.
 #pragma once
 
@@ -22,7 +22,7 @@
 
 namespace trocar::assessment {
 
-/// What is signed.
+/// Signed content of a certificate.
 struct Certificate {
   ExamSettings exam;              ///< with seed and nonce: the exam is over
   std::string examinee;           ///< pseudonym

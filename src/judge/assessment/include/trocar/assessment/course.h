@@ -21,7 +21,7 @@
 
 namespace trocar::assessment {
 
-/// Who is operated on: the scene's own patient, a folder, or one that is generated.
+/// Choice of the patient: the scene's own, one from a folder, or a generated one.
 struct PatientChoice {
   std::filesystem::path folder;                     ///< empty: not from a folder
   std::optional<std::uint64_t> seed;                ///< of a generated one
@@ -61,7 +61,7 @@ struct Course {
 /// \return the file's error; kCourseInvalid with file, JSON path and remedy where a step names a task, level, patient, threshold or
 /// step that there is not, or contradicts itself
 base::Result<Course> ReadCourse(const std::filesystem::path& path);
-/// Those that are delivered, by key.
+/// Courses that are delivered with the program, by key.
 base::Result<std::vector<Course>> ListCourses();
 /// A file as it is, or the key of a delivered one. \return kUnknownName with those known
 base::Result<Course> FindCourse(const std::string& name_or_path);

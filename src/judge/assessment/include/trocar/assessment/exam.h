@@ -53,7 +53,7 @@ base::Result<ExamSettings> ReadExam(const std::filesystem::path& path);
 /// \return kExamSealBroken where the settings are not those that were published
 base::Status CheckPublished(const std::filesystem::path& published, const ExamSettings& settings);
 
-/// What a recording of this exam says of itself. A patient is generated into the cache folder.
+/// Description for a recording of this exam. A patient is generated into the cache folder.
 /// \param cache  empty: host::FindCacheFolder
 base::Result<record::Description> DescribeExam(const ExamSettings& settings,
                                                const std::filesystem::path& cache = {});

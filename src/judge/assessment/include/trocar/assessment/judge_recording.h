@@ -24,7 +24,7 @@ struct ReplaySettings {
 /// "peg_transfer" of a recording's "peg_transfer" or "/data/scenes/tasks/peg_transfer.json".
 std::string TaskKeyOf(const std::string& name);
 
-/// What a recording came to.
+/// Trace and result of a recording that was played.
 struct PlayedAttempt {
   training::AttemptTrace trace;  ///< its outcome has a task's score, as shown
   AttemptResult result;          ///< completed: the task, or the part of the operation
@@ -40,7 +40,7 @@ base::Result<PlayedAttempt> PlayAttempt(record::Replay& replay, Milestone from, 
 /// \return the error of the replay or of PlayAttempt
 base::Result<Attempt> MakeAttempt(record::Recording recording, const ReplaySettings& settings = {});
 
-/// The same for a step of a course: its operation is judged until the step's last moment, and what comes after it in the recording
+/// As above, for a step of a course: its operation is judged until the step's last moment; what comes after it in the recording
 /// does not count.
 /// \return kCourseInvalid where the recording is of another task, level, operation or patient, or begins at another moment
 base::Result<Attempt> MakeAttempt(record::Recording recording, const Course& course, const Step& step,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file proficiency.h  What an attempt has to reach, as data with sources, and the judgement of an attempt by it.
+/// \file proficiency.h  Thresholds of proficiency for an attempt, as data with sources, and the judgement of an attempt by them.
 /// Files: assets/proficiency/*.json, schemas/proficiency.schema.json; docs/courses.md explains them.
 ///
 /// Training feedback, not certified assessment: docs/intended-use.md.
@@ -72,7 +72,7 @@ struct Proficiency {
   std::vector<Grade> grades;  ///< best first; may be empty
 };
 
-/// What of an attempt is judged.
+/// Result of an attempt, as it is judged.
 struct AttemptResult {
   bool is_completed = false;  ///< brought to its end
   training::AttemptMetrics metrics;
@@ -142,7 +142,7 @@ base::Result<Proficiency> MakeProficiency(std::span<const AttemptResult> experts
 base::Result<Proficiency> ReadProficiency(const std::filesystem::path& path);
 /// As ReadProficiency reads it.
 std::string FormatProficiency(const Proficiency& proficiency);
-/// Those that are delivered, by key.
+/// Proficiencies that are delivered with the program, by key.
 base::Result<std::vector<Proficiency>> ListProficiencies();
 /// A file as it is, or the key of a delivered one. \return kUnknownName with those known
 base::Result<Proficiency> FindProficiency(const std::string& name_or_path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file outcome.h  What an attempt came to, computed from the simulation alone: the same for a recording and its replay.
+/// \file outcome.h  Outcome of an attempt, computed from the simulation alone: the same for a recording and its replay.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,11 @@ namespace trocar::record {
 
 /// A JSON object in one line: of a task its phase, time [s], score as shown, goals and errors; of an operation whether it was completed,
 /// the critical view, errors, injuries, blood and bile [mL]; of a scene without a task only the time.
-/// The same state gives the same text, digit for digit.
+/// Equal states give equal texts, digit for digit.
 /// \note Allocates.
 std::string CalcOutcome(const simulation::Simulation& simulation);
 
-/// What an outcome says in short.
+/// Summary of an outcome.
 struct OutcomeSummary {
   bool is_completed = false;    ///< as simulation::HasCompleted
   std::optional<double> score;  ///< of a task, as shown

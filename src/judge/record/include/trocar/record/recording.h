@@ -14,14 +14,14 @@
 
 #include "trocar/base/result.h"
 #include "trocar/scene/input.h"
-#include "trocar/simulation/engine_bits.h"
 #include "trocar/scene/scene.h"
+#include "trocar/simulation/engine_bits.h"
 
 namespace trocar::record {
 
 using scene::Input;
 
-/// What a recording is of: enough to make the same scene again, and to tell who played it.
+/// Identity of a recording: the scene it is made from and who played it.
 struct Description {
   /// How `name` is read: a scene's file, a task or an operation.
   enum class Kind : std::uint8_t { kScene, kTask, kOperation };
@@ -32,7 +32,7 @@ struct Description {
   std::uint64_t seed = 0;   ///< of the scene
   double tick_seconds = 0;  ///< [s]
   std::uint64_t model = 0;  ///< fingerprint: simulation::Simulation::ModelFingerprint
-  /// What it covers; kFirst where a file does not say.
+  /// Fields that `model` covers; kFirst where a file does not say.
   simulation::ModelFingerprintKind model_kind = simulation::ModelFingerprintKind::kFirst;
   std::uint64_t first_tick =
       0;               ///< at which it begins; not 0 where it goes on from a saved state or another recording
@@ -85,7 +85,7 @@ struct Ending {
   std::string outcome;      ///< JSON: outcome.h
 };
 
-/// What was read of a file. A file that ends early, or is damaged, is read up to there.
+/// Content of a recording's file. A file that ends early, or is damaged, is read up to there.
 class Recording {
  public:
   struct Keyframe;
@@ -141,7 +141,7 @@ std::filesystem::path FindRecordingFolder();
 /// \return kFileMissing, kFileUnreadable, kFileTooLarge; kRecordingInvalid where not even the description is whole, or of
 /// another format
 base::Result<Recording> ReadRecording(const std::filesystem::path& path);
-/// The same of bytes in memory. \param name  for messages
+/// As above, from bytes in memory. \param name  for messages
 base::Result<Recording> ReadRecording(std::span<const std::byte> bytes, const std::string& name);
 
 /// Writes what is whole of a damaged or unfinished recording to a new file, and ends it.

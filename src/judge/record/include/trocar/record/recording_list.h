@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file recording_list.h  What there is in a folder of recordings, without reading them whole.
+/// \file recording_list.h  List of the recordings in a folder, without reading them whole.
 #pragma once
 
 #include <cstddef>

@@ -24,7 +24,7 @@ class Storage {
   virtual ~Storage() = default;
   /// \return kFileUnwritable; then nothing is known of the end of the file
   virtual base::Status Append(std::span<const std::byte> bytes) = 0;
-  /// What was appended before survives a power cut after it.
+  /// Makes what was appended so far survive a power cut.
   /// \return kFileUnwritable; then nothing that was appended since the last Sync can be trusted
   virtual base::Status Sync() = 0;
   virtual Space GetSpace() const = 0;

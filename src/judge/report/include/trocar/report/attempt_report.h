@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file attempt_report.h  What a person reads after an attempt, as plain values; document.h writes it.
+/// \file attempt_report.h  Report that a person reads after an attempt, as plain values; document.h writes it.
 ///
 /// Training feedback, not certified assessment.
 #pragma once
@@ -22,7 +22,7 @@ struct Description;
 
 namespace trocar::report {
 
-/// Whose attempt it is and at what: what the trace does not know.
+/// Facts of an attempt that the trace does not know: who made it, and at what task.
 struct AttemptFacts {
   std::string person;    ///< pseudonym; empty: nobody in particular
   std::string task;      ///< for a person: "Object transport"
@@ -43,7 +43,7 @@ struct AttemptFacts {
 /// Of a recording. \param task  its name for a person
 AttemptFacts DescribeAttempt(const record::Description& description, std::string task);
 
-/// What others came to in one metric, in its SI unit.
+/// Values of other people for one metric, in its SI unit.
 struct MetricReference {
   std::string metric, hand, phase;
   std::optional<double> expert_mean, expert_deviation;
@@ -51,7 +51,7 @@ struct MetricReference {
   std::optional<bool> separates;  ///< novices from experts, as validated; nothing where nobody has looked
 };
 
-/// What the coach says.
+/// Advice of the coach.
 struct Advice {
   std::string sentence, why, exercise, practise;
   std::optional<double> time;  ///< of the moment to look at [s]

@@ -8,7 +8,7 @@ using cairo_t = struct _cairo;
 
 namespace trocar::report {
 
-/// What a drawing stands on.
+/// Background of a drawing.
 enum class Ground : std::uint8_t { kLight, kDark };
 
 /// Draws every shape, one pixel of the drawing to one unit of the surface.

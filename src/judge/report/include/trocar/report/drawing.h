@@ -14,7 +14,7 @@ namespace trocar::report {
 
 using math::Vec2;
 
-/// What a shape stands for; the back-ends choose the colour, of a light or a dark page.
+/// Meaning of a shape's colour; the back-ends choose the colour itself, for a light or a dark page.
 enum class Ink : std::uint8_t {
   kNone,
   kText,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file rating.h  What people think of an attempt, on the scales that surgery knows: GOALS and the global rating scale of OSATS.
+/// \file rating.h  Ratings of an attempt by people, on established scales of surgery: GOALS and the global rating scale of OSATS.
 /// Files: assets/rating/*.json (schemas/rating-form.schema.json); schemas/rating.schema.json.
 #pragma once
 

@@ -10,7 +10,7 @@
 
 namespace trocar::report {
 
-/// What a column or field means.
+/// Meaning of a column or field.
 struct FieldMeaning {
   std::string field;  ///< "attempt.started", "path_length"
   std::string meaning, unit, source;

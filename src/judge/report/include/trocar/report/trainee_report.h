@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file trainee_report.h  What a trainee and the instructor read: attempts, learning, what to practise.
+/// \file trainee_report.h  Report for a trainee and the instructor: attempts, learning, what to practise.
 #pragma once
 
 #include <cstddef>
@@ -46,7 +46,7 @@ struct CusumChart {
   std::string verdict;          ///< a sentence
 };
 
-/// What to practise, with the attempts that say so.
+/// Recommendation of what to practise, with the number of attempts that support it.
 struct PractisePoint {
   std::string sentence, practise;
   std::size_t attempts = 0;  ///< in which it was said

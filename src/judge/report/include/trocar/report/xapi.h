@@ -30,10 +30,10 @@ struct XapiStatement {
 base::Result<std::vector<XapiStatement>> MakeStatements(const AttemptReport& report,
                                                         const XapiSettings& settings);
 
-/// What became of one person's statements.
+/// Result of erasing one person's statements.
 struct XapiErasure {
   std::size_t statements = 0;  ///< that were taken away
-  /// What could not be read or removed, and may be of that person; for a person.
+  /// Files and folders that could not be read or removed, and may hold statements of that person; texts for a person.
   std::vector<std::string> left;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file attempts.h  What was done: attempts with their metrics, remarks, ratings and certificates; a trainee's history by pages; how
+/// \file attempts.h  Attempts with their metrics, remarks, ratings and certificates; a trainee's history by pages; how
 /// a value compares with a group.
 #pragma once
 
@@ -46,7 +46,7 @@ enum class WhyUnverified : std::uint8_t {
 std::string_view WhyName(WhyUnverified why) noexcept;
 std::optional<WhyUnverified> ParseWhy(std::string_view name) noexcept;
 
-/// What is known of an attempt's truth.
+/// Verification of an attempt: its state, the reason, and the replay behind it.
 struct VerificationMark {
   Verification state = Verification::kUnverified;
   WhyUnverified why = WhyUnverified::kNotYet;
@@ -99,7 +99,7 @@ base::Result<bool> AddAttempt(Store& store, const Attempt& attempt);
 /// \return kStoreUnknown where the trainee is
 base::Status MoveAttempt(Store& store, const Viewer& viewer, std::string_view recording_id,
                          std::string_view started, std::string_view trainee);
-/// What a replay of a stored attempt came to: replaces what was kept of it, and counts the standings again.
+/// Replaces the stored result of an attempt by that of its replay, and counts the standings again.
 /// \param attempt  with its key; its trainee, remarks and ratings stay
 /// \return kStoreUnknown where it is gone
 base::Status UpdateAttempt(Store& store, const Viewer& viewer, const Attempt& attempt);

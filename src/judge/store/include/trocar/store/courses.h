@@ -48,7 +48,7 @@ struct Assignment {
 /// Once more for the same course and trainee or group replaces the dates.
 /// \return kStoreUnknown; kStoreInvalid where a date is of a step that the course has not
 base::Status AddAssignment(Store& store, const Viewer& viewer, const Assignment& assignment);
-/// Those of a trainee, by themselves or through their groups; the one that is due first comes first.
+/// Assignments of a trainee, to them or to their groups; the one that is due first comes first.
 base::Result<std::vector<Assignment>> ListAssignments(Store& store, const Viewer& viewer,
                                                       std::string_view trainee);
 

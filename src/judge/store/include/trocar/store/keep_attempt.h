@@ -24,8 +24,8 @@ struct ReplayChoice {
   std::function<bool(double)> progress;
 };
 
-/// The same, played again from its first tick to its last: outcome, score, metrics and length are what came out, and the mark says how
-/// that compares with the file. Where it does not play, they are as the file says, and it is not verified.
+/// As DescribeAttempt, with the recording played from its first tick to its last: outcome, score, metrics and length are those of
+/// the replay, and the mark says how they compare with the file. Where it does not play, they are as the file says, unverified.
 /// \return kRecordingInvalid, kFileUnreadable; kCancelled where `progress` gave up
 /// \note Takes about as long as the attempt took, or less.
 base::Result<Attempt> ReplayAttempt(record::Recording recording, const std::filesystem::path& path,

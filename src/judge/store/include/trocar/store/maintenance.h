@@ -36,7 +36,7 @@ struct ImportReport {
 base::Status ExportJson(Store& store, const Viewer& viewer, const std::filesystem::path& file);
 /// Attempts with their metrics, one line per number.
 base::Status ExportCsv(Store& store, const Viewer& viewer, const std::filesystem::path& file);
-/// What is believed of a file that says that an attempt was verified.
+/// Trust in a file that says that an attempt was verified.
 enum class Trust : std::uint8_t {
   kNone,     ///< nothing: attempts are not verified until they are replayed here
   kAsItSays  ///< all: it is one's own backup

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file names.h  Who is behind a pseudonym: one file on this computer that only its owner may read, and nothing else.
+/// \file names.h  Names behind the pseudonyms: one file on this computer that only its owner may read, and nothing else.
 #pragma once
 
 #include <filesystem>

@@ -20,8 +20,8 @@ struct Person {
   std::vector<std::string> groups;  ///< of ListPeople, in alphabetical order
 };
 
-/// What every door takes as a pseudonym, a name or a group's: bounded, UTF-8, without control characters, line ends or characters
-/// that turn the direction of writing. A pseudonym is no part of a path, and no option.
+/// Check a pseudonym, a name or a group's name: not empty, bounded, UTF-8, without control characters, line ends, or characters
+/// that are invisible or turn the direction of writing. A pseudonym is no part of a path and no option; a name is no path.
 /// \return kStoreInvalid
 base::Status CheckPseudonym(std::string_view text);
 base::Status CheckName(std::string_view text);
@@ -39,7 +39,7 @@ base::Result<Person> FindPerson(Store& store, std::string_view pseudonym);
 base::Status RenamePerson(Store& store, const Viewer& viewer, std::string_view pseudonym,
                           std::string_view to);
 base::Status SetRole(Store& store, const Viewer& viewer, std::string_view pseudonym, Role role);
-/// Those whom the viewer may see, by pseudonym. \param after  the last one of the page before; empty: from the first
+/// People whom the viewer may see, by pseudonym. \param after  the last one of the page before; empty: from the first
 base::Result<std::vector<Person>> ListPeople(Store& store, const Viewer& viewer, std::string_view after,
                                              int limit);
 /// The viewer that a person is. \return kStoreUnknown
@@ -59,7 +59,7 @@ base::Status JoinGroup(Store& store, const Viewer& viewer, std::string_view grou
                        std::string_view pseudonym);
 base::Status LeaveGroup(Store& store, const Viewer& viewer, std::string_view group,
                         std::string_view pseudonym);
-/// Those of the viewer; all of an administrator.
+/// Groups that the viewer belongs to; all groups for an administrator.
 base::Result<std::vector<Group>> ListGroups(Store& store, const Viewer& viewer);
 
 /// Whether the viewer may see what belongs to this person: it is the person, or an instructor of one of their groups.

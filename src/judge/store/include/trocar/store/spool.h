@@ -51,7 +51,7 @@ class Spool {
   DeliveryReport Deliver(Store& store) const;
   /// Sends held attempts again, too.
   DeliveryReport DeliverHeld(Store& store) const;
-  /// What arrived since the last backup, once more; for a store that was built again. Trainees that it does not know are added.
+  /// Sends again what arrived since the last backup, for a store that was rebuilt. Trainees that it does not know are added.
   DeliveryReport DeliverJournal(Store& store) const;
   std::size_t CountWaiting() const;
   std::size_t CountHeld() const;

@@ -15,7 +15,7 @@ namespace trocar::store {
 
 class Database;
 
-/// What a person may see and do.
+/// Role of a person, which decides their access rights.
 /// Trainee: own attempts, courses and certificates, and how they compare with a group of their own.
 /// Instructor: the same of every member of the groups that they belong to; remarks, ratings, assignments.
 /// Administrator: everything.
@@ -26,7 +26,7 @@ std::string_view RoleName(Role role) noexcept;
 /// \return kUsage for another word
 base::Result<Role> ParseRole(std::string_view name);
 
-/// Who asks. Every function that shows or changes something takes one, and refuses with kStoreRefused.
+/// Person who makes a request. Every function that shows or changes something takes one, and refuses with kStoreRefused.
 struct Viewer {
   std::int64_t person = 0;  ///< 0: nobody that the store knows
   Role role = Role::kTrainee;
@@ -75,7 +75,7 @@ class Store {
   ~Store();
 
   const Place& GetPlace() const { return place_; }
-  /// What became of a damaged store, for a person; empty where nothing was wrong.
+  /// Report on the repair of a damaged store, for a person; empty where nothing was wrong.
   const std::string& Rebuilt() const { return rebuilt_; }
   /// Of the tables.
   base::Result<int> ReadVersion();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file attempt_metrics.h  What an attempt came to, in numbers: pure functions of its trace.
+/// \file attempt_metrics.h  Metrics of an attempt: pure functions of its trace.
 ///
 /// Training feedback, not certified assessment: no cut-off between good and bad has been validated with this simulator.
 ///
@@ -29,7 +29,7 @@ base::Result<AttemptMetrics> CalcAttemptMetrics(const AttemptTrace& trace,
 
 /// JSON array of {"metric", "hand", "phase", "tool", "value", "unit"}; texts that are empty are left out.
 std::string FormatMetricsJson(const AttemptMetrics& metrics);
-/// The same as lines of comma-separated values, with a heading.
+/// The metrics as lines of comma-separated values, with a heading.
 std::string FormatMetricsCsv(const AttemptMetrics& metrics);
 
 }  // namespace trocar::training

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file attempt_trace.h  What an attempt was, as plain values: every tool at every tick, what happened, and how it ended. Metrics,
+/// \file attempt_trace.h  An attempt as plain values: every tool at every tick, what happened, and how it ended. Metrics,
 /// reports and coaches are computed from it and from nothing else.
 ///
 /// record::TraceBuilder makes one of a running simulation, record::TraceRecording of a recording. There is no thread tension: no
@@ -85,7 +85,7 @@ struct ClipRecord {
       angle;  ///< between the applier's jaws and the vessel's line when it was closed, 0 to pi/2 [rad]
 };
 
-/// What has run out since the start.
+/// Volumes of fluid that have run out since the start.
 struct FluidSample {
   double time = 0;             ///< [s]
   double blood = 0, bile = 0;  ///< [m^3]

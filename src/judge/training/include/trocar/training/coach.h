@@ -54,7 +54,7 @@ inline constexpr const char* kCoachRulesFile = "coach/rules.json";
 ///         that shows {expert} where there may be none
 base::Result<CoachRules> ParseCoachRules(std::string_view text, const std::string& name);
 
-/// What a rule was decided by.
+/// Numbers that a rule was decided by.
 struct AdviceNumbers {
   double value = 0;                              ///< in the measure's unit
   std::optional<double> most;                    ///< the single greatest one, where `value` is not that

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file coach_measures.h  What the coach looks at: one number for each habit, and the moment at which it shows most.
+/// \file coach_measures.h  Measures of the coach: one number for each habit, and the moment at which it shows most.
 ///
 /// Metrics answer "how much"; a coach also needs "when". These are pure functions of a trace, of which some have no
 /// counterpart among the metrics, because the metrics' low-pass takes most of the tremor away, and leaves too much of it for paths.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file metric_definition.h  What every metric means. The definitions stand in docs/metrics.json, which the program carries in
+/// \file metric_definition.h  Definitions of all metrics. They stand in docs/metrics.json, which the program carries in
 /// itself; docs/metrics.md shows them to people.
 #pragma once
 
@@ -39,7 +39,7 @@ struct MetricDefinition {
   std::string undefined;  ///< when there is no value; empty: always one
   BetterWhen better = BetterWhen::kNeither;
   std::string source;
-  /// What Fundamentals of Laparoscopic Surgery, LapSim and LAP Mentor call the same thing; empty where they have none, or
+  /// Name of the metric in Fundamentals of Laparoscopic Surgery, LapSim and LAP Mentor; empty where they have none, or
   /// nothing is known.
   std::string fls, lapsim, lap_mentor;
   std::optional<MetricTolerance> tolerance;  ///< of what is measured on motion

@@ -16,7 +16,7 @@ struct MetricSettings {
   double jerk_cutoff_hz = 2.5;
   /// Tremor and tracker noise: a new point counts only when it lies this far from the last that counted [m], >= 0.
   double noise_step = 0.5e-3;
-  /// The same for the directions of shaft and sight, and for spin: a quarter degree [rad], >= 0.
+  /// As noise_step, for the directions of shaft and line of sight, and for spin: a quarter degree [rad], >= 0.
   double angle_noise_step = 0.0044;
   double movement_start_speed = 0.020;  ///< a movement's speed rises above this [m/s]
   double movement_end_speed =

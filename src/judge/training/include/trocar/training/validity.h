@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file validity.h  What a study by scripted people of known skill found out about each metric of each task.
+/// \file validity.h  Validity of each metric of each task, by a study with scripted people of known skill.
 ///
 /// It says whether a number tells novices from experts *here*, with people made by a program. It is no study of residents and
 /// sets no standard of competence.

@@ -30,7 +30,7 @@ std::string_view NameOf(Layout layout) noexcept;
 /// Nothing for another word.
 std::optional<Layout> FindLayout(std::string_view name) noexcept;
 
-/// What a data set is made of. The same plan, program and graphics driver give the same bytes.
+/// Plan of a data set. The same plan, program and graphics driver give the same bytes.
 struct Plan {
   Layout layout = Layout::kCholecSeg8k;
   std::string task = "cholecystectomy";  ///< key of a task or an operation, or a file of either

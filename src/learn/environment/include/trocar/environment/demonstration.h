@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file demonstration.h  What somebody does in a simulation, in the states and actions of an environment: to be learnt from.
+/// \file demonstration.h  Demonstrations to learn from: the course of a simulation in the states and actions of an environment.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ class Demonstration {
   std::span<const Field> ActionFields(ActionKind kind) const;
   std::size_t ActionSize(ActionKind kind) const;
 
-  /// What an environment with the usual settings would observe.
+  /// Observation of an environment with the usual settings.
   /// \param[out] state  (StateSize())
   void Observe(const simulation::Simulation& simulation, std::span<float> state) const;
   /// The action that takes hands and camera from one input to another.

@@ -15,7 +15,7 @@
 
 namespace trocar::environment {
 
-/// What all environments of the same settings share: models of the layouts, and what actions and states mean.
+/// Data shared by all environments of the same settings: models of the layouts, and the meaning of actions and states.
 class EnvironmentModel {
  public:
   /// \return kUsage for a setting out of range, kUnknownName for a task that is not known, or the file's error
@@ -44,7 +44,7 @@ class EnvironmentModel {
   std::unique_ptr<Content> content_;
 };
 
-/// What one action came to.
+/// Result of one action.
 struct Outcome {
   double reward = 0;
   bool is_terminated = false;  ///< by the task's own rules: completed, its time over, or ended by an error
@@ -72,14 +72,14 @@ class Environment {
   /// \param action  (ActionSize()), that CheckAction accepts
   /// \return kActionInvalid; kEnvironmentState before a Reset or after the episode's end
   base::Result<Outcome> Step(std::span<const double> action);
-  /// The same for one who commands every tick, as scripted surgeons do: plays the ticks of one action.
+  /// As Step, for a caller who commands every tick, as scripted surgeons do: plays the ticks of one action.
   /// \param command  what the next tick is given, from what the last one published. Settings, and a laparoscope that is no part
   ///     of the action, stay as the environment has them
   /// \param[out] action  (ActionSize()) what that amounts to, from -1 to 1; pedals and tools as they are at its end
   /// \return kUsage for discrete actions; kEnvironmentState as Step
   base::Result<Outcome> StepBy(const std::function<scene::Input(const simulation::Snapshot&)>& command,
                                std::span<double> action);
-  /// From now on, in place of the one before; may be empty.
+  /// Sets the observer of ticks, in place of the one before; may be empty.
   void SetTickObserver(TickObserver observer);
   /// \param[out] state  (StateSize()) as StateFields() says
   void Observe(std::span<float> state) const;
@@ -87,7 +87,7 @@ class Environment {
   std::size_t ActionSize() const;  ///< of the model
 
   const simulation::Simulation& GetSimulation() const;
-  /// What the last tick of the last action was given.
+  /// Input of the last tick of the last action.
   const scene::Input& LastInput() const;
   int Layout() const;                 ///< of this episode
   std::uint64_t ActionCount() const;  ///< of this episode

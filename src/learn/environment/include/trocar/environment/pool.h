@@ -16,7 +16,7 @@ namespace trocar::environment {
 
 inline constexpr int kMostEnvironments = 4096;  ///< of a pool
 
-/// What happens after the last action of an episode, in Gymnasium's words.
+/// Reset after the last action of an episode, in Gymnasium's terms.
 enum class Autoreset : std::uint8_t {
   kNextStep,  ///< the next action is not used: it begins the next episode, with reward 0
   kSameStep,  ///< the next episode begins at once; the last state of the old one is in `final_state`
@@ -38,7 +38,7 @@ struct PoolSettings {
   PoolObserver observe;    ///< may be empty
 };
 
-/// What all environments of a pool came to; row i is environment i's. A row is written while its environment is at work, from
+/// Results of all environments of a pool; row i is environment i's. A row is written while its environment is at work, from
 /// Send or Reset until Receive names it.
 struct PoolRows {
   std::vector<float> state, final_state;                     ///< (count, StateSize())
@@ -67,7 +67,7 @@ class Pool {
   /// \param seed  environment i gets seed + i; without one their rows of episodes go on
   /// \return kEnvironmentState, kUsage
   base::Status Reset(std::span<const std::int32_t> ids, std::optional<std::uint64_t> seed);
-  /// The same with a seed for each; one that has none goes on with its row of episodes.
+  /// As Reset, with a seed for each environment; one without a seed goes on with its row of episodes.
   /// \param seeds  (ids, or Count())
   /// \return also kUsage for another number of seeds
   base::Status ResetEach(std::span<const std::int32_t> ids,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file settings.h  What an environment for reinforcement learning is made of: task, kind of actions, weights of the reward.
+/// \file settings.h  Settings of an environment for reinforcement learning: task, kind of actions, weights of the reward.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace trocar::environment {
 
-/// What an action says.
+/// Meaning of an action's numbers.
 enum class ActionKind : std::uint8_t {
   kJoints,   ///< rates of pan, tilt, spin, depth and jaw of each hand, as shares of the greatest, -1 to 1
   kTip,      ///< velocity of each tip along the world's axes, and rates of spin and jaw, as shares, -1 to 1
@@ -24,7 +24,7 @@ std::string_view NameOf(ActionKind kind) noexcept;
 /// Nothing for another word.
 std::optional<ActionKind> FindActionKind(std::string_view name) noexcept;
 
-/// What of one action is rewarded: a reward is the sum of features, each times its weight.
+/// Rewarded feature of an action: a reward is the sum of features, each times its weight.
 enum class Feature : std::uint8_t {
   kGoal,           ///< share of the task's goals that were reached [-]
   kStep,           ///< share of the steps of all goals that were done, minus those undone [-]

@@ -43,7 +43,7 @@ struct FigurePoint {
   bool is_on_top = false;  ///< no surface hides it
 };
 
-/// What is drawn over the surfaces without light.
+/// Marks that are drawn over the surfaces, without lighting.
 struct FigureMarks {
   std::vector<FigureLine> lines;
   std::vector<FigurePoint> points;

@@ -66,7 +66,7 @@ struct OverheadLight {
   double power = 0;        ///< light on what faces it, 0 none [-]
 };
 
-/// What a picture may cost. The lowest leaves out what is dear where the processor draws.
+/// Quality of a picture against its cost. The lowest leaves out what is expensive where the processor draws.
 enum class Quality {
   kLow,  ///< no glow of highlights, no filtering of their edges, no grain in them
   kHigh
@@ -103,7 +103,7 @@ struct Puff {
 /// Something that sticks to the lens: nothing behind it is in focus.
 struct Blot {
   math::Vec2 centre;  ///< from the picture's middle, +x right, +y up, in heights of the picture
-  double radius = 0;  ///< likewise
+  double radius = 0;  ///< in heights of the picture
   double thick = 0;   ///< 0 nothing to 1 hardly any light passes as it came [-]
 
   friend bool operator==(const Blot&, const Blot&) = default;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file geometry_picture.h  What lies at each pixel of a picture: depth, normal, label and motion. For learning and for measuring,
+/// \file geometry_picture.h  Depth, normal, label and motion at each pixel of a picture. For learning and for measuring,
 /// not for people.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file looks.h  What the laparoscope shows, read from a file: light, smoke, liquids and the surface of every material.
+/// \file looks.h  Looks of the laparoscope's picture, read from a file: light, smoke, liquids and the surface of every material.
 #pragma once
 
 #include <array>

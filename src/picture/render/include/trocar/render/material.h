@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file material.h  What a surface looks like under the laparoscope. Looks only: no mechanical property.
+/// \file material.h  Appearance of a surface under the laparoscope. Looks only: no mechanical property.
 #pragma once
 
 #include <optional>

@@ -24,7 +24,7 @@ class OffscreenTarget {
   int Width() const;
   int Height() const;
 
-  /// What is drawn next goes here.
+  /// Makes this the target of everything that is drawn next.
   void Bind();
   /// Waits for the drawing and copies it, first row at the top.
   /// \param[in,out] image  memory is used again when the size is the same

@@ -14,7 +14,7 @@
 
 namespace trocar::render {
 
-/// What surgery has left on one vertex of a tissue's surface and does to it now, each 0 to 255.
+/// Marks that surgery has left on one vertex of a tissue's surface or makes there now, each 0 to 255.
 struct alignas(4) SurfaceMark {
   std::uint8_t blanching = 0;  ///< white: cooked
   std::uint8_t charring = 0;   ///< brown, then black
@@ -59,7 +59,7 @@ class Renderer {
   /// \param positions, normals  (nv) as added [m], [-] unit
   void UpdateSurface(SurfaceId surface, std::span<const math::Vec3> positions,
                      std::span<const math::Vec3> normals);
-  /// What surgery has left on a surface; nothing until the first call.
+  /// Sets the marks that surgery has left on a surface; none until the first call.
   /// \param marks  (nv) as added; tools show none
   void UpdateMarks(SurfaceId surface, std::span<const SurfaceMark> marks);
   /// New connectivity, for example after a cut; vertices stay as they are, coarse triangles are gone.
@@ -74,14 +74,14 @@ class Renderer {
   ///       Surfaces that were removed are left out.
   void Draw(const Frame& frame, int width, int height);
 
-  /// What lies at each pixel of the picture that Draw() would make. Light, smoke and arrows play no part; what light passes
-  /// through counts as if it did not. Leaves another framebuffer bound.
+  /// Draws depth, normal and label at each pixel of the picture that Draw() would make. Light, smoke and arrows play no part;
+  /// translucent things count as opaque. Leaves another framebuffer bound.
   /// \param fine  labels of fibres, blobs and puddles by their material
   /// \param[in,out] picture  memory is used again
   /// \return kNoGraphics for a size that the driver does not have, or kShaderFailed
   base::Status DrawGeometry(const Frame& frame, const MaterialLabels& fine, int width, int height,
                             GeometryPicture& picture);
-  /// The same with GeometryPicture::flow, since this was called last.
+  /// As DrawGeometry, with GeometryPicture::flow since this was called last.
   base::Status DrawGeometryAndFlow(const Frame& frame, const MaterialLabels& fine, int width, int height,
                                    GeometryPicture& picture);
 

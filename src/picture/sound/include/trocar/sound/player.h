@@ -11,7 +11,7 @@
 
 namespace trocar::sound {
 
-/// What takes sound on this computer: "PulseAudio or PipeWire", "ALSA: the card's name"; empty where nothing does. Opens nothing:
+/// Sound output of this computer: "PulseAudio or PipeWire", "ALSA: the card's name"; empty where there is none. Opens nothing:
 /// libraries of sound complain on standard error where there is no card.
 /// \param root  of the file system, for tests
 std::string FindSoundOutput(const std::filesystem::path& root = "/");

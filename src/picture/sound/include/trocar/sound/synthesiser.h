@@ -12,11 +12,11 @@
 
 namespace trocar::sound {
 
-/// What the electrosurgical unit sounds: each current has its own pitch.
+/// Tone of the electrosurgical unit: each current has its own pitch.
 enum class EnergyTone : std::uint8_t { kNone, kCut, kCoagulation };
 inline constexpr double kCutPitch = 660, kCoagulationPitch = 440;  ///< [Hz]
 
-/// What is to be heard now.
+/// Sounds to be heard now.
 struct SoundState {
   EnergyTone energy = EnergyTone::kNone;
   std::uint64_t clicks = 0;  ///< of clip appliers, since the start; each more is heard once
@@ -24,7 +24,7 @@ struct SoundState {
   VitalSigns signs;
 };
 
-/// What a person chose.
+/// Sound settings of a person.
 struct SoundSettings {
   double volume = 0.5;    ///< 0 to 1 [-]
   bool is_muted = false;  ///< volume stays for later

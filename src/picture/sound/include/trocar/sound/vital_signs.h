@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file vital_signs.h  What a monitor would sound of the patient: heart rate and saturation after a loss of blood.
+/// \file vital_signs.h  Vital signs that a monitor would sound: heart rate and saturation after a loss of blood.
 /// Source of the heart rates: American College of Surgeons, Advanced Trauma Life Support, classes of haemorrhage of an adult
 /// of 70 kg: 100, 120 and 140 beats a minute at losses of 15, 30 and 40 % of 5 l.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file labels.h  What each thing in the laparoscope's picture is: classes for segmentation, with instances.
+/// \file labels.h  Labels of everything in the laparoscope's picture: classes for segmentation, with instances.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file laparoscope_view.h  What the laparoscope sees of a running simulation.
+/// \file laparoscope_view.h  View of a running simulation through the laparoscope.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace trocar::view {
 
-/// What the person may switch while looking.
+/// View settings that a person may switch while looking.
 struct ViewOptions {
   bool has_force_arrows = true;
   bool has_mask = true;
@@ -40,7 +40,7 @@ struct Trail {
   double width = 0.0008;  ///< [m]
 };
 
-/// What a replay shows besides the scene.
+/// Additions of a replay to the picture of the scene.
 struct Overlay {
   std::optional<math::Pose> X_world_camera;  ///< looks from here in place of the laparoscope, along -z
   std::vector<Trail> trails;
@@ -85,10 +85,10 @@ class LaparoscopeView {
   /// \param width, height  of it [pixels]
   void Draw(int width, int height);
 
-  /// What lies at each pixel of the picture that Draw() makes: depth, normal and label (labels.h).
+  /// Draws depth, normal and label (labels.h) at each pixel of the picture that Draw() makes.
   /// \return the renderer's error
   base::Status DrawGeometry(int width, int height, render::GeometryPicture& picture);
-  /// The same with the optical flow since this was called last.
+  /// As DrawGeometry, with the optical flow since this was called last.
   base::Status DrawGeometryAndFlow(int width, int height, render::GeometryPicture& picture);
   /// The surfaces of that picture in the world, as the graphics card has them; for tests and for measuring.
   std::vector<LabelledMesh> ReadMeshes() const;

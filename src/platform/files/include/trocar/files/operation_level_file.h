@@ -16,7 +16,7 @@ inline constexpr const char* kOperationLevelsFile = "assets/operation/levels.jso
 
 /// \return the file's error: kFileMissing, kJsonSyntax or kJsonField with the place
 base::Result<std::vector<scene::OperationLevel>> ReadOperationLevels(const std::filesystem::path& path);
-/// Those that are delivered, the easiest first.
+/// Levels that are delivered with the program, the easiest first.
 base::Result<std::vector<scene::OperationLevel>> ListOperationLevels();
 /// \param key  empty: kNormalLevel
 /// \return kUnknownName with those known

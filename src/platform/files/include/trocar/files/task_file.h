@@ -12,7 +12,7 @@
 
 namespace trocar::files {
 
-/// What a task file leaves open.
+/// Choices that a task file leaves open.
 struct TaskChoice {
   std::string level = "normal";          ///< one of the file's
   std::uint64_t seed = 1;                ///< of its random parameters and of the scene

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file console.h  What commands print for a person, in the person's language. What programs read is printed as it is.
+/// \file console.h  Output of commands for a person, in the person's language. Output for programs is printed as it is.
 #pragma once
 
 #include <initializer_list>
@@ -17,12 +17,12 @@ std::string ShownNumber(double value, int digits = 4);
 /// \param has_sign  "+1.20"
 std::string ShownFixed(double value, int decimals, bool has_sign = false);
 
-/// Part of a line to standard output. What stands in it may be of a file or a network: a line end in it becomes visible, and ends
-/// no line.
+/// Part of a line to standard output. Its text may be of a file or a network: a line end in it becomes visible, and ends no
+/// line.
 void Print(std::string_view text);
-/// The same as a line.
+/// A whole line to standard output, its text treated as by Print().
 void PrintLine(std::string_view text = {});
-/// The same to standard error.
+/// A whole line to standard error, its text treated as by Print().
 void PrintErrorLine(std::string_view text);
 /// Several lines, of which each value was made printable where it was put in: FormatTable, FormatFields, WrapText and SaidText do that.
 void PrintLines(std::string_view lines);

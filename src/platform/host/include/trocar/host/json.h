@@ -21,8 +21,8 @@ namespace trocar::host {
 
 class JsonDocument;
 
-/// What a text may hold at most. What goes beyond is refused with kFileTooLarge; what no limit governs (two fields of
-/// one name, bytes that are no UTF-8, zero bytes, numbers that no double or 64-bit integer holds), with kJsonSyntax.
+/// Limits of a JSON text. A text beyond them is refused with kFileTooLarge. Mistakes that no limit governs (two fields of
+/// one name, bytes that are no UTF-8, zero bytes, numbers that no double or 64-bit integer holds) give kJsonSyntax.
 struct JsonLimits {
   std::size_t bytes = std::size_t{16} << 20;
   std::size_t depth = 64;          ///< lists and objects within each other

@@ -16,7 +16,7 @@ using JsonChoices = std::initializer_list<std::pair<std::string_view, T>>;
 
 /// \param choices  at least one: each word and what it means
 /// \param code     of the complaint about another word, which names those that are known
-/// \return what the field says; after a complaint the first
+/// \return the meaning of the field's word; after a complaint that of the first
 template <typename T>
 T OneOf(const JsonView& view, std::string_view key, JsonChoices<T> choices,
         base::ErrorCode code = base::ErrorCode::kJsonField) {
@@ -30,7 +30,7 @@ T OneOf(const JsonView& view, std::string_view key, JsonChoices<T> choices,
   return choices.begin()->second;
 }
 
-/// The same of a field that may be missing.
+/// OneOf() of a field that may be missing: then `fallback`.
 template <typename T>
 T OneOfOr(const JsonView& view, std::string_view key, T fallback, JsonChoices<T> choices,
           base::ErrorCode code = base::ErrorCode::kJsonField) {

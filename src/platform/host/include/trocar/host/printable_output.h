@@ -15,7 +15,7 @@ namespace trocar::host {
 /// which in JSON is the same text.
 std::string PrintableText(std::string_view text);
 
-/// The same for a value within a line, which must not forge another line: line ends become \\x0A, too.
+/// PrintableText() of a value within a line, which must not forge another line: line ends become \\x0A, too.
 std::string PrintableLine(std::string_view text);
 
 /// While it lives, all that goes to stdout, stderr, std::cout, std::cerr and std::clog passes PrintableText, whoever writes it and

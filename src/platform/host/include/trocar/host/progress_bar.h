@@ -12,7 +12,7 @@ namespace trocar::host {
 /// second.
 class ProgressBar {
  public:
-  /// \param label  what is going on, in English; shown in the chosen language
+  /// \param label  the work that is going on, in English; shown in the chosen language
   /// \param total  steps, > 0
   ProgressBar(std::string_view label, double total);
   ~ProgressBar();

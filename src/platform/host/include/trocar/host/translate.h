@@ -32,7 +32,7 @@ constexpr const char* Mark(const char* text) noexcept {
   return text;
 }
 
-/// The same where one English word needs several: context tells which ("jaws", "open").
+/// Translate() of an English word with several translations: context tells which ("jaws", "open").
 std::string TranslateIn(std::string_view context, std::string_view text);
 
 /// The text in the chosen language with its places filled: TranslateWith("{1} of {2}", {done, all}).
@@ -45,12 +45,12 @@ std::string TranslateWith(std::string_view pattern, std::span<const std::string_
 std::string TranslateCount(const char* one, const char* many, std::size_t count);
 
 /// A text that was put together elsewhere: a message of an error, a goal of a task. Where the catalogue has not the text itself it is
-/// compared with the catalogue's patterns, whose places ({1}, {each}) hold whatever stood there; what fills a place is treated
-/// likewise. The pattern with the longest fixed text wins. Itself where none fits.
+/// compared with the catalogue's patterns, whose places ({1}, {each}) hold whatever stood there. Text that fills a place is
+/// translated in the same way. The pattern with the longest fixed text wins. Itself where none fits.
 /// \note Not real-time safe: searches the whole catalogue.
 std::string TranslateComposed(std::string_view text);
 
-/// The same for a text of several pieces with ": ", ", ", "; " or "." between them, each with its own text in the catalogue.
+/// TranslateComposed() of several pieces with ": ", ", ", "; " or "." between them, each with its own text in the catalogue.
 std::string TranslatePieces(std::string_view text);
 
 /// The number's text with the language's decimal mark: "9,81". Only for people; what a program reads keeps its point.
@@ -63,7 +63,7 @@ std::string LocalCount(std::uint64_t count);
 /// "E-IMG-002" and the message in the chosen language, for a person.
 std::string ShownText(const base::Error& error);
 
-/// What an error's code means; empty while texts are not translated, because the message says it.
+/// Meaning of an error's code in the chosen language; empty while texts are not translated, because the message says it.
 std::string TranslatedMeaning(base::ErrorCode code);
 
 }  // namespace trocar::host

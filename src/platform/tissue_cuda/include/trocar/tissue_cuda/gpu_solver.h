@@ -40,7 +40,7 @@ struct GpuOptions {
   bool forbid_resident = false;  ///< kTiled: stream from global memory even where all tiles would fit at once
 };
 
-/// What bounds a solve on the GPU. It knows one method for each layout, so that there is none to choose.
+/// Bounds of a solve on the GPU. There is one method for each layout, so that there is none to choose.
 struct GpuSettings {
   int max_iterations = 40;  ///< per solve, >= 1
   double tolerance =
@@ -76,7 +76,7 @@ class GpuSolver {
   /// Copies the model to the GPU.
   ///
   /// \param model  must outlive the solver
-  /// \return those of FindGpu, kGpuMemory, or kGpuLayout when the layout cannot hold the model,
+  /// \return the errors of FindGpu, kGpuMemory, or kGpuLayout when the layout cannot hold the model,
   /// as none holds springs that stiffen
   static base::Result<GpuSolver> Make(const tissue::TissueModel& model, const GpuOptions& options = {});
   ~GpuSolver();

@@ -25,7 +25,7 @@ using simulation::Snapshot;
 class Surgeon {
  public:
   virtual ~Surgeon() = default;
-  /// What hands, feet and the assistant do in the next tick.
+  /// Acts of hands, feet and the assistant in the next tick.
   /// \param seen  after the last tick
   virtual Input Act(const Snapshot& seen) = 0;
   /// Nothing is left to do, or the surgeon has given up.
@@ -35,7 +35,7 @@ class Surgeon {
   virtual void VisitState(base::StateArchive& archive) = 0;
   /// For one who takes over: how the laparoscope lay at the start, from where sides are counted.
   virtual void KnowFirstView(const instrument::TrocarJoints& /*laparoscope*/) {}
-  /// What is being done, for a person: "ring_3: hand over".
+  /// The work under way, for a person: "ring_3: hand over".
   virtual std::string_view Doing() const = 0;
   /// Why an operation was ended before its end because going on would not be safe; "" while it goes on, where it was
   /// finished, and where nobody meant to finish it.

@@ -16,7 +16,7 @@
 
 namespace trocar::cholecystectomy {
 
-/// What a tick knows of the dissection; all of it from geometry and from the graph of tubes.
+/// Facts of the dissection in a tick, all from geometry and from the graph of tubes.
 struct DissectionFacts {
   double cleared_share =
       0;  ///< of the fat over the triangle's window at the start: see TriangleWindow, 0 to 1 [-]
@@ -72,7 +72,7 @@ class CriticalView {
   double front_seconds_ = 0, behind_seconds_ = 0;
 };
 
-/// What is still missing, a sentence each; empty when achieved.
+/// Explains the parts of the critical view that are still missing, a sentence each; empty when achieved.
 std::vector<std::string> ExplainCriticalView(const DissectionFacts& facts, const CriticalViewScore& score,
                                              const CriticalViewSettings& settings = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file emitted_acts.h  What hands did to tissue in a tick, as it was at that moment. What simulates an operation emits it, the
-/// judge reads it at the end of the tick.
+/// \file emitted_acts.h  Acts of hands on tissue in a tick, as it was at that moment. The simulation of an operation emits them,
+/// the judge reads them at the end of the tick.
 #pragma once
 
 #include <algorithm>

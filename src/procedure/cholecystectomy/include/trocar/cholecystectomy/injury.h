@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file injury.h  What the acts amount to for the patient, derived from the network of ducts and arteries.
+/// \file injury.h  Consequences of the acts for the patient, derived from the network of ducts and arteries.
 ///
 /// Source: Strasberg's classes of bile duct injury (Strasberg, Hertl and Soper, J Am Coll Surg 1995); consequences
 /// from what still hangs together.
@@ -15,7 +15,7 @@
 
 namespace trocar::cholecystectomy {
 
-/// What a duct or artery is to the surgeon.
+/// Role of a duct or artery to the surgeon.
 using VesselRole = roles::TubeRole;
 /// Cystic duct, cystic artery and small ducts of the bed; every other duct and artery must stay.
 bool MayBeDivided(VesselRole role) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file operation_error.h  What can go wrong in a cholecystectomy, how grave it is, and the record of it.
+/// \file operation_error.h  Errors of a cholecystectomy, how grave they are, and the record of them.
 /// Source: domain facts, section 1.4.
 #pragma once
 
@@ -49,7 +49,7 @@ inline constexpr std::size_t kOperationErrorCount = static_cast<std::size_t>(Ope
 
 /// "wrong_structure_clipped", ...
 std::string_view NameOf(OperationError error) noexcept;
-/// What to tell the trainee, a sentence.
+/// Explanation for the trainee, a sentence.
 std::string_view ExplanationOf(OperationError error) noexcept;
 Severity SeverityOf(OperationError error) noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file operation_judge.h  What the acts of an operation amount to: errors, phases and the critical view.
+/// \file operation_judge.h  Judgement of the acts of an operation: errors, phases and the critical view.
 /// It only looks: a tick without it leaves the same world.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace trocar::cholecystectomy {
 
-/// What a tick shows of a hand.
+/// Observation of a hand in a tick.
 struct ObservedHand {
   math::Vec3 p_world_tip;      ///< of the tool that is seen [m]
   double depth = 0;            ///< of the tool in its trocar [m]
@@ -29,7 +29,7 @@ struct ObservedHand {
   surgery::GraspChange change = surgery::GraspChange::kNone;  ///< in this tick
 };
 
-/// What a tick shows of an operation, at its end.
+/// Observation of an operation at the end of a tick.
 struct OperationObservation {
   double time = 0;     ///< [s]
   double seconds = 0;  ///< of the tick, > 0
@@ -50,7 +50,7 @@ struct JudgementSettings {
   double much_blood = 50e-6;   ///< [m^3]
   double near_duct = 0.005;    ///< of current to a duct that must stay [m]
   double kept_fat = 0.005;     ///< beside the middle line of such a duct, which need not be exposed [m]
-  double kept_sheath = 0.003;  ///< about the middle line of an artery that must stay, likewise [m]
+  double kept_sheath = 0.003;  ///< about the middle line of an artery that must stay; it may stay covered [m]
   double idle_seconds = 0.25;  ///< of current into nothing that no eye would note [s]
   double tip_in = 0.08;        ///< a tool this deep has been pushed in [m]
   double blind_seconds = 1.5;  ///< for which it may be outside the picture then [s]

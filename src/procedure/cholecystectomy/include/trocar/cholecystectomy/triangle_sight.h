@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file triangle_sight.h  What an eye has to see of the hepatocystic triangle, and the fat that hides it.
+/// \file triangle_sight.h  Points of the hepatocystic triangle that an eye has to see, and the fat that hides them.
 ///
 /// The main duct beside the triangle keeps its fat (triangle_window.h). While the triangle is spread, that lump lies beside the
 /// window; where the gallbladder was swung aside, it can come between the eye and the cystic duct.
@@ -45,7 +45,7 @@ class TriangleSight {
     fat_.Update(is_intact);
     for (std::size_t i = 0; i < entries_.size(); ++i) enters_[i] = is_divided(entries_[i].tube) ? 0 : 1;
   }
-  /// What has to be seen: two places of the cystic duct, the middle of the window beside it, all beyond the part that keeps
+  /// Points that have to be seen: two on the cystic duct, the middle of the window beside it, all beyond the part that keeps
   /// its fat, and where each tube that was whole at the last Update enters the gallbladder [m].
   /// \param positions  (nodes) [m]
   /// \return valid until the next call

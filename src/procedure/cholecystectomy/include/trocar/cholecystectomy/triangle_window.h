@@ -24,7 +24,7 @@ namespace trocar::cholecystectomy {
 struct TriangleBorders {
   std::vector<math::Vec3> cystic_duct, hepatic_duct;  ///< from where they meet on
   std::vector<math::Vec3> main_ducts;                 ///< points of every duct that must stay
-  std::vector<math::Vec3> main_arteries;              ///< likewise
+  std::vector<math::Vec3> main_arteries;              ///< points of every artery that must stay
 };
 
 /// A strand of fat or peritoneum at rest.
@@ -52,7 +52,7 @@ class TriangleWindow {
   /// \note Real-time safe.
   double CalcClearedShare(std::span<const std::uint8_t> is_intact) const noexcept;
 
-  /// Those strands, ascending.
+  /// The strands that hide some of the window at the start, ascending.
   const std::vector<std::uint32_t>& Strands() const noexcept { return strands_; }
   /// [m^2]
   double Area() const noexcept { return area_; }

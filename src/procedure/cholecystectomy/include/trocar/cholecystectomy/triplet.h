@@ -60,7 +60,7 @@ std::string_view NameOf(InstrumentKind instrument) noexcept;
 std::string_view NameOf(Verb verb) noexcept;
 std::string_view NameOf(Target target) noexcept;
 
-/// What one instrument does to one thing.
+/// Act of one instrument on one target.
 struct Triplet {
   InstrumentKind instrument = InstrumentKind::kGrasper;
   Verb verb = Verb::kNullVerb;
@@ -86,7 +86,7 @@ inline constexpr int kPhaseCount = static_cast<int>(Phase::kCount);
 /// "Preparation", "CalotTriangleDissection", ...
 std::string_view NameOf(Phase phase) noexcept;
 
-/// What has come of the operation so far.
+/// Progress of the operation so far.
 struct OperationFacts {
   bool is_gallbladder_free = false;  ///< nothing holds it any more
   bool is_gallbladder_in_bag = false;

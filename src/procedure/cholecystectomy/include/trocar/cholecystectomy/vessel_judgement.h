@@ -9,7 +9,7 @@
 
 namespace trocar::cholecystectomy {
 
-/// What a place of a duct or vessel is to the surgeon when something is done there.
+/// Judgement of a place of a duct or vessel, for an act there.
 struct VesselJudgement {
   bool may_be_divided = false;
   int staying_clips = 0;  ///< tight ones between the place and the side that stays

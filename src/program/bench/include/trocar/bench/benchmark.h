@@ -70,7 +70,7 @@ base::Result<BenchmarkResult> RunTissueCudaBenchmark(const BenchmarkOptions& opt
 /// Processor, cores, compiler and kind of build; no name of the computer or its owner.
 std::string DescribeMachine();
 
-/// The same from the text of /proc/cpuinfo.
+/// As above, from the text of /proc/cpuinfo.
 std::string DescribeMachine(std::string_view cpu_info, unsigned cores);
 
 /// Error for a case whose answer is wrong.

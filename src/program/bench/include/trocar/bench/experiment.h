@@ -64,7 +64,7 @@ struct SolverTimes {
   std::vector<Row> rows;  ///< the paper's relaxation first
 };
 
-/// What several experiments share within one command.
+/// Results that several experiments share within one command.
 struct ExperimentStore {
   std::optional<SolverTimes> solver_times;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file physics_checks.h  What the report card compares: measured against analytic, or against what was
+/// \file physics_checks.h  Comparisons of the report card: measured against analytic, or against what was
 /// promised.
 #pragma once
 
@@ -48,7 +48,7 @@ PhysicsCheck CheckFreedOrgan();
 /// Volume, pressure and time per tick of every organ of a scene while its script plays.
 /// \return the scene's error
 base::Result<PhysicsCheck> CheckVolume(const std::filesystem::path& scene);
-/// The same script at three tick rates, compared at `time` [s].
+/// Plays a scene's script until `time` [s] at three tick rates, lets the tissue come to rest, and compares the results.
 base::Result<PhysicsCheck> CheckTickRate(const std::filesystem::path& scene, double time);
 
 /// HTML that needs nothing else.

@@ -53,7 +53,7 @@ struct StudyAttempt {
   std::vector<StudyValue> values;
 };
 
-/// What was found about one number of a task.
+/// Finding about one number of a task.
 struct MetricFinding {
   std::string metric, hand;
   double novice_low = 0, novice_high = 0, novice_mean = 0;  ///< over people, in the metric's unit

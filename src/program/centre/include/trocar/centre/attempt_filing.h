@@ -31,7 +31,7 @@ struct FiledAttempt {
   std::optional<base::Error> failure;  ///< why it could not be measured; it is stored nevertheless
 };
 
-/// What it does not finish before it ends, the next one does: an attempt is noted on the disk from its first moment.
+/// Files attempts in the store. The next instance finishes what this one leaves: an attempt is noted on the disk when it begins.
 /// Begin and End are called by the simulation's thread, all else by the window's.
 class AttemptFiling {
  public:
@@ -42,7 +42,7 @@ class AttemptFiling {
   AttemptFiling(const AttemptFiling&) = delete;
   AttemptFiling& operator=(const AttemptFiling&) = delete;
 
-  /// Whose the attempts that begin from now on are.
+  /// Sets the person of the attempts that begin from now on.
   void SetPerson(const std::string& pseudonym);
   /// A recording begins, or has ended. \note Hands over and returns.
   /// \param step  for which it is made
@@ -50,7 +50,7 @@ class AttemptFiling {
   void End(const std::filesystem::path& recording);
 
   FilingStatus Status() const;
-  /// What has been measured since the last call.
+  /// Attempts that have been measured since the last call.
   std::vector<FiledAttempt> TakeFiled();
 
  private:

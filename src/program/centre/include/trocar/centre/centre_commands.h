@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file centre_commands.h  What the pages of the training centre can do, one row a command.
+/// \file centre_commands.h  Commands of the training centre's pages, one row a command.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file centre_presenter.h  What the window of the training centre does, without a widget: pages, what they are read from, who looks.
+/// \file centre_presenter.h  Presenter of the training centre's window, without a widget: pages, their sources, who looks.
 #pragma once
 
 #include <atomic>
@@ -41,7 +41,7 @@ struct CentrePage {
   std::uint64_t version = 0;  ///< another number: the shown page is another
 };
 
-/// What the presenter needs of a window.
+/// View interface that the presenter drives; a window implements it.
 class CentreScreen {
  public:
   virtual ~CentreScreen() = default;
@@ -52,7 +52,7 @@ class CentreScreen {
   virtual void ShowNotice(const std::string& text) = 0;
   /// Somebody begins an attempt, in the simulator's window.
   virtual void StartAttempt(const Start& start) = 0;
-  /// Likewise with a delivered task at its normal level.
+  /// Somebody begins a task at a level, in the simulator's window.
   virtual void StartTask(const std::string& task, const std::string& level) = 0;
   /// A window of its own plays a recording from a moment on [s].
   virtual void OpenReplay(const std::filesystem::path& recording, double time) = 0;
@@ -75,7 +75,7 @@ class CentrePresenter {
   /// Takes over what is there of what was asked for, and the filing's news. Never waits.
   void Finish();
 
-  /// Who works here from now on. \param text  name or pseudonym; empty: nobody in particular
+  /// Sets who works here from now on. \param text  name or pseudonym; empty: nobody in particular
   void BeSomebody(const std::string& text);
   const Access& GetAccess() const { return access_; }
   /// Told the pseudonym when somebody else works here.

@@ -21,7 +21,7 @@ struct ExamSitting {
   std::string examinee;  ///< pseudonym
 };
 
-/// What the simulator is asked to open.
+/// Attempt that the simulator is asked to open.
 struct Start {
   record::Description description;  ///< of the scene
   std::filesystem::path

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file group_page.h  What an instructor sees of a group: members and tasks, with what each has come to.
+/// \file group_page.h  Page of a group for an instructor: members and tasks, with the results of each.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file history_page.h  What somebody has done: attempts by pages, and how they learn a task.
+/// \file history_page.h  Page of a person's history: attempts by pages, and how they learn a task.
 #pragma once
 
 #include <cstdint>

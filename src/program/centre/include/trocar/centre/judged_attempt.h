@@ -40,7 +40,7 @@ struct JudgedAttempt {
 /// \note Takes about as long as the attempt took, or less.
 base::Result<JudgedAttempt> JudgeRecording(const std::filesystem::path& path, const JudgeSettings& settings);
 
-/// What is known without playing it again: no metrics, no verdict.
+/// Attempt as far as it is known without playing the recording again: no metrics, no verdict.
 base::Result<store::Attempt> DescribeRecording(const std::filesystem::path& path, const std::string& person,
                                                const StepName& step);
 

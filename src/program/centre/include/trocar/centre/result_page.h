@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file result_page.h  What the window says of one attempt: passed or not in words, what cost most, errors, metrics, plots.
+/// \file result_page.h  Page of one attempt: passed or not in words, what cost most, errors, metrics, plots.
 #pragma once
 
 #include <cstdint>

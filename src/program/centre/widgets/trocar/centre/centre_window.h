@@ -22,7 +22,7 @@ class GroupView;
 class HistoryView;
 class ResultView;
 
-/// What other windows do for this one.
+/// Services that other windows provide for this one.
 struct CentreServices {
   std::function<void(const Start&)> start;
   std::function<void(const std::string& task, const std::string& level)> start_task;
@@ -38,7 +38,7 @@ class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {
   CentrePresenter& Presenter() { return *presenter_; }
   /// The filing has news. From any thread.
   void Wake() { news_.emit(); }
-  /// What went wrong, if anything did: the program's exit status follows it.
+  /// Error of the window, if any: the program's exit status follows it.
   const std::optional<base::Error>& GetFailure() const { return failure_; }
   void Fail(const base::Error& error) { failure_ = error; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file doctor_checks.h  What this computer can do for Trocar, what that means, and how to mend it.
+/// \file doctor_checks.h  Checks of this computer: what it can do for Trocar, what that means, and how to mend it.
 #pragma once
 
 #include <filesystem>

@@ -52,14 +52,14 @@ enum class ContourAction {
   kQuit,
 };
 
-/// What must be the case for a command to be possible.
+/// Precondition of a command.
 enum class ContourNeeds {
   kNothing,
   kDocument,  ///< contours are open
-  kUndo,      ///< likewise, and there is something to take back
+  kUndo,      ///< as kDocument, and there is something to take back
   kRedo,
-  kReference,  ///< likewise, and a label map to compare with
-  kNoBuild,    ///< likewise, and no patient is being built, no organ grows
+  kReference,  ///< as kDocument, with a label map to compare with
+  kNoBuild,    ///< as kDocument, and no patient is being built, no organ grows
 };
 
 using ContourCommand = gui::Command<ContourAction, ContourNeeds>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file contour_editor.h  What the hand does to contours: pointer and commands become edits of the document.
+/// \file contour_editor.h  Editing of contours by hand: pointer and commands become edits of the document.
 /// No widget.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file contour_options.h  What the contour window is opened with.
+/// \file contour_options.h  Options of the contour window.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file contour_panel_presenter.h  What the contour window's panel shows and does, without a widget: organs, the slice,
+/// \file contour_panel_presenter.h  Presenter of the contour window's panel, without a widget: organs, the slice,
 /// the edge search, the surfaces.
 #pragma once
 
@@ -35,7 +35,7 @@ struct ContourPanelPage {
       step;  ///< how far points go to an edge, and skipped slices' edges [pixels]; slices
 };
 
-/// What the presenter needs of a panel.
+/// View interface that the presenter drives; a panel implements it.
 class ContourPanelScreen {
  public:
   virtual ~ContourPanelScreen() = default;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file contour_presenter.h  What the contour window does, without a widget: opening, editing, saving, building.
+/// \file contour_presenter.h  Presenter of the contour window, without a widget: opening, editing, saving, building.
 #pragma once
 
 #include <filesystem>
@@ -29,15 +29,15 @@ struct ContourPage {
   bool is_hint_warning = false;
   bool is_busy = false;      ///< a bar shows how far it is
   double fraction = 0;       ///< [-]
-  bool is_building = false;  ///< the build can be stopped ...
-  bool is_growing = false;   ///< likewise an organ that grows
-  bool is_stopping = false;  ///< it has been told to
+  bool is_building = false;  ///< a patient is being built; it can be stopped
+  bool is_growing = false;   ///< an organ grows; it can be stopped
+  bool is_stopping = false;  ///< the build or growth has been told to stop
   bool is_document_open = false;
   bool is_help_open = false;
   bool has_points = true, has_fill = true, has_ghosts = true, has_reference = false;
 };
 
-/// What a person is asked to choose in the file system.
+/// File or folder that a person is asked to choose.
 enum class FileQuestion { kOpenContours, kSaveContours, kPatientFolder };
 
 enum class ContourTimer {
@@ -46,13 +46,13 @@ enum class ContourTimer {
   kCount
 };
 
-/// What the presenter needs of a window.
+/// View interface that the presenter drives; a window implements it.
 class ContourScreen {
  public:
   virtual ~ContourScreen() = default;
   /// Brings all widgets to what the page, the editor and the presenter's commands say.
   virtual void Show(const ContourPage& page) = 0;
-  /// What canvas, slice bar and panel work on from now on; null: nothing, before the old one ends.
+  /// Sets the editor that canvas, slice bar and panel work on from now on. Null, passed before the old one is destroyed: nothing.
   virtual void UseEditor(ContourEditor* editor) = 0;
   virtual void FocusCanvas() = 0;
 
@@ -71,7 +71,7 @@ class ContourScreen {
 
   /// OnTimer() is called after that time.
   virtual void StartTimer(ContourTimer timer, unsigned milliseconds) = 0;
-  /// What is the window's alone: full screen and the end.
+  /// Carries out an action of the window itself: full screen and the end.
   virtual void DoInWindow(ContourAction action) = 0;
 };
 
@@ -146,7 +146,7 @@ class ContourPresenter {
   bool Meets(ContourNeeds needs) const;
   bool IsChecked(ContourAction action) const;
   using Handler = gui::CommandHandler<ContourPresenter, ContourAction>;
-  /// What this one does itself; the editor does the rest.
+  /// Handlers of the actions that the presenter carries out itself; the editor does the rest.
   static std::span<const Handler> Handlers() noexcept;
   void UseWorkspace(contours::ContourWorkspace workspace);
   void OpeningFailed(const base::Error& error);

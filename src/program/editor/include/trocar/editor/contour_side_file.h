@@ -27,7 +27,7 @@ class ContourSideFile {
   void Release();
   bool IsTaken() const { return lock_.has_value(); }
 
-  /// What an earlier window left in it. \pre IsTaken() (TROCAR_ASSERT)
+  /// Contours that an earlier window left in it. \pre IsTaken() (TROCAR_ASSERT)
   base::Result<std::optional<contours::ControlPoints>> FindLeft(const std::string& saved_text) const;
 
   /// Keeps what is offered from now on. \pre IsTaken() (TROCAR_ASSERT)

@@ -25,13 +25,13 @@ enum class PatientAction {
   kQuit,
 };
 
-/// What must be the case for a command to be possible.
+/// Precondition of a command.
 enum class PatientNeeds {
   kNothing,
   kPatient,  ///< a patient is open
-  kUndo,     ///< likewise, and there is something to take back
+  kUndo,     ///< as kPatient, and there is something to take back
   kRedo,
-  kUnsaved,  ///< likewise, and it has changes that are not saved
+  kUnsaved,  ///< as kPatient, with changes that are not saved
 };
 
 using PatientCommand = gui::Command<PatientAction, PatientNeeds>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patient_editor.h  What the pointer does in the patient editor, without a widget: the tools, what is
+/// \file patient_editor.h  Pointer handling of the patient editor, without a widget: the tools, what is
 /// chosen, strokes and drags, and the figure that shows it.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patient_editor_options.h  What the patient editor is opened with.
+/// \file patient_editor_options.h  Options of the patient editor.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patient_editor_presenter.h  What the patient editor's window does, without a widget: opening, the pointer,
+/// \file patient_editor_presenter.h  Presenter of the patient editor's window, without a widget: opening, the pointer,
 /// commands, the check beside it, autosave, saving.
 #pragma once
 
@@ -33,16 +33,16 @@ enum class PatientTimer {
   kCount
 };
 
-/// What the presenter needs of a window.
+/// View interface that the presenter drives; a window implements it.
 class PatientScreen {
  public:
   virtual ~PatientScreen() = default;
   /// Brings all widgets to what the page, the editor and the presenter's commands say.
   virtual void Show(const PatientPage& page) = 0;
-  /// What the panel works on from now on.
+  /// Sets the editor that the panel works on from now on.
   virtual void UseEditor(PatientEditor* editor) = 0;
   virtual void ShowFigure(view::PatientFigure figure) = 0;
-  /// Likewise, where only the brush has moved.
+  /// Shows the figure's marks alone, where only the brush has moved.
   virtual void ShowMarks(render::FigureMarks marks) = 0;
   virtual void ShowFindings(const anatomy::LintReport& report) = 0;
   /// \param span  of what is shown around the place [m]
@@ -106,7 +106,7 @@ class PatientEditorPresenter {
   /// \return whether the window stays open, because a question has been asked
   bool OnClose();
 
-  /// What went wrong for good, if anything did.
+  /// Fatal error, if any.
   const std::optional<base::Error>& GetFailure() const { return failure_; }
   PatientEditor* Editor() { return editor_.get(); }
   const PatientEditorOptions& GetOptions() const { return options_; }
@@ -140,7 +140,7 @@ class PatientEditorPresenter {
   gui::BackgroundJob<anatomy::LintReport> checking_;
 };
 
-/// What the pointer does with a tool.
+/// Instructions for the pointer with a tool.
 std::string HintText(EditorTool tool);
 
 }  // namespace trocar::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file patient_panel_presenter.h  What the patient editor's panel shows and does, without a widget.
+/// \file patient_panel_presenter.h  Presenter of the patient editor's panel, without a widget.
 #pragma once
 
 #include <optional>
@@ -54,7 +54,7 @@ struct PatientPanelPage {
 };
 PatientPanelPage MakePatientPanelPage(const PatientEditor& editor);
 
-/// What the check found, for a person.
+/// Findings of the check, for a person.
 struct FindingsPage {
   struct Row {
     std::string title, text;  ///< "L-MESH-OPEN  liver"
@@ -65,7 +65,7 @@ struct FindingsPage {
 };
 FindingsPage MakeFindingsPage(const anatomy::LintReport& report);
 
-/// What the presenter needs of a panel.
+/// View interface that the presenter drives; a panel implements it.
 class PatientPanelScreen {
  public:
   virtual ~PatientPanelScreen() = default;

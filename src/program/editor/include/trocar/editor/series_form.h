@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file series_form.h  What a person types where pictures do not say how large they are and how they lie.
+/// \file series_form.h  Form in which a person gives size and orientation of pictures that do not state them.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct SeriesForm {
 /// left, right, anterior, posterior, superior, inferior.
 std::span<const char* const> PatientDirections() noexcept;
 
-/// What is known already, as texts.
+/// Form with what is known already, as texts.
 SeriesForm MakeSeriesForm(const images::ImageSeriesOptions& series);
 
 /// \param series  what else is known; sizes and axes are replaced

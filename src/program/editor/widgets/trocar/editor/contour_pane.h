@@ -23,7 +23,7 @@
 
 namespace trocar::editor {
 
-/// What the pane needs of the window that it stands in. All but `do_in_window` may be empty.
+/// Services that the pane needs of the window that it stands in. All but `do_in_window` may be empty.
 struct ContourPaneHost {
   std::function<void(const ContourPage&)> show;     ///< after the pane's own widgets
   std::function<void(ContourAction)> do_in_window;  ///< full screen, and the end

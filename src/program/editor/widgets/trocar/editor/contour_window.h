@@ -20,7 +20,7 @@ class ContourWindow : public Gtk::ApplicationWindow {
   ContourWindow(const ContourOptions& options, const host::Stopwatch& since_start);
   ~ContourWindow() override;
 
-  /// What ended a run that is not attended (--screenshot, --measure), if anything did.
+  /// Error that ended a run that is not attended (--screenshot, --measure), if any.
   const std::optional<base::Error>& GetFailure() { return pane_.Presenter().GetFailure(); }
 
  private:

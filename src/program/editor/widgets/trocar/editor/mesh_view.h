@@ -14,7 +14,7 @@
 
 namespace trocar::editor {
 
-/// What lies under the pointer.
+/// Result of a pick: what lies under the pointer.
 struct MeshPick {
   double x = 0, y = 0;                        ///< place in the widget [pixels]
   std::optional<render::SurfaceHit> surface;  ///< of SetSurfaces
@@ -27,7 +27,7 @@ class MeshView : public Gtk::Overlay {
   MeshView();
   ~MeshView() override;
 
-  /// What is shown from now on; the camera stays, except that the first surfaces are fitted into the picture.
+  /// Sets the surfaces that are shown. The camera stays, except that the first surfaces are fitted into the picture.
   /// \pre as FigureRenderer::SetSurfaces
   void SetSurfaces(std::vector<render::FigureSurface> surfaces);
   void SetMarks(render::FigureMarks marks);
@@ -49,7 +49,7 @@ class MeshView : public Gtk::Overlay {
   /// turn.
   std::function<bool(const MeshPick&)> on_press;
   std::function<void(const MeshPick&)> on_drag;     ///< after a press that was taken
-  std::function<void(const MeshPick&)> on_release;  ///< likewise
+  std::function<void(const MeshPick&)> on_release;  ///< after a press that was taken
   std::function<void(const MeshPick&)> on_hover;    ///< no button is down
   std::function<void()> on_leave;                   ///< the pointer has left
   /// The wheel turns by `steps` (> 0: away from the person). True: it belongs to the caller, no zoom.

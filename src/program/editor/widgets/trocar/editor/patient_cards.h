@@ -93,7 +93,7 @@ class LandmarkCard : public gui::Card {
   bool is_showing_ = false;
 };
 
-/// What of the patient is drawn.
+/// Card for the choice of the parts of the patient that are drawn.
 class LookCard : public gui::Card {
  public:
   explicit LookCard(PatientPanelPresenter& presenter);
@@ -107,7 +107,7 @@ class LookCard : public gui::Card {
   bool is_showing_ = false;
 };
 
-/// What the check has found.
+/// Card with the findings of the check.
 class FindingsCard : public gui::Card {
  public:
   FindingsCard();

@@ -15,7 +15,7 @@ class PatientEditorPanel : public Gtk::Box, private PatientPanelScreen {
  public:
   PatientEditorPanel();
 
-  /// What the panel shows and changes from now on; it outlives its use.
+  /// Sets the editor that the panel shows and changes from now on; it outlives its use.
   void SetEditor(PatientEditor* editor) { presenter_.UseEditor(editor); }
   /// Shows what is chosen and what there is.
   void Refresh() { presenter_.Refresh(); }

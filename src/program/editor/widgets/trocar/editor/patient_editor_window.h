@@ -24,7 +24,7 @@ class PatientEditorWindow : public Gtk::ApplicationWindow, private PatientScreen
   explicit PatientEditorWindow(const PatientEditorOptions& options);
   ~PatientEditorWindow() override;
 
-  /// What went wrong, if anything did: the program's exit status follows it.
+  /// Error of the window, if any: the program's exit status follows it.
   const std::optional<base::Error>& GetFailure() const { return presenter_->GetFailure(); }
 
  private:

@@ -20,7 +20,7 @@ class SeriesBar : public Gtk::Box {
   void Fill(const SeriesForm& form);
   /// Reads the fields: sends what they say, or shows which one is wrong.
   void Answer();
-  /// What is wrong with the fields; empty if nothing is.
+  /// Complaint about the fields; empty if they are valid.
   std::string Complaint() const { return complaint_.get_text().raw(); }
   sigc::signal<void(images::ImageSeriesOptions)>& SignalAnswered() { return signal_answered_; }
 

@@ -55,7 +55,7 @@ class BackgroundJob {
   std::thread thread_;
 };
 
-/// What a job is doing; written by its thread, read by the window's.
+/// Progress of a job; written by its thread, read by the window's.
 class JobProgress {
  public:
   struct Value {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file command.h  What a window can do, one row a command: its keys, its button, when it is possible, and what the
+/// \file command.h  Commands of a window, one row a command: its keys, its button, when it is possible, and what the
 /// help page says. Keys, header bar and help page are made from this table and cannot disagree.
 #pragma once
 
@@ -42,7 +42,7 @@ constexpr KeyStroke CtrlShift(std::uint32_t key) {
 /// "Ctrl+Shift+Z", "Page Up", "Comma".
 std::string KeyText(const KeyStroke& stroke);
 
-/// What the help page says of a command.
+/// Entry of a command on the help page.
 struct CommandHelp {
   const char* group = "";    ///< begins a row of this group; empty: goes on with the row before
   const char* gesture = "";  ///< what the mouse does in place of a key
@@ -120,7 +120,7 @@ const Command<Action, Needs>* FindCommand(std::span<const Command<Action, Needs>
   return nullptr;
 }
 
-/// What a window's presenter does for a command, one row an action: whoever looks for a command's effect finds it here.
+/// Handler of a command in a window's presenter, one row an action: whoever looks for a command's effect finds it here.
 template <typename Presenter, typename Action>
 struct CommandHandler {
   Action action{};
@@ -148,7 +148,7 @@ std::vector<KeyHelp> MakeKeyHelp(std::span<const Command<Action, Needs>> command
   return SortByGroup(std::move(rows), groups);
 }
 
-/// What a button says when the pointer rests on it: "Undo (Ctrl+Z)".
+/// Tooltip of a button: "Undo (Ctrl+Z)".
 std::string TipText(const char* tip, std::span<const KeyStroke> keys);
 
 }  // namespace trocar::gui

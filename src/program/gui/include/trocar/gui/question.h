@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file question.h  What a window may ask a person, and what follows each answer.
+/// \file question.h  Question of a window to a person, and the effect of each answer.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file card.h  What panels are made of: cards with a title, lines of a name and a value, texts of a style.
+/// \file card.h  Building blocks of panels: cards with a title, lines of a name and a value, texts of a style.
 #pragma once
 
 #include <gtkmm.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file composition.h  Who puts the widgets and the picture together into the window.
+/// \file composition.h  Choice of the renderer that puts widgets and picture together into the window.
 #pragma once
 
 namespace trocar::gui {

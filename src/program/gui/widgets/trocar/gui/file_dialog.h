@@ -29,7 +29,7 @@ class FileDialog {
  public:
   /// \param act  told the file; not at all where the person cancels. It may ask again
   void Ask(Gtk::Window& parent, const FileRequest& request, std::function<void(std::filesystem::path)> act);
-  /// Likewise for a widget, in whose window the dialog opens; nothing while it is in none.
+  /// As above, for a widget, in whose window the dialog opens; nothing while it is in none.
   void Ask(Gtk::Widget& asker, const FileRequest& request, std::function<void(std::filesystem::path)> act);
 
  private:

@@ -12,13 +12,13 @@ inline void SetText(Gtk::Label& label, const std::string& text) {
   if (label.get_text().raw() != text) label.set_text(text);
 }
 
-/// Likewise; an empty text hides the label.
+/// As SetText; an empty text hides the label.
 inline void SetTextOrHide(Gtk::Label& label, const std::string& text) {
   SetText(label, text);
   if (label.get_visible() == text.empty()) label.set_visible(!text.empty());
 }
 
-/// What a screen reader says of a widget whose text does not say it.
+/// Sets the name that a screen reader speaks for a widget whose text does not give it.
 inline void SetAccessibleName(Gtk::Widget& widget, const std::string& name) {
   Glib::Value<Glib::ustring> value;
   value.init(Glib::Value<Glib::ustring>::value_type());

@@ -21,7 +21,7 @@ class ListCard : public Gtk::Box {
   void AddTitle(const Glib::ustring& text);
   /// A name over a line of smaller text, and widgets beside them.
   void AddRow(const std::string& name, const std::string& about, std::initializer_list<Gtk::Widget*> beside);
-  /// Likewise, with a picture before them; an empty frame where there is none.
+  /// As AddRow, with a picture before the lines; an empty frame where there is none.
   void AddPictureRow(const std::filesystem::path& picture, const std::string& name,
                      std::initializer_list<Gtk::Widget*> lines, std::initializer_list<Gtk::Widget*> beside);
   /// The line below the rows: widgets, and the button that closes the card at its end.

@@ -13,7 +13,7 @@ namespace trocar::gui {
 /// Call it outside of a frame.
 /// \return kFileUnwritable
 base::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
-/// Likewise; false where the window has nothing to show yet, as while it is laid out anew.
+/// As SaveScreenshot; false where the window has nothing to show yet, as while it is laid out anew.
 base::Result<bool> TrySaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
 
 /// A part of a window: what the widget shows, without what lies over it.

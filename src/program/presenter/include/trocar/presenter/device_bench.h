@@ -15,7 +15,7 @@
 
 namespace trocar::presenter {
 
-/// What a person can measure.
+/// Measurement of a calibration.
 enum class CalibrationStep {
   kTip,     ///< the tip stands still, the handle swings about it
   kTrocar,  ///< the shaft swings in its trocar
@@ -23,7 +23,7 @@ enum class CalibrationStep {
 };
 /// "tip", "trocar", "jaw"
 std::string_view StepName(CalibrationStep step) noexcept;
-/// What to do while it is measured.
+/// Instruction to the person for this measurement.
 std::string StepHint(CalibrationStep step, device::Channel hand);
 
 /// One device under test, by the same life cycle as `trocar devices` and the simulation. Called from one thread.
@@ -56,7 +56,7 @@ class DeviceBench {
   bool IsMeasuring() const { return end_ > begin_; }
   /// Share that is done [-].
   double Progress() const;
-  /// What to do now.
+  /// Instruction to the person at this moment.
   std::string Hint() const;
   /// Of the last measurement: what came of it with its residual, or why it was refused and nothing changed.
   struct Result {

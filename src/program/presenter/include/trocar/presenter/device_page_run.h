@@ -24,7 +24,7 @@ class DevicePageRun {
   explicit DevicePageRun(const Options& options);
 
   bool IsOn() const { return is_on_; }
-  /// What is to be measured; nothing where none was asked for.
+  /// Calibration to be measured; nothing where none was asked for.
   const std::optional<CalibrationStep>& Calibration() const { return calibration_; }
   /// \param elapsed   since the page was opened [s]
   /// \param is_read   the device has been read

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file device_presenter.h  What the page of devices shows and does, without a widget: what is found, trying, calibrating,
+/// \file device_presenter.h  Presenter of the page of devices, without a widget: finding, trying and calibrating devices,
 /// and which device holds the hands.
 #pragma once
 
@@ -30,7 +30,7 @@ struct DevicePageState {
   bool has_haptics = false, is_force_on = false;
 };
 
-/// What the presenter needs of a page.
+/// View interface that the presenter drives; a page implements it.
 class DeviceScreen {
  public:
   virtual ~DeviceScreen() = default;
@@ -46,7 +46,7 @@ class DeviceScreen {
 class DevicePresenter {
  public:
   static constexpr double kMeasureSeconds = 12;    ///< of a calibration
-  static constexpr double kUnattendedSeconds = 5;  ///< likewise, in a run that is not attended
+  static constexpr double kUnattendedSeconds = 5;  ///< of a calibration, in a run that is not attended
 
   /// \param control  of the running operation, which a device may hold the hands of; or null: devices are only tried
   ///                 and calibrated. It and the screen outlive the presenter
@@ -68,7 +68,7 @@ class DevicePresenter {
   void SwapHands();
 
   /// The device holds the instruments from now on.
-  /// \pre there is a control (TROCAR_ASSERT); likewise for all below
+  /// \pre there is a control (TROCAR_ASSERT); the same for UseHaptics, CheckPose and SetForce
   void Use();
   void UseHaptics(const std::string& name);
   void CheckPose();
@@ -78,10 +78,10 @@ class DevicePresenter {
   /// Takes what has come in. \param now  since the page was opened [s]
   /// \return what a run that is not attended does now; kCalibrate and kGiveUp have been done
   DevicePageRun::Step Advance(double now);
-  /// What such a run prints.
+  /// Report printed by a run that is not attended, as JSON.
   std::string MakeReport() const;
   void Fail(const base::Error& error) { failure_ = error; }
-  /// What went wrong in such a run.
+  /// Error of a run that is not attended, if any.
   const std::optional<base::Error>& GetFailure() const { return failure_; }
 
   bool HasControl() const { return control_ != nullptr; }

@@ -24,7 +24,7 @@ struct FilmRequest {
   int threads = 1;                 ///< of the solver that computes the attempt again
 };
 
-/// What lies in the video.
+/// Part of a recording that a finished video shows.
 struct Film {
   double from = 0, until = 0;  ///< of the recording [s]
   std::uint64_t frames = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file guides.h  What helps a beginner to see depth in a flat picture: marks that are drawn, and no part of the scene.
+/// \file guides.h  Guides that help a beginner to see depth in a flat picture: marks that are drawn, and no part of the scene.
 #pragma once
 
 #include <array>

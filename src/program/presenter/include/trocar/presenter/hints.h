@@ -8,7 +8,7 @@
 
 namespace trocar::presenter {
 
-/// What the window is doing.
+/// State of the window that the texts depend on.
 struct Situation {
   bool is_loaded = false;
   bool is_loading = false;  ///< otherwise nothing has been chosen yet
@@ -29,9 +29,9 @@ struct Situation {
 
 /// Text at the lower edge of the picture; empty when the person is at work and needs none.
 std::string HintText(const Situation& situation);
-/// What the mouse and keys move: "Right hand", "Laparoscope", "Demonstration"; empty while loading.
+/// Name of what the mouse and keys move: "Right hand", "Laparoscope", "Demonstration"; empty while loading.
 std::string BadgeText(const Situation& situation);
-/// What mouse and keys do now, in one line; no longer than kLongestMode characters while the keys are as they are at first.
+/// Current functions of mouse and keys, in one line; no longer than kLongestMode characters while the keys are the default ones.
 std::string ModeText(const Situation& situation);
 inline constexpr std::size_t kLongestMode = 170;
 /// "Running", "Paused", "Demonstration", "Loading the patient"

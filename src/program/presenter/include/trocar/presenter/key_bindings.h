@@ -17,7 +17,7 @@ namespace trocar::presenter {
 
 /// As X11 and GDK number them.
 enum class MouseButton : std::uint8_t { kLeft = 1, kMiddle = 2, kRight = 3 };
-/// What a button does while it is held.
+/// Function of a mouse button while it is held.
 enum class ButtonAct : std::uint8_t { kCloseJaws, kOpenJaws, kLook };
 inline constexpr std::array<ButtonAct, 3> kButtonActs = {ButtonAct::kCloseJaws, ButtonAct::kOpenJaws,
                                                          ButtonAct::kLook};
@@ -29,7 +29,7 @@ std::string_view NameOf(ButtonAct act) noexcept;
 
 class KeyBindings {
  public:
-  /// What a person has set, as it is kept.
+  /// A person's own bindings, as they are stored.
   struct Own {
     std::map<std::string, std::string> keys;     ///< name of the key, by the command's id
     std::map<std::string, std::string> buttons;  ///< name of the button, by the act's
@@ -80,7 +80,7 @@ class KeyBindings {
 /// Name of a key that can be set: "m", "Page Up", "F7"; nothing of others.
 std::optional<std::string> FindKeyName(std::uint32_t key);
 std::optional<std::uint32_t> FindNamedKey(std::string_view name);
-/// What a command does, for lists: "close the jaws (hold)".
+/// Description of a command for lists: "close the jaws (hold)".
 std::string DescribeCommand(const SimulatorCommand& command);
 
 }  // namespace trocar::presenter

@@ -51,7 +51,7 @@ struct Options {
   std::string calibrate;  ///< "tip", "trocar" or "jaw": measured as soon as the device answers; empty: none
 };
 
-/// What the command line asks for.
+/// Parsed command line.
 struct CommandLine {
   Options options;
   editor::ContourOptions contours;              ///< with pictures: open the contour window

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file panel_presenter.h  What the simulator's panel shows and does, without a widget: read-outs and settings.
+/// \file panel_presenter.h  Presenter of the simulator's panel, without a widget: read-outs and settings.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace trocar::presenter {
 
-/// What stays while a scene is open.
+/// Content of the panel that stays the same while a scene is open.
 struct ScenePage {
   bool has_task = false;
   std::string task_name, task_about;
@@ -55,7 +55,7 @@ struct MeasuresPage {
   std::array<std::string, simulation::kStageCount> stages;
 };
 
-/// What the presenter needs of a panel.
+/// View interface that the presenter drives; a panel implements it.
 class PanelScreen {
  public:
   virtual ~PanelScreen() = default;
@@ -89,7 +89,7 @@ class PanelPresenter {
   void CommandAssistant(std::size_t command);
   void SetSetting(std::size_t row, double position);
   void ChooseSolver(std::size_t choice);
-  /// Those of the scene.
+  /// Restores the settings of the scene.
   void RestoreSettings();
 
  private:

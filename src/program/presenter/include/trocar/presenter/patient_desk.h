@@ -39,7 +39,7 @@ class PatientDesk {
   /// A patient from a label map of liver and gallbladder (NIfTI, NRRD): at the file's name, with a number behind it where
   /// that is taken.
   void Import(const std::filesystem::path& labels);
-  /// What is under way comes to nothing.
+  /// Cancels the work that is under way; it then has no result.
   void Cancel();
   /// Takes over what has been done. \return the patient that was made or is there already, or nothing
   std::optional<std::filesystem::path> Finish();

@@ -54,7 +54,7 @@ std::string ToolName(const instrument::Tool& tool);
 std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand);
 /// "4.2 mL"
 std::string FormatMillilitres(double volume);
-/// What has left the vessels and organs, and what of it still lies there: "12.0 mL, 3.5 mL in the abdomen".
+/// Volume of a fluid that has left the vessels and organs, and of it what still lies there: "12.0 mL, 3.5 mL in the abdomen".
 std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid);
 /// Gallstones outside of the gallbladder: "none spilled", "3 in the abdomen, 2 retrieved".
 std::string DescribeStones(std::span<const simulation::StoneSnapshot> stones);

@@ -41,8 +41,8 @@ enum class ReplayAction {
 enum class ReplayNeeds {
   kNothing,
   kReplay,  ///< a recording is open, and nothing has failed
-  kExpert,  ///< likewise, and there is a scripted expert for it
-  kBeside,  ///< likewise, and another one is beside it
+  kExpert,  ///< as kReplay, and there is a scripted expert for it
+  kBeside,  ///< as kReplay, and another one is beside it
 };
 
 using ReplayCommand = gui::Command<ReplayAction, ReplayNeeds>;
@@ -51,7 +51,7 @@ using ReplayCommand = gui::Command<ReplayAction, ReplayNeeds>;
 std::span<const ReplayCommand> ReplayCommands() noexcept;
 /// The help page.
 std::vector<gui::KeyHelp> ReplayHelp();
-/// What an action needs; kNothing for one without a row.
+/// Precondition of an action; kNothing for one without a row.
 ReplayNeeds FindNeeds(ReplayAction action) noexcept;
 
 }  // namespace trocar::presenter

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file replay_presenter.h  What the replay window does, without a widget: where it is in time, what it looks at, who goes on.
+/// \file replay_presenter.h  Presenter of the replay window, without a widget: time, camera, playing on from a moment.
 #pragma once
 
 #include <array>
@@ -49,20 +49,20 @@ struct ReplayPage {
   std::optional<base::Error> failure;
 };
 
-/// What the presenter needs of a window.
+/// View interface that the presenter drives; a window implements it.
 class ReplayScreen {
  public:
   virtual ~ReplayScreen() = default;
   /// Brings the widgets to what the page and the presenter's commands say.
   virtual void Show(const ReplayPage& page) = 0;
-  /// What a side's picture shows from now on; null: nothing, before the old one ends.
+  /// Sets the replay that a side's picture shows from now on. Null, passed before the old one is destroyed: nothing.
   virtual void UseReplay(std::size_t side, const session::ReplayRunner* replay) = 0;
   virtual void ShowMarks(const std::vector<ReplayMark>& marks) = 0;
   /// Reads the list of recordings anew, beside the window.
   virtual void FillRecordingList(const std::filesystem::path& folder) = 0;
   /// Somebody goes on from a moment.
   virtual void TakeOver(Branch branch) = 0;
-  /// What is the window's alone: full screen, the end.
+  /// Carries out an action of the window itself: full screen, the end.
   virtual void DoInWindow(ReplayAction action) = 0;
 };
 
@@ -95,7 +95,7 @@ class ReplayPresenter {
   void Pan(double dx, double dy, int height);
   void Zoom(double steps);
 
-  /// What a side's picture shows in a frame.
+  /// Content of a side's picture in a frame.
   struct SideWork {
     const simulation::Snapshot* snapshot = nullptr;  ///< null: there is none
     view::Overlay overlay;

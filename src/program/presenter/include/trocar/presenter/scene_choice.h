@@ -19,26 +19,26 @@ namespace trocar::presenter {
 /// \return kUnknownName with what is known, or the file's error
 base::Result<scene::Scene> ReadChosenScene(const Options& options);
 
-/// Likewise, ready to run.
+/// Simulation of the scene that the options name, ready to run.
 base::Result<simulation::Simulation> MakeChosenSimulation(const Options& options);
 
-/// What was read, and where it begins where that is not the first tick.
+/// A loaded scene, and where it begins unless that is the first tick.
 struct LoadedScene {
   simulation::Simulation simulation;
   std::optional<centre::Start> start;
 };
-/// Likewise; a part of an operation where the scripted expert has left it.
+/// Loads the scene that the options name; a part of an operation begins where the scripted expert has left it.
 base::Result<LoadedScene> MakeChosenScene(const Options& options, const PartProgress& progress);
 
-/// What a step of a course or an exam asks for, where it begins: at the first tick, or where the expert has left an operation.
+/// Simulation for a step of a course or an exam, at its beginning: the first tick, or where the expert has left an operation.
 /// \return the scene's error; kStateInvalid where the state is of another scene
 base::Result<simulation::Simulation> MakeStartedSimulation(const Options& options,
                                                            const centre::Start& start);
 
-/// What a recording of it is of. \param scene  as chosen
+/// Description for a recording of the chosen scene. \param scene  as chosen
 record::Description DescribeChosenScene(const Options& options, const scene::Scene& scene);
 
-/// Who holds the instruments: "mouse and keyboard", a device's name.
+/// Name of what holds the instruments: "mouse and keyboard", a device's name.
 std::string DescribeHands(const Options& options);
 
 }  // namespace trocar::presenter

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file session_control.h  What the window's person wants, turned into the runner's input once a frame. No
+/// \file session_control.h  Requests of the window's user, turned into the runner's input once a frame. No
 /// widget.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace trocar::presenter {
 
-/// What the foot, or a key in its place, presses.
+/// Pedal under the foot, or a key in its place.
 enum class Pedal { kCut, kCoagulate, kRinse, kAspirate, kClutch };
 
 /// Owns the running simulation and the mouse and keyboard that hold its instruments. Called from one thread.
@@ -42,7 +42,7 @@ class SessionControl {
   /// \param buttons  what its buttons do
   void UseDevice(std::unique_ptr<device::Driver> driver,
                  const device::ButtonMap& buttons = device::DefaultButtons());
-  /// What the device last said about itself, once each; empty where there is nothing new.
+  /// Newest message of the device about itself, given once; empty where there is nothing new.
   std::string TakeDeviceMessage();
 
   /// Lets a haptic device hold the hands that it has channels for (the right one, or both), with force.
@@ -53,7 +53,7 @@ class SessionControl {
   /// The haptic loop, or nullptr without one.
   session::HapticLoop* Haptics() { return haptic_loop_.get(); }
 
-  /// What the haptic loop has done so far, as Advance() saw it.
+  /// Record of the haptic loop so far, as Advance() saw it.
   const session::HapticRecord& GetHapticRecord() const { return haptic_record_; }
 
   /// Shows tools and organs to viewers over OpenIGTLink from now on.
@@ -125,7 +125,7 @@ class SessionControl {
   /// Settings of the next ticks; clamped to their ranges.
   const scene::LiveSettings& GetSettings() const { return input_.settings; }
   void SetSettings(const scene::LiveSettings& settings);
-  /// Those of the scene.
+  /// Restores the settings of the scene.
   void RestoreSettings() { SetSettings(runner_.GetScene().settings); }
 
   device::MouseKeyboard& Device() { return device_; }
@@ -137,9 +137,9 @@ class SessionControl {
   session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
   /// The camera of the picture: the laparoscope's, with a level horizon where the scope is straight.
   math::Pose CalcView(const simulation::Snapshot& snapshot) const;
-  /// What the person wants by mouse, keys and panel, and where devices hold the hands.
+  /// Input that the person asks for by mouse, keys and panel, with the hands as devices hold them.
   const scene::Input& GetInput() const { return input_; }
-  /// What the last Advance() gave to the simulation: the pedals of devices are in it, too.
+  /// Input that the last Advance() gave to the simulation; the pedals of devices are in it, too.
   const scene::Input& GetSentInput() const { return sent_; }
 
  private:

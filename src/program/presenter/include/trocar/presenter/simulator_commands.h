@@ -70,15 +70,15 @@ struct KeyMeaning {
   friend bool operator==(const KeyMeaning&, const KeyMeaning&) = default;
 };
 
-/// What must be the case for a command to be possible.
+/// Precondition of a command.
 enum class SimulatorNeeds {
   kNothing,
   kNoFailure,
   kScene,     ///< a simulation runs, and nothing has failed
-  kScript,    ///< likewise, it has a script or an expert, and it is no exam
-  kGuidance,  ///< likewise, and it is no exam
-  kHelp,      ///< likewise, and the operation's level has guides and slow motion
-  kHaptics,   ///< likewise, and a haptic device holds a hand
+  kScript,    ///< as kScene, with a script or an expert, and it is no exam
+  kGuidance,  ///< as kScene, and it is no exam
+  kHelp,      ///< as kScene, and the operation's level has guides and slow motion
+  kHaptics,   ///< as kScene, and a haptic device holds a hand
 };
 
 using SimulatorCommand = gui::Command<KeyMeaning, SimulatorNeeds>;
@@ -99,7 +99,7 @@ KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept;
 /// Meaning of a key that a person's settings give an act to: foot pedals that are keyboards.
 Action FindAction(device::HandAct act) noexcept;
 
-/// What an action needs; kNothing for one without a row.
+/// Precondition of an action; kNothing for one without a row.
 SimulatorNeeds FindNeeds(Action action) noexcept;
 
 /// True if the key has its meaning even while a slider of the panel has the keyboard.

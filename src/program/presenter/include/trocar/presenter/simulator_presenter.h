@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file simulator_presenter.h  What the simulator window does, without a widget: loading, commands, frames, tasks.
+/// \file simulator_presenter.h  Presenter of the simulator window, without a widget: loading, commands, frames, tasks.
 #pragma once
 
 #include <atomic>
@@ -61,13 +61,13 @@ struct AttemptHooks {
   std::function<void(const std::filesystem::path&)> on_end;
 };
 
-/// What the presenter needs of a window.
+/// View interface that the presenter drives; a window implements it.
 class SimulatorScreen {
  public:
   virtual ~SimulatorScreen() = default;
   /// Brings the widgets to what the page and the presenter's commands say.
   virtual void Show(const SimulatorPage& page) = 0;
-  /// What picture, panel and hands work on from now on; null: nothing, before the old one ends.
+  /// Sets the control that picture, panel and hands work on from now on. Null, passed before the old one is destroyed: nothing.
   virtual void UseControl(SessionControl* control) = 0;
   /// \return names of keys that can have no act
   virtual std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) = 0;
@@ -90,7 +90,7 @@ class SimulatorScreen {
   virtual void FocusPicture() = 0;
   /// Name of who operates; turns a name or pseudonym into that person first, where there is a text.
   virtual base::Result<std::string> BeSomebody(const std::optional<std::string>& text) = 0;
-  /// What is the window's alone: full screen, panes, the page of devices, the end.
+  /// Carries out an action of the window itself: full screen, panes, the page of devices, the end.
   virtual void DoInWindow(Action action) = 0;
 };
 
@@ -101,7 +101,7 @@ class SimulatorPresenter {
   SimulatorPresenter(const Options& options, const host::Stopwatch& since_start, SimulatorScreen& screen,
                      std::function<void()> on_loaded, AttemptHooks hooks = {});
 
-  /// What is being prepared is given up.
+  /// Gives up what is being prepared.
   ~SimulatorPresenter() {
     if (preparing_ != nullptr) preparing_->is_cancelled = true;
   }
@@ -112,11 +112,11 @@ class SimulatorPresenter {
   void Start();
   /// Takes over what has been read.
   void FinishLoading();
-  /// What is being read or prepared is not wanted any more.
+  /// Gives up what is being read or prepared.
   void CancelOpening();
   /// Gives up the scene that is shown and reads the one that was chosen; nothing while one is being read.
   void Open(const TaskRequest& request);
-  /// Likewise with a step of a course, or an exam.
+  /// As above, with a step of a course or an exam.
   void Open(const centre::Start& start);
 
   /// Gives up the scene that is shown and goes on from a moment of a recording: paused, until the person's hands are ready;
@@ -136,7 +136,7 @@ class SimulatorPresenter {
 
   void OpenHome();
   void Choose(HomeChoice choice);
-  /// Who operates from now on. \param text  name or pseudonym; empty: nobody in particular
+  /// Sets who operates from now on. \param text  name or pseudonym; empty: nobody in particular
   void BeSomebody(const std::string& text);
   /// To the question that is asked. \param is_yes  does what was asked for
   void Answer(bool is_yes);
@@ -146,7 +146,7 @@ class SimulatorPresenter {
   /// Of the person who is there now.
   void ShowBest(const centre::BestResults& results);
 
-  /// Who is operated on from the next operation on.
+  /// Sets the patient of the next operation and those after it.
   /// \param folder  empty: the built-in one
   void ChoosePatient(const std::filesystem::path& folder);
   void OpenPatientList();
@@ -178,7 +178,7 @@ class SimulatorPresenter {
   /// Writes the task's result: JSON or a page, by the file's ending.
   void SaveResult(const std::filesystem::path& path);
 
-  /// What is to be drawn in a frame.
+  /// Work of one frame: the snapshot to draw, and the read-outs that are due.
   struct FrameWork {
     const simulation::Snapshot* snapshot = nullptr;  ///< null: nothing runs
     bool are_forces_due = false, are_times_due = false;
@@ -191,7 +191,7 @@ class SimulatorPresenter {
   void CountPicture();
   double PictureRate() const { return frames_.Rate(since_start_.Seconds()); }
   const StageMeter& Stages() const { return stages_; }
-  /// What a run that is not attended prints.
+  /// Report printed by a run that is not attended.
   PlayReport MakeReport(int width, int height) const;
 
   /// Says what the window has done by itself.
@@ -246,7 +246,7 @@ class SimulatorPresenter {
   void ReleaseAll();
   void ToggleForceFeedback();
   using Handler = gui::CommandHandler<SimulatorPresenter, Action>;
-  /// What this one does itself; the window does the rest.
+  /// Handlers of the actions that the presenter carries out itself; the window does the rest.
   static std::span<const Handler> Handlers() noexcept;
 
   Options options_;

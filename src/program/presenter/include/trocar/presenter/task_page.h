@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file task_page.h  What can be trained, the easiest first: each with its levels, a picture and one's best result.
+/// \file task_page.h  Tasks and operations to train, the easiest first: each with its levels, a picture and one's best result.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file task_request.h  What a person chose from the list of tasks and operations.
+/// \file task_request.h  Choice of a person from the list of tasks and operations.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file task_result.h  What a task came to, for a person and for files. No widget.
+/// \file task_result.h  Result of a task, for a person and for files. No widget.
 #pragma once
 
 #include <cstdint>
@@ -55,10 +55,10 @@ TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& 
 
 /// "74.3 of 85", "87.4 points"
 std::string FormatScore(const TaskResult& result);
-/// Everything, as an object with "format": "trocar-task-result".
-/// What did it, in words of the chosen language: "ring 1, left hand".
+/// Cause of an error, in words of the chosen language: "ring 1, left hand".
 std::string DescribeDoer(const TaskResult::ErrorRow& error);
 
+/// Everything, as an object with "format": "trocar-task-result".
 std::string FormatTaskResultJson(const TaskResult& result);
 /// A page of its own.
 std::string FormatTaskResultHtml(const TaskResult& result);

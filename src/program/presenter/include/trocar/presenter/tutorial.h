@@ -17,10 +17,10 @@ inline constexpr int kTutorialSteps = 10;
 /// Task in which it is held: the first that has rings.
 inline constexpr const char* kTutorialTask = "peg_transfer";
 
-/// What each step says, with places for keys and buttons; translated where it is shown.
+/// Texts of the steps, with placeholders for keys and buttons; translated where they are shown.
 std::span<const std::string_view> TutorialTexts() noexcept;
 
-/// What is seen of the person in a frame.
+/// State of simulation and controls in a frame, from which the tutorial sees what the person does.
 struct TutorialSight {
   const simulation::Snapshot* snapshot = nullptr;
   const scene::Input* input = nullptr;  ///< what the person wants

@@ -36,7 +36,7 @@ class UnattendedPlay {
   bool is_on_, is_over_ = false;
 };
 
-/// What the run prints.
+/// Report that the run prints.
 struct PlayReport {
   std::string screenshot;  ///< file name
   int width = 0, height = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file window_settings.h  What a person has set in the simulator's window, and what was trained last: kept in the user's folder.
+/// \file window_settings.h  Settings of a person in the simulator's window, and what was trained last: kept in the user's folder.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file window_sound.h  What the window lets be heard, and how loud: without a widget.
+/// \file window_sound.h  Sounds of the window and their volume, without a widget.
 #pragma once
 
 #include <filesystem>
@@ -29,7 +29,7 @@ class WindowSound {
   /// \param output  as sound::Player
   explicit WindowSound(std::filesystem::path file, const std::string& output = sound::kSoundCard);
 
-  /// What is shown now; once a frame.
+  /// Plays the sounds of the state that is shown; called once a frame.
   void Hear(const scene::Scene& scene, const simulation::Snapshot& snapshot, const scene::Input& input,
             bool is_running);
   /// Nothing is shown.

@@ -14,7 +14,7 @@ namespace trocar::rehearsal {
 
 class PortEditor {
  public:
-  /// What a patient has is its proposal from now on; nothing can be undone.
+  /// Takes a patient's ports and table as the proposal from now on; nothing can be undone.
   void Begin(const patient::Patient& patient);
   void Forget() { undo_.clear(), redo_.clear(), grabbed_.reset(); }
 

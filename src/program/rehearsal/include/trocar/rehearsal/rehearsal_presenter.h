@@ -76,7 +76,7 @@ struct RehearsalPage {
   std::vector<RehearsalLine> origin;
 };
 
-/// What the presenter needs of a window.
+/// View interface that the presenter drives; a window implements it.
 class RehearsalScreen {
  public:
   virtual ~RehearsalScreen() = default;
@@ -109,7 +109,7 @@ class RehearsalPresenter {
   /// Shows how far it is.
   void ShowProgress();
   bool IsBusy() const { return job_.IsRunning(); }
-  /// What is under way comes to nothing.
+  /// Cancels the work that is under way; it then has no result.
   void Cancel();
   /// All is forgotten; patients that were operated on stay.
   void Forget();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file rehearsal_work.h  What the way from images to an operation computes beside the window: a label map is looked at, a patient is built,
+/// \file rehearsal_work.h  Computations from images to an operation, beside the window: a label map is read, a patient is built,
 /// and what is to be said and shown of it.
 #pragma once
 
@@ -25,7 +25,7 @@ struct LabelChoice {
   std::string text;  ///< "5: liver, 1,498 mL"
 };
 
-/// What a label map says before anything is built.
+/// Findings in a label map before anything is built.
 struct LabelMap {
   images::LabelVolume aligned;  ///< a voxel a pixel of the series
   std::vector<LabelChoice> choices;
@@ -73,7 +73,7 @@ struct RehearsalLine {
 
 /// The check's findings as sentences, volumes, neighbours, notes.
 std::vector<RehearsalLine> DescribeCheck(const RehearsedPatient& built);
-/// What is fitted to the images, what is a template, what is taken from distributions.
+/// Origin of a patient's parts: fitted to the images, a template, or taken from distributions.
 std::vector<RehearsalLine> DescribeOrigin(const patient::Patient& patient);
 /// Why a port is there or the table tilts so, in the chosen language.
 std::string SpokenReason(const std::string& reason);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file device_hands.h  What a device's hands and buttons mean for the input of a tick.
+/// \file device_hands.h  Effect of a device's hands and buttons on the input of a tick.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ void ApplyHands(const DeviceSamples& samples, Input& input) noexcept;
 /// Presses the pedals that a device holds down. Adds to the input; lifts none that somebody else holds.
 void PressPedals(const DeviceActs& acts, Input& input) noexcept;
 
-/// What a press of the assistant's button asks for: retract, relax, release, wait, and again.
+/// Command that the next press of the assistant's button gives: retract, relax, release, wait, and again.
 AssistantCommand NextCommand(AssistantCommand now) noexcept;
 
 /// Hands and buttons of one device, with what its buttons leave behind: the tool in each hand, a frozen hand, and the way

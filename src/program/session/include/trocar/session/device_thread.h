@@ -19,7 +19,7 @@ namespace trocar::session {
 /// Tells a device that knows motion only where the scene's instruments start. Call it before the device is used.
 void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept;
 
-/// What a device is doing.
+/// State of a device.
 struct DeviceReport {
   enum class Phase { kConnecting, kRunning, kLost };
   Phase phase = Phase::kConnecting;
@@ -27,7 +27,7 @@ struct DeviceReport {
   /// Buttons and pedals, debounced; all of them up once the device is lost, and until they have been let go of after it
   /// came back.
   DeviceActs acts;
-  /// What calibration needs: pose of each hand's sensor in the source's frame where the device is a tracker, and each
+  /// Raw values for calibration: pose of each hand's sensor in the source's frame where the device is a tracker, and each
   /// tool's unfiltered jaw value where it has a jaw sensor.
   std::array<std::optional<math::Pose>, device::kChannelCount> sensors;
   std::array<std::optional<int>, device::kJawTools> raw_jaws;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file hand_joints.h  The same five joints, as a device reports them and as an instrument has them.
+/// \file hand_joints.h  Conversion of the five joints between a device's sample and an instrument.
 #pragma once
 
 #include "trocar/device/hand_sample.h"

@@ -47,7 +47,7 @@ using CountAllocations = std::uint64_t (*)() noexcept;
 /// \param scale                newtons in the hand for a newton at the tool [-], > 0
 HapticHand MakeHapticHand(const Scene& scene, const Pose& X_world_laparoscope, Hand hand, double scale = 1.0);
 
-/// What the hands do, from the haptic loop to the simulation.
+/// State of the hands, from the haptic loop to the simulation.
 struct HapticHands {
   std::array<bool, kHandCount> is_driven{};
   std::array<instrument::TrocarJoints, kHandCount> joints;
@@ -90,7 +90,7 @@ struct HapticStatus {
 /// One line for a person, for example "Force 1000 Hz: left armed 0.8 N, right off: nobody holds the safety switch (hold
 /// the button or pedal and switch force on again)".
 std::string DescribeHaptics(const HapticStatus& status);
-/// The same as one JSON object for a record: times in microseconds (_us), forces in newtons, states and reasons by name.
+/// The status as one JSON object for a record: times in microseconds (_us), forces in newtons, states and reasons by name.
 std::string FormatHapticsJson(const HapticStatus& status);
 
 /// Mailboxes between the simulation's thread and the loop's; neither waits for the other.

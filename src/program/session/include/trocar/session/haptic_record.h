@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file haptic_record.h  What force feedback did over a session: rate, periods and forces over time, and every change as
+/// \file haptic_record.h  Record of force feedback over a session: rate, periods and forces over time, and every change as
 /// an event.
 #pragma once
 
@@ -61,7 +61,7 @@ struct HapticSummary {
 };
 /// One JSON object: times in seconds (_s) or microseconds (_us), forces in newtons, reasons by name and code.
 std::string FormatSummaryJson(const HapticSummary& summary);
-/// The same for a person: what, and how it was.
+/// The summary for a person: pairs of a quantity and its value.
 std::vector<std::array<std::string, 2>> DescribeSummary(const HapticSummary& summary);
 
 /// Collects status after status. Memory stays bounded: when it is full every second sample goes, and events beyond

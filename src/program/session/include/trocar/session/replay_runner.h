@@ -48,7 +48,7 @@ class ReplayRunner {
   /// \param threads  of its solver
   void AskForBranch(std::uint64_t tick, int threads);
   bool IsBranching() const;
-  /// What was asked for, once; nothing before it is there.
+  /// Simulation that was asked for, given once; nothing before it is there.
   std::optional<base::Result<simulation::Simulation>> TakeBranch();
 
   const record::Recording& GetRecording() const;

@@ -72,7 +72,7 @@ class Runner {
   bool IsPaused() const;
   /// Back to tick 0; keeps paused or running.
   void Reset();
-  /// What is recorded ends with the tick that is being made; the simulation goes on unrecorded until the next reset.
+  /// Ends the recording with the tick that is being made; the simulation goes on unrecorded until the next reset.
   void EndAttempt();
 
   /// The newest state; the reference stays valid until the next call.

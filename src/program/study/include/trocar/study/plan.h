@@ -16,7 +16,7 @@
 
 namespace trocar::study {
 
-/// What a study may vary of a scene besides patient, surgeon and seed.
+/// Parameter of a scene that a study may vary, besides patient, surgeon and seed.
 struct Parameter {
   std::string_view name, about;
   double low, high;

@@ -36,7 +36,7 @@ struct Worker {
 /// \return kUsage
 base::Result<Worker> FindWorker(const std::string& text);
 
-/// What became of one run.
+/// Result of one run.
 struct RunResult {
   std::vector<std::pair<std::string, double>> numbers;  ///< as in columns of the table
   std::string outcome;                                  ///< "completed", "time over", "given up", ...
