@@ -38,7 +38,7 @@ Workers::Workers(const base::Threads& threads)
 Workers::Session::Session(Workers& workers) noexcept : workers_(workers) {
   if (workers_.threads_ == 1) return;
   workers_.is_open_.store(true);
-  workers_.crew_->Begin([](void* workers, int slot) { static_cast<Workers*>(workers)->Serve(slot); },
+  workers_.crew_->Begin([](void* context, int slot) { static_cast<Workers*>(context)->Serve(slot); },
                         &workers_);
 }
 
