@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A simulation's state as one value: what it consists of, and its bytes.
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "trocar/base/state_hash.h"
 #include "trocar/instrument/state_fields.h"
 #include "trocar/math/state_fields.h"
+#include "trocar/simulation/saved_state.h"
 
 namespace trocar::simulation {
 namespace {
@@ -195,6 +197,12 @@ base::Status Simulation::RestoreWithout(std::span<const std::byte> bytes, const 
     TROCAR_ASSERT(as_before.ok());  // saved by this simulation
   }
   return restored;
+}
+
+bool AreSameState(std::span<const std::byte> a, std::span<const std::byte> b) noexcept {
+  constexpr std::size_t kFrom = offsetof(Header, fingerprint), kTo = kFrom + sizeof(Header::fingerprint);
+  return a.size() == b.size() && a.size() >= kTo && std::equal(a.begin(), a.begin() + kFrom, b.begin()) &&
+         std::equal(a.begin() + kTo, a.end(), b.begin() + kTo);
 }
 
 std::uint64_t Simulation::ModelFingerprint(ModelFingerprintKind kind) const {

@@ -10,6 +10,7 @@
 #include "trocar/host/threads.h"
 #include "trocar/record/outcome.h"
 #include "trocar/simulation/engine_bits.h"
+#include "trocar/simulation/saved_state.h"
 
 namespace trocar::record {
 namespace {
@@ -220,7 +221,7 @@ base::Status Replay::CompareAll(const std::function<bool(double)>& progress, con
     const auto recorded = recording_->ReadKeyframe(next_frame);
     if (!recorded.ok()) return recorded.error();
     simulation_.Save(state);
-    if (state != *recorded) divergence_ = Divergence{Tick(), 0, simulation_.Hash()};
+    if (!simulation::AreSameState(state, *recorded)) divergence_ = Divergence{Tick(), 0, simulation_.Hash()};
   }
   return {};
 }

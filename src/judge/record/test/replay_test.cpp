@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <cstring>
 
 #include <random>
 
@@ -10,6 +11,7 @@
 #include "trocar/host/safe_file.h"
 #include "trocar/record/outcome.h"
 #include "trocar/simulation/engine_bits.h"
+#include "trocar/simulation/saved_state.h"
 
 namespace trocar::record {
 namespace {
@@ -78,6 +80,28 @@ TEST_F(ReplayTest, AFingerprintOfBeforeFitsUnderItsOwnName) {
   recording.description.model_kind = ModelFingerprintKind::kFirst;
   const auto replay = Replay::Open(std::move(recording), 1);
   ASSERT_TRUE(replay.ok()) << replay.error().Text();
+}
+
+// Keyframes of before hold the other fingerprint in their header, and nothing else that differs.
+TEST_F(ReplayTest, AKeyframeIsComparedButForTheFingerprint) {
+  const Recording recording = ReadIt();
+  ASSERT_GT(recording.KeyframeTicks().size(), 0u);
+  const std::vector<std::byte> state = *recording.ReadKeyframe(0);
+  std::vector<std::byte> other = state;
+  const std::uint64_t model = recording.description.model;
+  std::size_t at = 0;
+  while (at + sizeof(model) <= other.size() && std::memcmp(other.data() + at, &model, sizeof(model)) != 0)
+    ++at;
+  ASSERT_LT(at + sizeof(model), other.size());
+  other[at] ^= std::byte{1};
+  EXPECT_TRUE(simulation::AreSameState(state, other));
+  other[at - 1] ^= std::byte{1};
+  EXPECT_FALSE(simulation::AreSameState(state, other)) << "the byte before it";
+  other = state;
+  other.back() ^= std::byte{1};
+  EXPECT_FALSE(simulation::AreSameState(state, other));
+  other.pop_back();
+  EXPECT_FALSE(simulation::AreSameState(state, other));
 }
 
 TEST_F(ReplayTest, SeeksToAnyMoment) {
