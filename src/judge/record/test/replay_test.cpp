@@ -93,8 +93,16 @@ TEST_F(ReplayTest, AKeyframeIsComparedButForTheFingerprint) {
   while (at + sizeof(model) <= other.size() && std::memcmp(other.data() + at, &model, sizeof(model)) != 0)
     ++at;
   ASSERT_LT(at + sizeof(model), other.size());
-  other[at] ^= std::byte{1};
+  // a state of before is taken up, one of another model is not
+  auto simulation = OpenIt().Branch(1);
+  ASSERT_TRUE(simulation.ok());
+  const std::uint64_t first = simulation->ModelFingerprint(simulation::ModelFingerprintKind::kFirst);
+  std::memcpy(other.data() + at, &first, sizeof(first));
+  EXPECT_TRUE(simulation->Restore(other).ok());
   EXPECT_TRUE(simulation::AreSameState(state, other));
+  other[at] ^= std::byte{1};
+  EXPECT_FALSE(simulation->Restore(other).ok());
+  other = state;
   other[at - 1] ^= std::byte{1};
   EXPECT_FALSE(simulation::AreSameState(state, other)) << "the byte before it";
   other = state;

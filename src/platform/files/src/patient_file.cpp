@@ -250,7 +250,7 @@ base::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
   if (const auto status = document->Check(); !status.ok()) return status.error();
   UncheckedPatient unchecked{std::move(patient), {}};
   const auto read_mesh = [&](auto& thing) {
-    auto mesh = files::ReadPly(folder / (thing.name + ".ply"));
+    auto mesh = ReadPly(folder / (thing.name + ".ply"));
     unchecked.mesh_errors.push_back(mesh.ok() ? Error{} : mesh.error());
     if (mesh.ok()) thing.mesh = Converted(std::move(*mesh), FromLps);
   };
@@ -292,8 +292,8 @@ base::Status WritePatient(const fs::path& folder, const patient::Patient& patien
   fs::create_directories(partial, failure);
   if (failure) return fail(failure.message());
   const auto write_mesh = [&](const auto& thing) {
-    return files::WritePly(partial / (thing.name + ".ply"), Converted(thing.mesh, ToLps),
-                           "LPS millimetres, " + thing.name);
+    return WritePly(partial / (thing.name + ".ply"), Converted(thing.mesh, ToLps),
+                    "LPS millimetres, " + thing.name);
   };
   for (const patient::Organ& organ : patient.organs) {
     if (const auto status = write_mesh(organ); !status.ok()) return fail(status.error().message);

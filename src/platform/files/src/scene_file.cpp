@@ -239,7 +239,7 @@ base::Result<scene::Scene> ReadSceneFields(const host::JsonDocument& document, c
 
   if (has_patient) {
     scene.patient_folder = patient_folder.empty() ? folder / own_patient : patient_folder;
-    auto patient = files::ReadPatient(scene.patient_folder);
+    auto patient = ReadPatient(scene.patient_folder);
     if (!patient.ok()) return patient.error();
     scene.patient = std::move(*patient);
   }

@@ -162,7 +162,7 @@ TEST_F(PatientFolder, KeepsWhatLabelsWereTakenFor) {
 
 TEST_F(PatientFolder, HoldsLpsMillimetres) {
   ASSERT_TRUE(WritePatient(folder_, MakePatient()).ok());
-  const auto mesh = files::ReadPly(folder_ / "liver.ply");
+  const auto mesh = ReadPly(folder_ / "liver.ply");
   ASSERT_TRUE(mesh.ok());
   math::Vec3 mean;
   for (const auto& p : mesh->positions) mean += p / static_cast<double>(mesh->positions.size());

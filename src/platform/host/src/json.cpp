@@ -300,7 +300,7 @@ class StreamIterator {
 };
 
 std::string NumberText(double value) {
-  return host::FormatJson(nlohmann::json(value));
+  return FormatJson(nlohmann::json(value));
 }
 
 }  // namespace

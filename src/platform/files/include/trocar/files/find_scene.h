@@ -8,7 +8,6 @@
 #include "trocar/base/result.h"
 #include "trocar/files/task_file.h"
 #include "trocar/scene/scene.h"
-#include "trocar/scene/task.h"
 
 namespace trocar::files {
 
