@@ -32,7 +32,8 @@ int main(int count, char** arguments) {
     const simulation::Snapshot& now = simulation->GetSnapshot();
     for (; printed < now.event_count; ++printed) {
       const scene::Event& event = now.events[printed % now.events.size()];
-      std::printf("%6.2f s  %s hand: %s, %.2f N\n", now.time, event.hand == scene::kLeft ? "left" : "right",
+      std::printf("%6.2f s  %s hand: %s, %.2f N\n", now.time,
+                  event.hand == instrument::kLeft ? "left" : "right",
                   std::string(scene::EventName(event.kind)).c_str(), event.force);
     }
   }

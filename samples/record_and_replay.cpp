@@ -59,7 +59,7 @@ int Replay(const std::filesystem::path& file) {
   scene::Input input = replay->GetRecording().inputs[120];
   auto branch = replay->Branch(1);
   if (!branch.ok()) return Complain(branch.error());
-  input.hands[scene::kRight].depth -= 0.01;
+  input.hands[instrument::kRight].depth -= 0.01;
   for (int tick = 0; tick < 60; ++tick) branch->Step(input);
   std::printf("taken over after 1 s and held back: the branch stands at %.2f s\n",
               branch->GetSnapshot().time);

@@ -25,8 +25,8 @@
 namespace trocar::python {
 namespace {
 
+using instrument::kHandCount;
 using scene::Input;
-using scene::kHandCount;
 using simulation::Simulation;
 using simulation::Snapshot;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 #include <sstream>
 #include <utility>
 
@@ -269,6 +270,22 @@ std::vector<Breach> FindCalls(const std::string& function, const fs::path& folde
       ++number;
       if (line.find(function + "()") != std::string::npos)
         breaches.push_back({name, number, "calls " + function});
+    }
+  }
+  return breaches;
+}
+
+std::vector<Breach> FindReExports(const fs::path& folder) {
+  static const std::regex kDeclaration(R"(using (\w+::)+\w+;.*)");
+  std::vector<Breach> breaches;
+  for (const fs::path& file : FindSources(folder)) {
+    const std::string stem = file.stem().string();
+    if (file.extension() != ".h" || stem.ends_with("_lanes")) continue;
+    const std::string name = fs::relative(file, folder).generic_string();
+    int number = 0;
+    for (const std::string& line : ReadLines(file, name, breaches)) {
+      ++number;
+      if (std::regex_match(line, kDeclaration)) breaches.push_back({name, number, line});
     }
   }
   return breaches;

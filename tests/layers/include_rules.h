@@ -73,4 +73,8 @@ std::vector<Breach> FindIncludes(const std::vector<std::string>& prefixes,
 /// Calls of a function without arguments in every .h and .cpp below `folder`.
 std::vector<Breach> FindCalls(const std::string& function, const std::filesystem::path& folder);
 
+/// Names of other namespaces that a header puts into its own, "using math::Vec3;" in the first column, in every .h below `folder`
+/// but for headers named *_lanes.h, whose overload sets the kernels of one source file complete.
+std::vector<Breach> FindReExports(const std::filesystem::path& folder);
+
 }  // namespace trocar::layers

@@ -110,6 +110,14 @@ TEST(Layers, NoTestWritesIntoASharedFolder) {
   }
 }
 
+// One name for each thing: a reader who meets scene::Vec3 and tissue::Vec3 has to look up whether they are one.
+TEST(Layers, NoHeaderGivesANameOfAnotherNamespaceAsItsOwn) {
+  for (const Breach& breach : FindReExports(kRoot / "src")) {
+    ADD_FAILURE() << "src/" << breach.file << ":" << breach.line << ": " << breach.what
+                  << "; a header names what it uses in full";
+  }
+}
+
 // Negative control: the check finds what is planted.
 class Planted : public testing::Test {
  protected:
@@ -183,6 +191,17 @@ TEST_F(Planted, SharedFolderIsFound) {
                   .ok());
   const auto breaches = FindCalls(call, Folder());
   ASSERT_THAT(breaches, SizeIs(1));
+  EXPECT_EQ(breaches[0].line, 2);
+}
+
+TEST_F(Planted, ReExportIsFoundInHeadersAlone) {
+  const std::string text =
+      "namespace trocar::tissue {\nusing math::Vec3;\nstruct A : B {\n  using B::B;\n};\n}\n";
+  Find("engine/tissue/src/a.cpp", text);
+  Find("engine/tissue/src/a.h", text);
+  const auto breaches = FindReExports(Folder());
+  ASSERT_THAT(breaches, SizeIs(1));
+  EXPECT_EQ(breaches[0].file, "engine/tissue/src/a.h");
   EXPECT_EQ(breaches[0].line, 2);
 }
 

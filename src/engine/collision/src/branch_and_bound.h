@@ -28,15 +28,15 @@ inline bool Wins(double d2, std::uint32_t triangle, const NearestTriangle& best)
   return d2 < best.squared_distance || (d2 == best.squared_distance && triangle < best.triangle);
 }
 
-inline void ConsiderForPoint(std::span<const Vec3> positions, const Triangle& corners, std::uint32_t triangle,
-                             const Vec3& p, NearestTriangle& best) noexcept {
-  const TrianglePoint found =
+inline void ConsiderForPoint(std::span<const math::Vec3> positions, const geometry::Triangle& corners,
+                             std::uint32_t triangle, const math::Vec3& p, NearestTriangle& best) noexcept {
+  const geometry::TrianglePoint found =
       geometry::FindNearestOnTriangle(p, positions[corners[0]], positions[corners[1]], positions[corners[2]]);
   const double d2 = math::SquaredDistance(found.point, p);
   if (Wins(d2, triangle, best)) best = {triangle, found.point, found.weights, d2};
 }
 
-inline void ConsiderForSegment(std::span<const Vec3> positions, const Triangle& corners,
+inline void ConsiderForSegment(std::span<const math::Vec3> positions, const geometry::Triangle& corners,
                                std::uint32_t triangle, const Segment& segment,
                                SegmentContact& best) noexcept {
   const SegmentTrianglePoints found = FindNearestSegmentTriangle(
@@ -52,7 +52,7 @@ inline CapsuleContact MakeCapsuleContact(const SegmentContact& axis, double radi
   CapsuleContact contact;
   contact.axis = axis;
   if (!contact.Found()) return contact;
-  const Vec3 towards = math::Normalized(axis.nearest.point - axis.on_segment, {0, 0, 0});
+  const math::Vec3 towards = math::Normalized(axis.nearest.point - axis.on_segment, {0, 0, 0});
   contact.distance = std::sqrt(axis.nearest.squared_distance) - radius;
   contact.on_capsule = axis.on_segment + radius * towards;
   return contact;
@@ -67,7 +67,7 @@ template <typename CalcBound, typename Visit>
 void SearchNearestFirst(const CentroidHierarchy& hierarchy, const double& limit, CalcBound&& calc_bound,
                         Visit&& visit) noexcept {
   const std::span<const HierarchyNode> nodes = hierarchy.Nodes();
-  const std::span<const Box> boxes = hierarchy.Boxes();
+  const std::span<const geometry::Box> boxes = hierarchy.Boxes();
   if (nodes.empty() || calc_bound(boxes[0]) > limit) return;
   struct Waiting {
     std::uint32_t node;

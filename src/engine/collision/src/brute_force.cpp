@@ -6,8 +6,11 @@
 
 namespace trocar::collision {
 
-NearestTriangle FindNearestBruteForce(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                                      const Vec3& p, double max_distance) noexcept {
+using math::Vec3;
+
+NearestTriangle FindNearestBruteForce(std::span<const Vec3> positions,
+                                      std::span<const geometry::Triangle> triangles, const Vec3& p,
+                                      double max_distance) noexcept {
   NearestTriangle best = StartSearch(max_distance);
   for (std::uint32_t triangle = 0; triangle < triangles.size(); ++triangle) {
     ConsiderForPoint(positions, triangles[triangle], triangle, p, best);
@@ -26,8 +29,8 @@ std::uint32_t FindNearestCentroidBruteForce(std::span<const Vec3> centroids, con
 }
 
 SegmentContact FindNearestToSegmentBruteForce(std::span<const Vec3> positions,
-                                              std::span<const Triangle> triangles, const Segment& segment,
-                                              double max_distance) noexcept {
+                                              std::span<const geometry::Triangle> triangles,
+                                              const Segment& segment, double max_distance) noexcept {
   SegmentContact best;
   best.nearest = StartSearch(max_distance);
   for (std::uint32_t triangle = 0; triangle < triangles.size(); ++triangle) {

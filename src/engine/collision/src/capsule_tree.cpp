@@ -11,6 +11,9 @@
 #include "wide_search.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 SegmentSegmentPoints FindAxes(std::span<const Vec3> positions, const TubePiece& piece,
@@ -52,7 +55,7 @@ base::Result<CapsuleTree> CapsuleTree::Make(std::span<const Vec3> positions,
   };
   const auto is_good = [](double value) { return std::fabs(value) <= kLargestCoordinate; };
   CapsuleTree made;
-  std::vector<Triangle> corners;
+  std::vector<geometry::Triangle> corners;
   std::vector<double> radii;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const TubePiece& piece = pieces[i];

@@ -11,6 +11,11 @@
 #include "trocar/collision/farthest_pair.h"
 
 namespace trocar::collision {
+
+using geometry::Box;
+using geometry::Triangle;
+using math::Vec3;
+
 namespace {
 
 /// Boxes reach this much beyond their corners, as a part of the largest coordinate: a point interpolated

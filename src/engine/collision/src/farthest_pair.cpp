@@ -11,6 +11,9 @@
 #include "trocar/geometry/triangle_mesh.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 using geometry::Box;

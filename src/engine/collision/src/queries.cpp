@@ -12,7 +12,9 @@
 
 namespace trocar::collision {
 
+using geometry::Triangle;
 using math::Dot;
+using math::Vec3;
 
 namespace {
 
@@ -34,7 +36,7 @@ class SegmentBound {
         scale_(std::max(LargestCoordinate(segment.start), LargestCoordinate(segment.end))) {}
 
   /// [m^2]
-  double operator()(const Box& box) const {
+  double operator()(const geometry::Box& box) const {
     const double margin =
         kBoundMargin * std::max({scale_, LargestCoordinate(box.min), LargestCoordinate(box.max)});
     const auto gap = [margin](double low, double high, double other_low, double other_high) {
@@ -52,7 +54,7 @@ class SegmentBound {
 
  private:
   Segment segment_;
-  Box box_;
+  geometry::Box box_;
   double scale_;
 };
 

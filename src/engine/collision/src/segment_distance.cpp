@@ -10,6 +10,7 @@ namespace trocar::collision {
 
 using math::Dot;
 using math::SquaredNorm;
+using math::Vec3;
 
 void FindNearestParameters(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double& s,
                            double& t) noexcept {

@@ -6,6 +6,9 @@
 #include <span>
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 /// More than a hundred times what a straight approach takes.

@@ -8,10 +8,12 @@
 
 namespace trocar::collision {
 
+using geometry::TrianglePoint;
 using math::Cross;
 using math::Dot;
 using math::SquaredDistance;
 using math::SquaredNorm;
+using math::Vec3;
 
 namespace {
 

@@ -12,6 +12,10 @@
 #include "wide_search.h"
 
 namespace trocar::collision {
+
+using geometry::Triangle;
+using math::Vec3;
+
 namespace {
 
 base::Status CheckMesh(std::span<const Vec3> positions, std::span<const Triangle> triangles) {

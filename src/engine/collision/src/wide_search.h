@@ -29,7 +29,7 @@ void SearchWideTree(const WideTree& tree, const Segment& segment, double limit, 
     Visit& visit;
     WideSearch search;
   } context{visit, {}};
-  const Vec3 &from = segment.start, &to = segment.end;
+  const math::Vec3 &from = segment.start, &to = segment.end;
   context.search = {{static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z)},
                     {static_cast<float>(to.x), static_cast<float>(to.y), static_cast<float>(to.z)},
                     LimitOf(limit),

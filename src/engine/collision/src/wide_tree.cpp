@@ -9,6 +9,10 @@
 #include "wide_kernels.h"
 
 namespace trocar::collision {
+
+using geometry::Triangle;
+using math::Vec3;
+
 namespace {
 
 using BuildItem = WideTree::BuildItem;

@@ -11,6 +11,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 struct Tubes {

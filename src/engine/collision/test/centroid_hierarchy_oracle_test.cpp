@@ -13,6 +13,10 @@
 #include "trocar/math/random.h"
 
 namespace trocar::collision {
+
+using geometry::Box;
+using math::Vec3;
+
 namespace {
 
 using geometry::TriangleMesh;

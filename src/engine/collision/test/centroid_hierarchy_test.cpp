@@ -12,6 +12,9 @@
 #include "trocar/geometry/primitives.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 using geometry::TriangleMesh;

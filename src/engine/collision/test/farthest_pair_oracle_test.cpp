@@ -13,6 +13,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 std::vector<std::uint32_t> AllOf(std::span<const Vec3> points) {

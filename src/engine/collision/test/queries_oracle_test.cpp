@@ -16,6 +16,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 using geometry::TriangleMesh;

@@ -62,7 +62,7 @@ TEST(RealTime, SearchesAndUpdatesAllocateNothing) {
   const std::uint32_t modified[] = {5, 900, 17, 5};
   std::uint32_t found[64];
   const Capsule jaw{{{0.09, 0, 0}, {0.2, 0.05, 0.1}}, 0.01};
-  const Vec3 p{0.11, 0.01, 0.02};
+  const math::Vec3 p{0.11, 0.01, 0.02};
 
   const int before = allocations;
   hierarchy.UpdateAll(mesh.positions);

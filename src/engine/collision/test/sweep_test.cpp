@@ -9,6 +9,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 Segment RandomSegment(math::Random& random, double reach) {

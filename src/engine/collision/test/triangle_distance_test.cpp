@@ -10,6 +10,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 TEST(FindNearestSegmentTriangle, KnowsPiercingPassingAndStoppingShort) {

@@ -17,6 +17,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::collision {
+
+using math::Vec3;
+
 namespace {
 
 using base::SimdLevel;
@@ -300,7 +303,7 @@ TEST(TriangleTree, RefusesBadMeshesAndQueries) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   TriangleMesh mesh = geometry::MakeSphere({0, 0, 0}, 0.1, 1);
   EXPECT_EQ(TriangleTree::Make(mesh.positions, {}).error().code, base::ErrorCode::kMeshInvalid);
-  const std::vector<Triangle> outside{{0, 1, 99999}};
+  const std::vector<geometry::Triangle> outside{{0, 1, 99999}};
   EXPECT_EQ(TriangleTree::Make(mesh.positions, outside).error().code, base::ErrorCode::kMeshInvalid);
   for (const double bad : {nan, std::numeric_limits<double>::infinity(), 1e16}) {
     TriangleMesh broken = mesh;

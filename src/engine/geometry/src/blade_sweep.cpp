@@ -5,6 +5,9 @@
 #include <cmath>
 
 namespace trocar::geometry {
+
+using math::Vec3;
+
 namespace {
 
 /// Farthest that the corners of a quadrilateral may lie off its plane, as a share of its diagonal [-].

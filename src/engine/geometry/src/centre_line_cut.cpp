@@ -35,7 +35,8 @@ std::size_t CentreLineGraph::CutCapacity() const {
   return std::min((points - rest.size()) / 2, edges.capacity() - edges.size());
 }
 
-std::uint32_t AddLine(std::span<const Vec3> points, std::span<const double> radii, CentreLineGraph& graph) {
+std::uint32_t AddLine(std::span<const math::Vec3> points, std::span<const double> radii,
+                      CentreLineGraph& graph) {
   TROCAR_ASSERT(points.size() >= 2 && radii.size() == points.size());
   const auto first = static_cast<std::uint32_t>(graph.rest.size());
   graph.rest.insert(graph.rest.end(), points.begin(), points.end());
@@ -59,7 +60,7 @@ std::size_t CutCentreLines(const FlatSweep& sweep, CentreLineGraph& graph,
         (graph.is_cut_end[b] && (1.0 - *at) * length < kLeastStump))
       continue;
     // a joint of two edges is cut once
-    const Vec3 here = math::Lerp(graph.positions[a], graph.positions[b], *at);
+    const math::Vec3 here = math::Lerp(graph.positions[a], graph.positions[b], *at);
     const bool is_cut_already = std::any_of(
         cuts.begin(), cuts.begin() + static_cast<std::ptrdiff_t>(count), [&](const CentreLineCut& cut) {
           const bool shares_point = cut.a == a || cut.b == a || cut.a == b || cut.b == b;

@@ -35,8 +35,8 @@ void CrossingFinder::Find(const FlatSweep& sweep, const EditableMesh& mesh) noex
   const auto positions = mesh.Positions();
   const auto triangles = mesh.Triangles();
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const Vec3 &a = positions[triangles[t][0]], &b = positions[triangles[t][1]],
-               &c = positions[triangles[t][2]];
+    const math::Vec3 &a = positions[triangles[t][0]], &b = positions[triangles[t][1]],
+                     &c = positions[triangles[t][2]];
     if (!BoxesOverlap(box, {math::Min(math::Min(a, b), c), math::Max(math::Max(a, b), c)})) continue;
     for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
       const std::uint32_t twin = mesh.Twin(h);

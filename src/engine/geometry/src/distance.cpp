@@ -8,6 +8,7 @@ namespace trocar::geometry {
 
 using math::Cross;
 using math::Dot;
+using math::Vec3;
 
 double FindNearestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b) noexcept {
   const Vec3 along = b - a;

@@ -10,6 +10,8 @@
 
 namespace trocar::geometry {
 
+using math::Vec3;
+
 base::Result<EditableMesh> EditableMesh::Make(const TriangleMesh& rest, std::size_t spare_vertices,
                                               std::size_t spare_triangles) {
   if (const auto status = CheckMesh(rest); !status.ok()) return status.error();

@@ -14,6 +14,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::geometry {
+
+using math::Vec3;
+
 namespace {
 
 using math::Cross;

@@ -13,9 +13,9 @@ namespace trocar::geometry {
 TriangleMesh MakeOmentum(std::span<const Ball> above) {
   constexpr double kSpacing = 0.0042;
   constexpr int kColumns = 90, kRows = 83;
-  constexpr Vec3 kCorner{-0.190, -0.150, 0};
+  constexpr math::Vec3 kCorner{-0.190, -0.150, 0};
   TriangleMesh bed = geometry::MakeTriangularLattice(kColumns, kRows, kSpacing);
-  for (Vec3& p : bed.positions) {
+  for (math::Vec3& p : bed.positions) {
     p += kCorner;
     const double slow = math::CalcGradientNoise(18.0 * p, 0);
     const math::CellNoise lobule = math::CalcCellNoise(62.0 * p, 0),

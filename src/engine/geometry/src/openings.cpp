@@ -2,6 +2,9 @@
 #include "trocar/geometry/openings.h"
 
 namespace trocar::geometry {
+
+using math::Vec3;
+
 namespace {
 
 /// The rim that starts at half-edge h; nothing where h is not its lowest.

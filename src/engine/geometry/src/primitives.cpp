@@ -10,6 +10,8 @@
 
 namespace trocar::geometry {
 
+using math::Vec3;
+
 TriangleMesh MakeSphere(const Vec3& centre, double radius, int subdivisions) {
   TROCAR_ASSERT(radius > 0.0 && subdivisions >= 0 && subdivisions <= 8);
   const double g = 0.5 * (1.0 + std::sqrt(5.0));

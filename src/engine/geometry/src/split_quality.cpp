@@ -7,6 +7,8 @@
 
 namespace trocar::geometry {
 
+using math::Vec3;
+
 bool MaySplit(const EditableMesh& mesh, std::uint32_t h, double t, double min_angle) {
   const auto halves = [&](std::span<const Vec3> x, std::uint32_t side) {
     const Vec3 &a = x[mesh.From(side)], &b = x[mesh.To(side)], &c = x[mesh.Opposite(side)];

@@ -18,6 +18,6 @@ bool MayInsert(const EditableMesh& mesh, std::uint32_t t, const std::array<doubl
                double min_angle);
 
 /// Barycentric weights of a point of a triangle, present positions.
-std::array<double, 3> CalcWeights(const EditableMesh& mesh, std::uint32_t t, const Vec3& p);
+std::array<double, 3> CalcWeights(const EditableMesh& mesh, std::uint32_t t, const math::Vec3& p);
 
 }  // namespace trocar::geometry

@@ -44,7 +44,7 @@ struct SurfaceCutter::Content {
   void OpenWithoutWalls() noexcept;
   struct Pierced {
     std::uint32_t triangle = 0;
-    Vec3 point;  // [m]
+    math::Vec3 point;  // [m]
   };
   void FindPierced(const BladeEdge& now) noexcept;
   std::uint32_t FindEnd(const Pierced& at, const CutFront& front) const noexcept;
@@ -254,7 +254,7 @@ void SurfaceCutter::Content::FindPierced(const BladeEdge& now) noexcept {
   const auto x = mesh->Positions();
   for (std::uint32_t t = 0; t < mesh->TriangleCount() && pierced_count < pierced.size(); ++t) {
     const Triangle& corners = mesh->Triangles()[t];
-    const Vec3 &a = x[corners[0]], &b = x[corners[1]], &c = x[corners[2]];
+    const math::Vec3 &a = x[corners[0]], &b = x[corners[1]], &c = x[corners[2]];
     if (!BoxesOverlap(box, {math::Min(math::Min(a, b), c), math::Max(math::Max(a, b), c)})) continue;
     if (const auto point = FindPiercing(now, a, b, c)) pierced[pierced_count++] = {t, *point};
   }

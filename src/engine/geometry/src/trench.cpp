@@ -9,6 +9,9 @@
 #include "trocar/geometry/mesh_measures.h"
 
 namespace trocar::geometry {
+
+using math::Vec3;
+
 namespace {
 
 /// Deepest trench, in mean lengths of the edges cut, and shallowest, in lengths of the shortest [-]: beyond, walls have

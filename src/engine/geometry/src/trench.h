@@ -27,7 +27,7 @@ class TrenchBuilder {
   enum class Bottom : std::uint8_t { kUnseen, kNotLooked, kIsEnd, kPlanned };
   /// A position at rest and now.
   struct Place {
-    Vec3 rest, now;
+    math::Vec3 rest, now;
   };
 
   void AddValleys(std::span<const std::uint32_t> path, EditableMesh& mesh) noexcept;

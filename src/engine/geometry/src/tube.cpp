@@ -11,6 +11,8 @@
 
 namespace trocar::geometry {
 
+using math::Vec3;
+
 double CalcLength(const CentreLine& line) {
   double length = 0;
   for (std::size_t i = 1; i < line.points.size(); ++i)

@@ -13,7 +13,7 @@ namespace {
 /// Two ducts that join a third: a Y of 30 mm legs.
 CentreLineGraph MakeY() {
   CentreLineGraph graph;
-  std::vector<Vec3> points;
+  std::vector<math::Vec3> points;
   std::vector<double> radii;
   for (int i = 0; i <= 6; ++i) {
     points.push_back({0.005 * i, 0, 0});
@@ -94,7 +94,7 @@ TEST(CentreLineCut, RandomCutsKeepLengthAndCountPieces) {
 
 TEST(CentreLineCut, StopsWhenItsRoomIsUsedUp) {
   CentreLineGraph graph;
-  AddLine(std::vector<Vec3>{{0, 0, 0}, {0.1, 0, 0}}, std::vector<double>{0.002, 0.002}, graph);
+  AddLine(std::vector<math::Vec3>{{0, 0, 0}, {0.1, 0, 0}}, std::vector<double>{0.002, 0.002}, graph);
   graph.rest.shrink_to_fit();
   graph.edges.shrink_to_fit();
   std::array<CentreLineCut, 1> cuts;

@@ -24,7 +24,7 @@ struct Uncut {
   bool is_closed = false;
 };
 
-inline double CalcKindArea(const EditableMesh& mesh, std::span<const Vec3> x, TriangleKind kind) {
+inline double CalcKindArea(const EditableMesh& mesh, std::span<const math::Vec3> x, TriangleKind kind) {
   double area = 0;
   for (std::size_t t = 0; t < mesh.TriangleCount(); ++t) {
     if (mesh.Kinds()[t] == kind) area += 0.5 * math::Norm(CalcAreaNormal(x, mesh.Triangles()[t]));

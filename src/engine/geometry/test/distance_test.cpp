@@ -8,6 +8,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::geometry {
+
+using math::Vec3;
+
 namespace {
 
 Vec3 RandomPoint(math::Random& random, double reach = 1.0) {

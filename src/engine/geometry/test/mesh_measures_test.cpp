@@ -12,6 +12,9 @@
 #include "trocar/geometry/primitives.h"
 
 namespace trocar::geometry {
+
+using math::Vec3;
+
 namespace {
 
 TEST(CalcVolume, OfAFineSphereApproachesTheFormula) {

@@ -16,8 +16,8 @@ namespace trocar::geometry {
 
 /// Spheres, boxes, sheets, slender triangles, tubes, and the built-in patient's organs, 1 to 300 mm large.
 inline std::vector<NamedSurface> MakeSurfaces() {
-  const auto scaled = [](TriangleMesh mesh, const Vec3& factors) {
-    for (Vec3& p : mesh.positions) p = {p.x * factors.x, p.y * factors.y, p.z * factors.z};
+  const auto scaled = [](TriangleMesh mesh, const math::Vec3& factors) {
+    for (math::Vec3& p : mesh.positions) p = {p.x * factors.x, p.y * factors.y, p.z * factors.z};
     return mesh;
   };
   std::vector<NamedSurface> surfaces;
@@ -59,22 +59,23 @@ inline Stroke MakeStroke(const EditableMesh& mesh, math::Random& random) {
   if (random.Uniform() < 0.1) w[1] = w[2] = 0;  // starts at a vertex
   if (w[0] + w[1] + w[2] <= 0) w[0] = 1;
   const double sum = w[0] + w[1] + w[2];
-  const Vec3 start =
+  const math::Vec3 start =
       (w[0] / sum) * x[corners[0]] + (w[1] / sum) * x[corners[1]] + (w[2] / sum) * x[corners[2]];
-  const Vec3 normal = math::Normalized(CalcAreaNormal(x, corners), RandomDirection(random));
-  Vec3 along = math::Normalized(math::Cross(normal, RandomDirection(random)), math::AnyPerpendicular(normal));
+  const math::Vec3 normal = math::Normalized(CalcAreaNormal(x, corners), RandomDirection(random));
+  math::Vec3 along =
+      math::Normalized(math::Cross(normal, RandomDirection(random)), math::AnyPerpendicular(normal));
   if (random.Uniform() < 0.15) along = math::Normalized(x[corners[1]] - x[corners[0]], along);
   const double kind = random.Uniform();
-  const Vec3 upright = kind < 0.7   ? normal
-                       : kind < 0.9 ? RandomDirection(random)
-                                    : along;  // the last one grazes
+  const math::Vec3 upright = kind < 0.7   ? normal
+                             : kind < 0.9 ? RandomDirection(random)
+                                          : along;  // the last one grazes
   const double length = size * std::pow(10.0, random.Uniform(-3.0, 0.3));
   const double reach = size * std::pow(10.0, random.Uniform(-2.0, 0.3));
   const int ticks = random.Uniform() < 0.3 ? 1 : 1 + static_cast<int>(random.Uniform() * 12);
   const double turn = random.Uniform() < 0.5 ? 0.0 : random.Uniform(-0.6, 0.6);
   Stroke stroke;
-  Vec3 at = start - (random.Uniform() < 0.3 ? 0.5 * length : 0.0) * along;
-  Vec3 blade = upright;
+  math::Vec3 at = start - (random.Uniform() < 0.3 ? 0.5 * length : 0.0) * along;
+  math::Vec3 blade = upright;
   for (int i = 0; i <= ticks; ++i) {
     stroke.push_back({at - reach * blade, at + reach * blade});
     at += (length / ticks) * along;
@@ -89,9 +90,10 @@ inline Stroke MakeStroke(const EditableMesh& mesh, math::Random& random) {
 inline void Deform(EditableMesh& mesh, math::Random& random) {
   const Box box = CalcBox(mesh.Rest());
   const double size = math::Distance(box.min, box.max);
-  const Vec3 wave = (4.0 / size) * RandomDirection(random), push = 0.05 * size * RandomDirection(random);
-  std::vector<Vec3> moved(mesh.Rest().begin(), mesh.Rest().end());
-  for (Vec3& p : moved) p += std::sin(math::Dot(wave, p)) * push;
+  const math::Vec3 wave = (4.0 / size) * RandomDirection(random),
+                   push = 0.05 * size * RandomDirection(random);
+  std::vector<math::Vec3> moved(mesh.Rest().begin(), mesh.Rest().end());
+  for (math::Vec3& p : moved) p += std::sin(math::Dot(wave, p)) * push;
   mesh.SetPositions(moved);
 }
 

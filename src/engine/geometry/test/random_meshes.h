@@ -25,8 +25,8 @@ struct NamedSurface {
   TriangleMesh mesh;
 };
 
-inline Vec3 RandomDirection(math::Random& random) {
-  Vec3 v;
+inline math::Vec3 RandomDirection(math::Random& random) {
+  math::Vec3 v;
   do {
     v = {random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)};
   } while (!(SquaredNorm(v) > 0.01 && SquaredNorm(v) < 1.0));
@@ -34,7 +34,7 @@ inline Vec3 RandomDirection(math::Random& random) {
 }
 
 /// Of any direction and at most so long; with every compiler the same draws in the same order.
-inline Vec3 RandomVector(double longest, math::Random& random) {
+inline math::Vec3 RandomVector(double longest, math::Random& random) {
   const double length = random.Uniform(0, longest);
   return length * RandomDirection(random);
 }
@@ -76,7 +76,7 @@ inline void FlipEdges(TriangleMesh& mesh, std::size_t attempts, math::Random& ra
         *std::find_if(beyond.begin(), beyond.end(), [&](std::uint32_t v) { return v != a && v != b; });
     if (c == d || sides.count({c, d}) != 0 || sides.count({d, c}) != 0) continue;
     const Triangle first = {a, d, c}, second = {d, b, c};
-    const Vec3 up =
+    const math::Vec3 up =
         CalcAreaNormal(mesh.positions, mesh.triangles[t]) + CalcAreaNormal(mesh.positions, beyond);
     const auto lies_well = [&](const Triangle& n) {
       const auto& x = mesh.positions;
@@ -172,10 +172,10 @@ inline NamedSurface MakeRandomSurface(math::Random& random) {
   FlipEdges(mesh, share(2.0), random);
   if (is_sheet) MakeHoles(mesh, share(0.05), random);
   Jitter(mesh, 0.25 * random.Uniform(), random);
-  const Vec3 stretch{random.Uniform(0.3, 1), random.Uniform(0.3, 1), random.Uniform(0.3, 1)};
-  const Vec3 wave = RandomVector(6, random), push = RandomVector(0.15, random);
+  const math::Vec3 stretch{random.Uniform(0.3, 1), random.Uniform(0.3, 1), random.Uniform(0.3, 1)};
+  const math::Vec3 wave = RandomVector(6, random), push = RandomVector(0.15, random);
   const double size = 0.001 * std::pow(300.0, random.Uniform());
-  for (Vec3& p : mesh.positions) {
+  for (math::Vec3& p : mesh.positions) {
     p = {p.x * stretch.x, p.y * stretch.y, p.z * stretch.z};
     p = size * (p + std::sin(math::Dot(wave, p)) * push);
   }

@@ -10,6 +10,9 @@
 #include "trocar/geometry/primitives.h"
 
 namespace trocar::geometry {
+
+using math::Vec3;
+
 namespace {
 
 constexpr double kSpacing = 0.005;

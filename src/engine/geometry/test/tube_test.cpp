@@ -41,7 +41,7 @@ TEST(Resample, KeepsEndsLengthAndSpacing) {
 
 TEST(CalcTubeSkin, HandlesAHairpinWithoutNan) {
   const CentreLine line{{{0, 0, 0}, {0.01, 0, 0}, {0, 0, 0}}, {0.001, 0.001, 0.001}};
-  for (const Vec3& p : MakeTube(line, 8).positions) EXPECT_TRUE(math::IsFinite(p));
+  for (const math::Vec3& p : MakeTube(line, 8).positions) EXPECT_TRUE(math::IsFinite(p));
 }
 
 }  // namespace

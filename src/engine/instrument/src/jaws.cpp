@@ -96,7 +96,7 @@ geometry::TriangleMesh MakeScissorsBlade(const Tool& tool, int side) {
     Ring ring = {{0, -kOverlap, z},       {0.35 * thick, 0.10 * back, z}, {thick, 0.45 * back, z},
                  {thick, 0.85 * back, z}, {0.7 * thick, back, z},         {0.2 * thick, back, z},
                  {0, 0.8 * back, z}};
-    for (Vec3& p : ring) p = {middle + side * p.x, side * p.y, p.z};
+    for (math::Vec3& p : ring) p = {middle + side * p.x, side * p.y, p.z};
     rings.push_back(std::move(ring));
   }
   return MakeLoft(rings);

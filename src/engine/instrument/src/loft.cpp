@@ -9,6 +9,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::instrument {
+
+using math::Vec3;
+
 namespace {
 
 using math::Cos;

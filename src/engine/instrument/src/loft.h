@@ -8,10 +8,8 @@
 
 namespace trocar::instrument {
 
-using math::Vec3;
-
 /// Points of one cross-section, in order round it [m]. All rings of a solid have the same number.
-using Ring = std::vector<Vec3>;
+using Ring = std::vector<math::Vec3>;
 
 /// Closed solid through the rings, its ends covered; outward whichever way the rings run.
 /// \pre at least two rings of at least three points (TROCAR_ASSERT)

@@ -7,6 +7,9 @@
 
 #include "trocar/math/elementary.h"
 namespace trocar::instrument {
+
+using math::Vec3;
+
 namespace {
 
 // Sizes: domain facts, section 1.3
@@ -60,7 +63,7 @@ ToolCapsules CalcCapsules(const Tool& tool, double jaw, double shaft_reach) noex
           {hinge, hinge + Vec3{0, 0, reach}, tool.shaft_radius}};
 }
 
-Pose CalcPartPose(const Tool& tool, ToolPart::Kind kind, double jaw) noexcept {
+math::Pose CalcPartPose(const Tool& tool, ToolPart::Kind kind, double jaw) noexcept {
   const bool is_upper = kind == ToolPart::Kind::kUpperJaw || kind == ToolPart::Kind::kUpperClip;
   if (!is_upper && kind != ToolPart::Kind::kLowerJaw && kind != ToolPart::Kind::kLowerClip) return {};
   // about +x, the direction -z turns to +y

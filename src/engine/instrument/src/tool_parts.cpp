@@ -11,6 +11,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::instrument {
+
+using math::Vec3;
+
 namespace {
 
 using geometry::TriangleMesh;

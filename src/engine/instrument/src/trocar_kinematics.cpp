@@ -7,6 +7,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::instrument {
+
+using math::Vec3;
+
 namespace {
 
 /// Like std::clamp, but NaN becomes `low`.
@@ -23,7 +26,7 @@ TrocarJoints ClampJoints(const TrocarJoints& joints, const JointLimits& limits) 
           Clamp(joints.depth, limits.min_depth, limits.max_depth), Clamp(joints.jaw, 0.0, limits.max_jaw)};
 }
 
-Pose CalcToolPose(const Vec3& p_world_port, const TrocarJoints& joints) noexcept {
+math::Pose CalcToolPose(const Vec3& p_world_port, const TrocarJoints& joints) noexcept {
   const math::Quaternion rotation = math::RotationAbout({0, 1, 0}, joints.pan) *
                                     math::RotationAbout({1, 0, 0}, joints.tilt) *
                                     math::RotationAbout({0, 0, 1}, joints.spin);

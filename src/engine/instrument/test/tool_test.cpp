@@ -10,6 +10,9 @@
 #include "trocar/geometry/mesh_measures.h"
 
 namespace trocar::instrument {
+
+using math::Vec3;
+
 namespace {
 
 constexpr const char* kNames[] = {"grasper",      "maryland",          "hook", "scissors",
@@ -87,7 +90,7 @@ TEST(MakeParts, JawsReachTheirTipsAndNoFarther) {
       const ToolPart* jaw = FindPart(parts, kind);
       ASSERT_NE(jaw, nullptr) << name;
       for (const double opening : {0.0, 0.6 * tool.max_jaw, tool.max_jaw}) {
-        const Pose X_tool_jaw = CalcPartPose(tool, kind, opening);
+        const math::Pose X_tool_jaw = CalcPartPose(tool, kind, opening);
         const Vec3 tip = JawTip(tool, opening, side), along = math::Normalized(tip - JawHinge(tool));
         double nearest = 1, beyond = -1;
         for (const Vec3& p : jaw->mesh.positions) {
@@ -160,7 +163,7 @@ TEST(CalcCapsules, AToolWithoutJawsHasOneTip) {
     EXPECT_EQ(capsules.upper_jaw.a, capsules.lower_jaw.a) << name;
     EXPECT_EQ(capsules.upper_jaw.b, capsules.lower_jaw.b) << name;
     EXPECT_NEAR(math::Norm(capsules.upper_jaw.a), 0.0, 1e-15) << name;
-    EXPECT_EQ(CalcPartPose(tool, ToolPart::Kind::kTip, 0.9), Pose{}) << name;
+    EXPECT_EQ(CalcPartPose(tool, ToolPart::Kind::kTip, 0.9), math::Pose{}) << name;
   }
 }
 

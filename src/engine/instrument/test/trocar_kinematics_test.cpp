@@ -9,6 +9,10 @@
 #include "trocar/math/random.h"
 
 namespace trocar::instrument {
+
+using math::Pose;
+using math::Vec3;
+
 namespace {
 
 constexpr double kDegree = M_PI / 180;

@@ -8,24 +8,21 @@
 
 namespace trocar::rigid {
 
-using math::Pose;
-using math::Vec3;
-
 // Bullet's tolerances are made for things of a size of one: it counts in centimetres
 inline constexpr double kScale = 100.0;
 inline constexpr double kMargin = 0.01;  // of shapes [cm]
 
-inline btVector3 ToBullet(const Vec3& v) {
+inline btVector3 ToBullet(const math::Vec3& v) {
   return {v.x * kScale, v.y * kScale, v.z * kScale};
 }
-inline Vec3 FromBullet(const btVector3& v) {
+inline math::Vec3 FromBullet(const btVector3& v) {
   return {v.x() / kScale, v.y() / kScale, v.z() / kScale};
 }
-inline btTransform ToBullet(const Pose& X) {
+inline btTransform ToBullet(const math::Pose& X) {
   return btTransform(btQuaternion(X.rotation.x, X.rotation.y, X.rotation.z, X.rotation.w),
                      ToBullet(X.translation));
 }
-inline Pose FromBullet(const btTransform& X) {
+inline math::Pose FromBullet(const btTransform& X) {
   const btQuaternion q = X.getRotation();
   return {math::Quaternion{q.w(), q.x(), q.y(), q.z()}, FromBullet(X.getOrigin())};
 }

@@ -9,6 +9,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::rigid {
+
+using math::Vec3;
+
 namespace {
 
 constexpr int kRingParts = 16;  // capsules that make a ring
@@ -53,7 +56,7 @@ double HalfWidth(const RigidShape& shape) {
 
 void MakeShapes(const RigidBody& definition, std::vector<std::unique_ptr<btCollisionShape>>& shapes) {
   auto whole = std::make_unique<btCompoundShape>();
-  const auto add = [&](const Pose& X_body_shape, std::unique_ptr<btCollisionShape> shape) {
+  const auto add = [&](const math::Pose& X_body_shape, std::unique_ptr<btCollisionShape> shape) {
     shape->setMargin(kMargin);
     whole->addChildShape(ToBullet(X_body_shape), shape.get());
     shapes.push_back(std::move(shape));
@@ -91,7 +94,7 @@ void MakeShapes(const RigidBody& definition, std::vector<std::unique_ptr<btColli
           const double angle = 2 * std::numbers::pi * part / kRingParts;
           const math::SineCosine at = math::SinCos(angle);
           const Vec3 out{at.cosine, at.sine, 0}, tangent{-at.sine, at.cosine, 0};
-          const Pose X_ring_part{math::RotationBetween({0, 0, 1}, tangent), s.x * out};
+          const math::Pose X_ring_part{math::RotationBetween({0, 0, 1}, tangent), s.x * out};
           auto capsule = along_z(s.y, s.x * math::Tan(std::numbers::pi / kRingParts));
           whole->addChildShape(ToBullet(shape.X_body_shape * X_ring_part), capsule.get());
           shapes.push_back(std::move(capsule));

@@ -28,7 +28,7 @@ struct ToolState {
   TransformState X_carrier_body{};  // of what it holds
   double hold_force = 0;
   std::int32_t held = -1, ticks_over = 0;
-  Vec3 force;
+  math::Vec3 force;
 };
 
 /// One point of a contact manifold, with what warm-starts the next step.
@@ -46,7 +46,7 @@ struct RigidState {
   std::vector<ToolState> tools;
   std::vector<std::vector<std::uint8_t>> touched;  ///< (tools x parts) by body
   std::vector<ContactPointState> contacts;         ///< by pair and children
-  Vec3 gravity;
+  math::Vec3 gravity;
 
   bool Fits(std::size_t body_count, std::size_t tool_count) const;
   void VisitState(base::StateArchive& archive);

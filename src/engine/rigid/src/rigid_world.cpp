@@ -20,6 +20,10 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::rigid {
+
+using math::Pose;
+using math::Vec3;
+
 namespace {
 
 constexpr int kFewestSubsteps = 4;  // of a tick: pegs are thin

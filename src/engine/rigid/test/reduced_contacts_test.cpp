@@ -11,6 +11,9 @@
 #include "trocar/rigid/rigid_world.h"
 
 namespace trocar::rigid {
+
+using math::Vec3;
+
 namespace {
 
 /// A world of Bullet's with bodies that are not moved.

@@ -12,6 +12,10 @@
 #include "trocar/base/state_hash.h"
 
 namespace trocar::rigid {
+
+using math::Pose;
+using math::Vec3;
+
 namespace {
 
 using Kind = RigidShape::Kind;

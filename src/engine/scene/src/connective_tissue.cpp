@@ -10,6 +10,9 @@
 #include "trocar/patient/patient.h"
 
 namespace trocar::scene {
+
+using math::Vec3;
+
 namespace {
 
 /// Layers of lobules from front to back; the outer two carry the peritoneum.

@@ -27,7 +27,7 @@ struct Fibre {
 /// Lobules on a shaken lattice between cystic duct, hepatic duct and liver, joined to their neighbours and to all
 /// that they lie on.
 struct ConnectiveTissue {
-  std::vector<Vec3> lobules;  ///< [m]
+  std::vector<math::Vec3> lobules;  ///< [m]
   std::vector<Fibre> fibres;
 };
 

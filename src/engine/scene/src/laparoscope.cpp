@@ -5,6 +5,9 @@
 #include "trocar/scene/scene.h"
 
 namespace trocar::scene {
+
+using math::Vec3;
+
 namespace {
 
 constexpr int kSpins = 72;             // light posts that are tried

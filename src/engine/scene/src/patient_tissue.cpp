@@ -271,7 +271,7 @@ void AddConnectiveTissue(const Scene& scene, const ConnectiveTissue& fat, double
                          PatientTissue& made) {
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
-  for (const Vec3& lobule : fat.lobules) {
+  for (const math::Vec3& lobule : fat.lobules) {
     definition.rest.push_back(lobule);
     definition.mass.push_back(kFatDensity * spacing * spacing * spacing);
     definition.shape_stiffness.push_back(kLobuleFoundation);

@@ -142,7 +142,7 @@ TEST(SceneFields, AFieldThatIsAddedIsVisited) {
     double a = 1;
     std::vector<int> b;
     std::optional<std::string> c;
-    std::array<Vec3, 2> d;
+    std::array<math::Vec3, 2> d;
   };
   static_assert(base::kFieldCount<Before> == 3 && base::kFieldCount<After> == 4);
   Changer before(100), after(100);

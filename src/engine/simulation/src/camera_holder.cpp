@@ -9,9 +9,11 @@
 
 namespace trocar::simulation {
 
+using math::Vec3;
 using scene::CalcLaparoscopePose;
 using scene::FindView;
 using scene::ViewRequest;
+
 namespace {
 
 /// A tip farther out than this, of half of the picture, makes it move; it stops when all are within the second.
@@ -38,7 +40,7 @@ void CameraHolder::Reset(const instrument::TrocarJoints& at) noexcept {
   is_moving_ = false;
 }
 
-const instrument::TrocarJoints& CameraHolder::Follow(const LaparoscopeSetup& setup,
+const instrument::TrocarJoints& CameraHolder::Follow(const scene::LaparoscopeSetup& setup,
                                                      std::span<const Vec3> tips, double dt) noexcept {
   if (tips.empty()) return now_;
   Vec3 middle;

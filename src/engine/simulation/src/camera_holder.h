@@ -12,10 +12,6 @@
 
 namespace trocar::simulation {
 
-using math::Vec3;
-using scene::LaparoscopeSetup;
-using scene::VisitState;
-
 class CameraHolder {
  public:
   void Reset(const instrument::TrocarJoints& at) noexcept;
@@ -23,8 +19,8 @@ class CameraHolder {
   /// \param dt    since the last call [s]
   /// \return joints of the laparoscope now
   /// \note Real-time safe.
-  const instrument::TrocarJoints& Follow(const LaparoscopeSetup& setup, std::span<const Vec3> tips,
-                                         double dt) noexcept;
+  const instrument::TrocarJoints& Follow(const scene::LaparoscopeSetup& setup,
+                                         std::span<const math::Vec3> tips, double dt) noexcept;
   const instrument::TrocarJoints& Now() const noexcept { return now_; }
   void VisitState(base::StateArchive& archive);
 

@@ -9,10 +9,10 @@ constexpr std::uint32_t kEvery = 3;  // vertex of an organ: they lie close
 
 }  // namespace
 
-std::vector<geometry::Ball> FindOmentumBalls(std::span<const SurfaceInfo> surfaces,
-                                             std::span<const Vec3> positions) {
+std::vector<geometry::Ball> FindOmentumBalls(std::span<const scene::SurfaceInfo> surfaces,
+                                             std::span<const math::Vec3> positions) {
   std::vector<geometry::Ball> balls;
-  for (const SurfaceInfo& surface : surfaces) {
+  for (const scene::SurfaceInfo& surface : surfaces) {
     if (surface.organ == roles::OrganRole::kLiver) continue;  // the omentum rests on it
     const bool is_tube = surface.triangles.empty();
     for (std::uint32_t i = 0; i < surface.node_count; i += is_tube ? 1 : kEvery) {

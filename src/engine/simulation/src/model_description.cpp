@@ -12,14 +12,15 @@ namespace trocar::simulation {
 
 using scene::MakePatientTissue;
 
-base::Result<ModelDescription> DescribeModel(const Scene& scene) {
-  auto tissue = MakePatientTissue(scene, scene.operation.has_value() ? Operation::kSpare : SpareNodes{});
+base::Result<ModelDescription> DescribeModel(const scene::Scene& scene) {
+  auto tissue =
+      MakePatientTissue(scene, scene.operation.has_value() ? Operation::kSpare : scene::SpareNodes{});
   if (!tissue.ok()) return tissue.error();
   ModelDescription description;
   const auto vessels = scene::MakePatientVessels(scene.patient);
   std::vector<std::uint32_t> main_ducts, main_arteries;
   for (std::size_t t = 0; vessels.ok() && t < scene.patient.tubes.size(); ++t) {
-    const SurfaceInfo& surface = tissue->surfaces[scene.patient.organs.size() + t];
+    const scene::SurfaceInfo& surface = tissue->surfaces[scene.patient.organs.size() + t];
     std::vector<cholecystectomy::VesselRole>& roles = description.tube_roles.emplace_back();
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       roles.push_back(vessels->anatomy.roles[vessels->map.Find(t, vessels->map.arcs[t][k]).vessel]);

@@ -8,10 +8,14 @@
 
 namespace trocar::simulation {
 
-using scene::Hand;
+using instrument::kHandCount;
+using math::Pose;
+using math::Vec3;
 using scene::InstrumentSetup;
 using scene::kMaxObjects;
+using scene::Scene;
 using scene::SceneObject;
+
 namespace {
 
 using rigid::ToolCapsule;
@@ -181,11 +185,11 @@ void RigidStage::Step(const Scene& scene, const std::array<instrument::TrocarJoi
   }
 }
 
-void RigidStage::Publish(std::vector<ObjectSnapshot>& objects) const {
+void RigidStage::Publish(std::vector<scene::ObjectSnapshot>& objects) const {
   if (!world_) return;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const auto body = static_cast<std::uint32_t>(i);
-    ObjectSnapshot& object = objects[i];
+    scene::ObjectSnapshot& object = objects[i];
     object.X_world_object = world_->PoseOf(body);
     object.velocity = world_->VelocityOf(body);
     object.is_at_rest = world_->IsAtRest(body);

@@ -13,7 +13,9 @@
 namespace trocar::simulation {
 
 using scene::CalcScriptInput;
+using scene::Input;
 using scene::kSpareShareForCuts;
+using scene::Scene;
 
 // --- creation
 
@@ -35,7 +37,7 @@ void Simulation::Content::MakeSolver() {
 
 base::Status Simulation::Content::MakeParts() {
   const Scene& scene = GetScene();
-  const PatientTissue& made = *model->tissue;
+  const scene::PatientTissue& made = *model->tissue;
   world.topology = Topology(made.definition, model->walls);
   const tissue::TissueModel& tissue_model = world.topology.Model();
   MakeSolver();
@@ -199,12 +201,12 @@ void Simulation::Step(const Input& input) noexcept {
 const Scene& Simulation::GetScene() const {
   return content_->GetScene();
 }
-std::span<const SurfaceInfo> Simulation::Surfaces() const {
+std::span<const scene::SurfaceInfo> Simulation::Surfaces() const {
   return content_->model->tissue->surfaces;
 }
-std::span<const StrandInfo> Simulation::Strands() const {
+std::span<const scene::StrandInfo> Simulation::Strands() const {
   return content_->world.operation != nullptr ? content_->world.operation->Strands()
-                                              : std::span<const StrandInfo>();
+                                              : std::span<const scene::StrandInfo>();
 }
 std::optional<OperationResult> Simulation::GetOperationResult() const {
   const Content& c = *content_;
@@ -218,7 +220,7 @@ const Snapshot& Simulation::GetSnapshot() const {
   return content_->snapshot;
 }
 
-void Simulation::CutPatch(Hand hand, tissue::LocalPatch& patch) noexcept {
+void Simulation::CutPatch(instrument::Hand hand, tissue::LocalPatch& patch) noexcept {
   const Content& c = *content_;
   const surgery::ContactSet& contacts = c.world.touch.Contacts();
   std::array<std::uint8_t, surgery::ContactSet::kCapacity> hands;

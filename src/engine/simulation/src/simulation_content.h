@@ -24,8 +24,6 @@
 
 namespace trocar::simulation {
 
-using scene::LiveSettings;
-
 /// All that decides how the world goes on. The classes hold constants and scratch of their own beside it; what each
 /// lists in VisitState is the state.
 struct WorldState {
@@ -35,9 +33,9 @@ struct WorldState {
   tissue::ConservationState conserved;
   tissue::ConservationTick good_conserved;  ///< after the last good tick
   std::optional<tissue::StateGuard> guard;
-  std::array<instrument::TrocarJoints, kHandCount> joints;
-  std::array<surgery::Grasp, kHandCount> grasps;
-  std::array<Vec3, kHandCount> forces;  ///< on the tools, world frame [N]
+  std::array<instrument::TrocarJoints, instrument::kHandCount> joints;
+  std::array<surgery::Grasp, instrument::kHandCount> grasps;
+  std::array<math::Vec3, instrument::kHandCount> forces;  ///< on the tools, world frame [N]
   ToolContacts touch;
   RigidStage rigid;
   std::unique_ptr<Operation> operation;  ///< where the scene is one
@@ -49,24 +47,24 @@ struct WorldState {
 struct JudgementState {
   std::optional<cholecystectomy::OperationJudge> operation;  ///< where the scene is one
   TaskMonitor monitor;
-  TaskSnapshot task;
-  std::array<Event, kEventRing> events{};
+  scene::TaskSnapshot task;
+  std::array<scene::Event, kEventRing> events{};
   std::uint64_t event_count = 0;
   bool was_frozen = false, were_tools_touching = false;
 };
 
 /// Data that the stages of one tick pass on. None of it decides the next tick.
 struct TickScratch {
-  LiveSettings settings;
-  Vec3 gravity;  ///< in the patient's frame [m/s^2]
+  scene::LiveSettings settings;
+  math::Vec3 gravity;  ///< in the patient's frame [m/s^2]
   tissue::TissueLoad load;
   tissue::SolveReport report;
   std::vector<tissue::NodeCondition> solved_condition;  ///< a grasp may slip once the forces are known
   bool has_cut = false;                                 ///< before the solve
-  std::array<bool, kHandCount> was_exchange_refused{};
-  std::array<surgery::GraspChange, kHandCount> changes{};
-  std::array<std::int32_t, kHandCount> changed_organs{};
-  std::array<std::int32_t, kHandCount> touched_organs{-1, -1};
+  std::array<bool, instrument::kHandCount> was_exchange_refused{};
+  std::array<surgery::GraspChange, instrument::kHandCount> changes{};
+  std::array<std::int32_t, instrument::kHandCount> changed_organs{};
+  std::array<std::int32_t, instrument::kHandCount> touched_organs{-1, -1};
   tissue::GuardVerdict verdict = tissue::GuardVerdict::kGood;
   std::array<std::uint32_t, 8> torn{};  ///< lowest of the strands that tore in this tick
   std::size_t torn_count = 0;
@@ -91,20 +89,20 @@ struct Simulation::Content {
   Snapshot snapshot;
   std::unique_ptr<tissue::PatchCutter> patch_cutter;
 
-  const Scene& GetScene() const noexcept { return *model->scene; }
+  const scene::Scene& GetScene() const noexcept { return *model->scene; }
   const instrument::Tool& ToolOf(int hand) const noexcept {
     return world.operation != nullptr ? world.operation->Tool(hand) : GetScene().instruments[hand].tool;
   }
   ToolsNow GetTools() const noexcept;
   TissueNow GetTissue() const noexcept;
   OperatedTissue GetOperated() noexcept { return {world.tissue, world.conserved, world.grasps}; }
-  Camera GetCamera() const noexcept;
+  instrument::Camera GetCamera() const noexcept;
 
   // --- the stages of a tick, in their order (docs/step.md)
-  void ReadInputs(const Input& input) noexcept;
-  void MoveTools(const Input& input) noexcept;
+  void ReadInputs(const scene::Input& input) noexcept;
+  void MoveTools(const scene::Input& input) noexcept;
   void FindContacts() noexcept;
-  void UseTools(const Input& input) noexcept;
+  void UseTools(const scene::Input& input) noexcept;
   void Heat() noexcept;
   void Assist() noexcept;
   void CutTopology() noexcept;
@@ -120,11 +118,12 @@ struct Simulation::Content {
   void JudgeTask() noexcept;
 
   // --- parts of them
-  void MoveCamera(const Input& input) noexcept;
+  void MoveCamera(const scene::Input& input) noexcept;
   void Grasp() noexcept;
   void MarkPressedNodes() noexcept;
   void TearTissue() noexcept;
-  void Emit(EventKind kind, int hand, std::int32_t organ, double force, std::int32_t object = -1) noexcept;
+  void Emit(scene::EventKind kind, int hand, std::int32_t organ, double force,
+            std::int32_t object = -1) noexcept;
   void EmitGrasps() noexcept;
 
   // --- as a whole

@@ -26,7 +26,7 @@ namespace {
 constexpr double kFilledTolerance = 1e-4;
 
 /// A spring's part of its organ's surface is the hole that it leaves when it tears.
-WallSprings MakeWalls(const patient::Patient& patient, const PatientTissue& tissue) {
+WallSprings MakeWalls(const patient::Patient& patient, const scene::PatientTissue& tissue) {
   WallSprings walls{tissue.spring_organs, {}};
   const auto& springs = tissue.definition.springs;
   std::vector<double> areas, square_lengths(patient.organs.size(), 0.0);
@@ -73,7 +73,7 @@ base::Status Fill(const tissue::TissueModel& tissue_model, const base::Threads& 
 /// Counts objects and goals instead of reading them; only recordings and states of before have it.
 std::uint64_t CalcFirstFingerprint(const SimulationModel& model) {
   base::StateHash hash;
-  const Scene& scene = *model.scene;
+  const scene::Scene& scene = *model.scene;
   base::AddStateTo(hash, model.tissue->definition);
   base::AddStateTo(hash, model.tissue_at_start);
   hash.Add(scene.tick_seconds);
@@ -89,7 +89,7 @@ std::uint64_t CalcFirstFingerprint(const SimulationModel& model) {
   for (const patient::Neighbour& neighbour : scene.patient.neighbours) {
     hash.Add(std::uint64_t{neighbour.mesh.triangles.size()});
     hash.Add(static_cast<std::uint64_t>(neighbour.role));
-    for (const Vec3& p : neighbour.mesh.positions) {
+    for (const math::Vec3& p : neighbour.mesh.positions) {
       for (const double value : {p.x, p.y, p.z}) hash.Add(value);
     }
   }
@@ -113,14 +113,14 @@ std::uint64_t CalcFingerprint(const SimulationModel& model) {
 
 }  // namespace
 
-base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::shared_ptr<const Scene> scene,
-                                                                         const base::Threads& threads) {
-  auto made = MakePatientTissue(*scene, scene->operation ? Operation::kSpare : SpareNodes{});
+base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(
+    std::shared_ptr<const scene::Scene> scene, const base::Threads& threads) {
+  auto made = MakePatientTissue(*scene, scene->operation ? Operation::kSpare : scene::SpareNodes{});
   if (!made.ok()) return made.error();
   made->conservation.imaging_gravity = kImagingGravity;
   auto model = std::make_shared<SimulationModel>();
   model->scene = std::move(scene);
-  model->tissue = std::make_shared<const PatientTissue>(std::move(*made));
+  model->tissue = std::make_shared<const scene::PatientTissue>(std::move(*made));
   const tissue::TissueModel tissue_model = tissue::MakeTissueModel(model->tissue->definition);
   model->walls = MakeWalls(model->scene->patient, *model->tissue);
   model->walls_tear = tissue::HasTearingSprings(tissue_model);

@@ -15,14 +15,12 @@
 
 namespace trocar::simulation {
 
-using scene::PatientTissue;
-
 /// Gravity in which the organs were imaged: the body lay on its back [m/s^2].
-inline constexpr Vec3 kImagingGravity{0, 0, -9.81};
+inline constexpr math::Vec3 kImagingGravity{0, 0, -9.81};
 
 struct SimulationModel {
-  std::shared_ptr<const Scene> scene;
-  std::shared_ptr<const PatientTissue> tissue;  ///< before any cut
+  std::shared_ptr<const scene::Scene> scene;
+  std::shared_ptr<const scene::PatientTissue> tissue;  ///< before any cut
   WallSprings walls;
   bool walls_tear = false;
   std::int32_t hollow_organ = -1;       ///< leaks when its wall tears

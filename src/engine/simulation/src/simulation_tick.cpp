@@ -12,10 +12,15 @@
 
 namespace trocar::simulation {
 
+using instrument::kHandCount;
 using math::Cos;
 using math::Sin;
+using math::Vec3;
 using scene::CalcLaparoscopePose;
 using scene::ClampSettings;
+using scene::EventKind;
+using scene::Input;
+
 namespace {
 
 /// No hand is faster; a device that jumps is slowed to this (faults D5) [m/s], [rad/s].
@@ -25,7 +30,7 @@ constexpr double kMaxTurnRate = 20.0;
 constexpr double kPushedIn = 0.04;
 
 /// Gravity in the patient's frame when the table is tilted [m/s^2].
-Vec3 CalcGravity(const LiveSettings& settings) noexcept {
+Vec3 CalcGravity(const scene::LiveSettings& settings) noexcept {
   const double head = settings.head_up, right = settings.right_up;
   return settings.gravity * Vec3{Sin(right) * Cos(head), -Sin(head), -Cos(right) * Cos(head)};
 }
@@ -78,13 +83,13 @@ void Simulation::Content::HoldCamera() noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
     if (world.joints[hand].depth > kPushedIn) tips[count++] = world.touch.Proxy(hand).translation;
   }
-  const Scene& scene = GetScene();
+  const scene::Scene& scene = GetScene();
   world.laparoscope =
       world.camera_holder.Follow(scene.laparoscope, std::span(tips).first(count), scene.tick_seconds);
 }
 
-Camera Simulation::Content::GetCamera() const noexcept {
-  const LaparoscopeSetup& setup = GetScene().laparoscope;
+instrument::Camera Simulation::Content::GetCamera() const noexcept {
+  const scene::LaparoscopeSetup& setup = GetScene().laparoscope;
   return {CalcLaparoscopePose(setup, world.laparoscope), setup.field_of_view};
 }
 
@@ -302,7 +307,7 @@ void Simulation::Content::EmitGrasps() noexcept {
 
 void Simulation::Content::Judge() noexcept {
   JudgementState& j = judgement;
-  const auto last = [&j]() -> Event& { return j.events[(j.event_count - 1) % j.events.size()]; };
+  const auto last = [&j]() -> scene::Event& { return j.events[(j.event_count - 1) % j.events.size()]; };
   for (int hand = 0; hand < kHandCount; ++hand) {
     if (tick.was_exchange_refused[hand])
       Emit(EventKind::kExchangeRefused, hand, world.grasps[hand].surface, 0.0);

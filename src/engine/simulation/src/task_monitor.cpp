@@ -10,18 +10,25 @@
 
 namespace trocar::simulation {
 
+using instrument::kHandCount;
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
+using scene::Condition;
 using scene::ConditionKind;
 using scene::ErrorRule;
 using scene::EventKind;
 using scene::Goal;
 using scene::GoalSnapshot;
 using scene::kAnyHand;
-using scene::kLeft;
-using scene::kRight;
 using scene::ModelBand;
 using scene::Region;
+using scene::Scene;
+using scene::Task;
 using scene::TaskError;
 using scene::TaskPhase;
+using scene::TaskSnapshot;
+
 namespace {
 
 /// The clock starts when a tip, or the lens, has gone this far [m].
@@ -43,7 +50,7 @@ std::int32_t FirstHand(std::uint8_t mask) noexcept {
   return (mask & 1) != 0 ? kLeft : (mask & 2) != 0 ? kRight : -1;
 }
 
-bool IsSeen(const Region& region, const Condition& c, const Pose& X_world_laparoscope) noexcept {
+bool IsSeen(const Region& region, const Condition& c, const math::Pose& X_world_laparoscope) noexcept {
   const Vec3 p = math::Inverse(X_world_laparoscope) * region.centre;
   const double distance = math::Norm(p);
   if (!(distance >= c.near && distance <= c.far) || !(-p.z >= math::Cos(c.angle) * distance)) return false;
@@ -60,8 +67,8 @@ bool IsMoment(ConditionKind kind) noexcept {
 
 std::size_t CountGoodClips(const OperationSnapshot& now) noexcept {
   const auto clips = std::span(now.clips).first(now.clip_count);
-  return static_cast<std::size_t>(
-      std::count_if(clips.begin(), clips.end(), [](const ClipSnapshot& clip) { return clip.IsGood(); }));
+  return static_cast<std::size_t>(std::count_if(
+      clips.begin(), clips.end(), [](const surgery::ClipSnapshot& clip) { return clip.IsGood(); }));
 }
 
 /// What clips, cuts and heat have left.
@@ -79,7 +86,7 @@ Finding FindOfTissue(const Scene& scene, const OperationSnapshot& now, const Con
     return {is_true, sheet.p_farthest, -1};
   }
   if (c.kind == ConditionKind::kClipped) {
-    for (const ClipSnapshot& clip : std::span(now.clips).first(now.clip_count)) {
+    for (const surgery::ClipSnapshot& clip : std::span(now.clips).first(now.clip_count)) {
       if (clip.IsGood() && IsOneOf(*scene.task, c.regions, clip.p_rest)) return {true, clip.p_rest, -1};
     }
     return {};
@@ -125,7 +132,7 @@ bool TaskMonitor::HasMoved(const Snapshot& snapshot) const noexcept {
 void TaskMonitor::Follow(const Snapshot& snapshot, double dt) noexcept {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Track& track = tracks_[i];
-    const ObjectSnapshot& now = snapshot.objects[i];
+    const scene::ObjectSnapshot& now = snapshot.objects[i];
     const bool is_in_air = now.touches == 0;
     track.from = track.to = -1;
     if (track.held_by == kBothHands && (now.held_by == 1 || now.held_by == 2)) {
@@ -146,7 +153,7 @@ void TaskMonitor::Follow(const Snapshot& snapshot, double dt) noexcept {
 Finding TaskMonitor::FindOfObject(const Scene& scene, const Snapshot& snapshot,
                                   const Condition& c) const noexcept {
   const auto i = static_cast<std::size_t>(c.object);
-  const ObjectSnapshot& object = snapshot.objects[i];
+  const scene::ObjectSnapshot& object = snapshot.objects[i];
   const Track& track = tracks_[i];
   const Task& task = *scene.task;
   const Vec3& p = object.X_world_object.translation;
@@ -185,7 +192,7 @@ Finding TaskMonitor::FindOfObject(const Scene& scene, const Snapshot& snapshot,
       found.is_true = track.is_falling && track.let_go_height - p.z >= c.amount;
       break;
     case ConditionKind::kOutOfView:
-      found.is_true = !IsInView(snapshot.X_world_laparoscope, scene.laparoscope.field_of_view, p);
+      found.is_true = !instrument::IsInView(snapshot.X_world_laparoscope, scene.laparoscope.field_of_view, p);
       break;
     default:
       break;
@@ -200,10 +207,11 @@ Finding TaskMonitor::FindOfTool(const Scene& scene, const Snapshot& snapshot,
     if (c.hand != kAnyHand && c.hand != hand) continue;
     const InstrumentSnapshot& tool = snapshot.instruments[static_cast<std::size_t>(hand)];
     const Vec3& tip = tool.X_world_tool.translation;
-    const bool is_true = c.kind == ConditionKind::kTipInRegion ? IsOneOf(*scene.task, c.regions, tip)
-                         : c.kind == ConditionKind::kTipOutOfView
-                             ? !IsInView(snapshot.X_world_laparoscope, scene.laparoscope.field_of_view, tip)
-                             : math::Norm(tool.force) > c.amount;
+    const bool is_true =
+        c.kind == ConditionKind::kTipInRegion ? IsOneOf(*scene.task, c.regions, tip)
+        : c.kind == ConditionKind::kTipOutOfView
+            ? !instrument::IsInView(snapshot.X_world_laparoscope, scene.laparoscope.field_of_view, tip)
+            : math::Norm(tool.force) > c.amount;
     if (is_true) return {true, tip, hand};
   }
   return {};
@@ -237,7 +245,7 @@ Finding TaskMonitor::Find(const Scene& scene, const Snapshot& snapshot, const Co
 
 Finding TaskMonitor::FindOfEvents(const Scene& scene, const Snapshot& snapshot,
                                   const Condition& c) const noexcept {
-  const auto is_meant = [&](const Event& event) {
+  const auto is_meant = [&](const scene::Event& event) {
     if (c.hand != kAnyHand && c.hand != event.hand) return false;
     switch (c.kind) {
       case ConditionKind::kOperationError:
@@ -253,7 +261,7 @@ Finding TaskMonitor::FindOfEvents(const Scene& scene, const Snapshot& snapshot,
   const auto ring = static_cast<std::uint64_t>(snapshot.events.size());
   const std::uint64_t oldest = snapshot.event_count > ring ? snapshot.event_count - ring : 0;
   for (std::uint64_t n = std::max(events_before_, oldest); n < snapshot.event_count; ++n) {
-    const Event& event = snapshot.events[n % ring];
+    const scene::Event& event = snapshot.events[n % ring];
     if (!is_meant(event)) continue;
     const auto tip = [&](std::size_t hand) { return snapshot.instruments[hand].X_world_tool.translation; };
     const Vec3 position = event.hand >= 0 ? tip(static_cast<std::size_t>(event.hand))

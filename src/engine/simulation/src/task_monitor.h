@@ -11,25 +11,20 @@
 
 namespace trocar::simulation {
 
-using scene::Condition;
-using scene::Scene;
-using scene::Task;
-using scene::VisitState;
-
 /// Whether a condition is true in a tick, and of what.
 struct Finding {
   bool is_true = false;
-  Vec3 position;  ///< of the object or the tip, world frame [m]
+  math::Vec3 position;  ///< of the object or the tip, world frame [m]
   std::int32_t hand = -1;
 };
 
 /// Nothing is done in a scene without a task.
 class TaskMonitor {
  public:
-  void Reset(const Scene& scene, TaskSnapshot& task);
+  void Reset(const scene::Scene& scene, scene::TaskSnapshot& task);
   /// After everything else of a tick has been published.
   /// \note Real-time safe.
-  void Update(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
+  void Update(const scene::Scene& scene, const Snapshot& snapshot, scene::TaskSnapshot& task) noexcept;
   void VisitState(base::StateArchive& archive);
 
  private:
@@ -51,20 +46,22 @@ class TaskMonitor {
 
   void Follow(const Snapshot& snapshot, double dt) noexcept;
   bool HasMoved(const Snapshot& snapshot) const noexcept;
-  Finding Find(const Scene& scene, const Snapshot& snapshot, const Condition& condition) const noexcept;
-  Finding FindOfObject(const Scene& scene, const Snapshot& snapshot,
-                       const Condition& condition) const noexcept;
-  Finding FindOfTool(const Scene& scene, const Snapshot& snapshot, const Condition& condition) const noexcept;
-  Finding FindOfEvents(const Scene& scene, const Snapshot& snapshot,
-                       const Condition& condition) const noexcept;
-  void UpdateGoals(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
-  void UpdateErrors(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
-  void Judge(const Task& task, TaskSnapshot& now) const noexcept;
+  Finding Find(const scene::Scene& scene, const Snapshot& snapshot,
+               const scene::Condition& condition) const noexcept;
+  Finding FindOfObject(const scene::Scene& scene, const Snapshot& snapshot,
+                       const scene::Condition& condition) const noexcept;
+  Finding FindOfTool(const scene::Scene& scene, const Snapshot& snapshot,
+                     const scene::Condition& condition) const noexcept;
+  Finding FindOfEvents(const scene::Scene& scene, const Snapshot& snapshot,
+                       const scene::Condition& condition) const noexcept;
+  void UpdateGoals(const scene::Scene& scene, const Snapshot& snapshot, scene::TaskSnapshot& task) noexcept;
+  void UpdateErrors(const scene::Scene& scene, const Snapshot& snapshot, scene::TaskSnapshot& task) noexcept;
+  void Judge(const scene::Task& task, scene::TaskSnapshot& now) const noexcept;
 
   std::vector<Track> tracks_;                                      // (objects)
   std::vector<std::vector<ConditionMonitor>> condition_monitors_;  // (errors) of (conditions)
-  std::array<Vec3, kHandCount> start_tips_;
-  Pose X_world_start_view_;
+  std::array<math::Vec3, instrument::kHandCount> start_tips_;
+  math::Pose X_world_start_view_;
   std::uint64_t events_before_ = 0;  // of the ticks before
 };
 

@@ -12,10 +12,14 @@
 
 namespace trocar::simulation {
 
+using instrument::kHandCount;
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
 using roles::OrganRole;
 using scene::InstrumentSetup;
-using scene::kLeft;
-using scene::kRight;
+using scene::Scene;
+
 namespace {
 
 /// Corrections of a proxy that overlaps tissue after its contacts have placed it.
@@ -64,7 +68,7 @@ base::Result<surgery::NeighbourContact> MakeNeighbours(const patient::Patient& p
 }  // namespace
 
 base::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::TissueModel& model,
-                                              std::span<const SurfaceInfo> surfaces,
+                                              std::span<const scene::SurfaceInfo> surfaces,
                                               const tissue::TissueState& at_start) {
   ToolContacts made;
   made.has_sheets_ = scene.model.has_value();
@@ -79,7 +83,7 @@ base::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
     made.organs_.push_back(std::move(*surface));
   }
   std::vector<surgery::TubeSurface> tubes;
-  for (const SurfaceInfo& surface : surfaces.subspan(organs.size())) {
+  for (const scene::SurfaceInfo& surface : surfaces.subspan(organs.size())) {
     tubes.push_back({surface.first_node, surface.node_count, surface.radii});
   }
   auto set = surgery::MakeTubeSet(model.rest, std::move(tubes));

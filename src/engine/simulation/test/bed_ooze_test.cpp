@@ -13,6 +13,8 @@
 namespace trocar::simulation {
 
 using scene::CalcPathology;
+using scene::StrandInfo;
+
 namespace {
 
 constexpr double kBed = 15e-6;  // of a whole bed [m^3]
@@ -22,7 +24,7 @@ class BedOozeTest : public OperationHarness {
   BedOozeTest() : heat_(Tissue().definition, Tissue().heat_mass) { Make(1.0); }
 
   void Make(double bleeding) {
-    const SurfaceInfo& liver = Tissue().surfaces[static_cast<std::size_t>(liver_)];
+    const scene::SurfaceInfo& liver = Tissue().surfaces[static_cast<std::size_t>(liver_)];
     std::vector<surgery::LiverFibre> fibres;
     bed_.clear();
     on_liver_.assign(Tissue().strands.size(), 0);

@@ -17,12 +17,15 @@
 namespace trocar::simulation {
 
 using files::ReadScene;
+using instrument::kRight;
+using math::Vec3;
 using scene::CalcLaparoscopePose;
 using scene::CalcScriptInput;
 using scene::FindView;
-using scene::kRight;
+using scene::Scene;
 using scene::SmallScene;
 using scene::ViewRequest;
+
 namespace {
 
 constexpr double kTick = 1.0 / 120;
@@ -39,15 +42,16 @@ class CameraHolderTest : public testing::TestWithParam<double> {
     holder_.Reset(setup_.home);
   }
   bool AreInView(std::span<const Vec3> tips, const instrument::TrocarJoints& joints) const {
-    const Pose X = CalcLaparoscopePose(setup_, joints);
-    return std::ranges::all_of(tips, [&](const Vec3& tip) { return IsInView(X, setup_.field_of_view, tip); });
+    const math::Pose X = CalcLaparoscopePose(setup_, joints);
+    return std::ranges::all_of(
+        tips, [&](const Vec3& tip) { return instrument::IsInView(X, setup_.field_of_view, tip); });
   }
   /// How far the picture's horizontal leans towards the patient's head [rad].
   double CalcRoll(const instrument::TrocarJoints& joints) const {
     return std::asin(math::Rotate(CalcLaparoscopePose(setup_, joints).rotation, {1, 0, 0}).y);
   }
   static constexpr Vec3 kField{0, 0.02, -0.12};
-  LaparoscopeSetup setup_;
+  scene::LaparoscopeSetup setup_;
   CameraHolder holder_;
 };
 INSTANTIATE_TEST_SUITE_P(Scopes, CameraHolderTest, testing::Values(0.0, M_PI / 6));
@@ -121,9 +125,9 @@ TEST_F(AutomaticCamera, IsASettingOfTheSceneAndMovesTheSnapshotsLaparoscope) {
   const auto shared = std::make_shared<const Scene>(std::move(*scene));
   auto simulation = Simulation::Make(shared);
   ASSERT_TRUE(simulation.ok());
-  Input input = CalcScriptInput(*shared, 0.0);
+  scene::Input input = CalcScriptInput(*shared, 0.0);
   // both hands go aside; what the trainee's laparoscope does is not looked at
-  for (int hand = 0; hand < kHandCount; ++hand)
+  for (int hand = 0; hand < instrument::kHandCount; ++hand)
     input.hands[hand] = instrument::FindJoints(shared->instruments[hand].p_world_port,
                                                Vec3{0.06 + 0.01 * hand, 0.05, -0.1}, 0.0, 0.0);
   for (int tick = 0; tick < 480; ++tick) {
@@ -133,8 +137,8 @@ TEST_F(AutomaticCamera, IsASettingOfTheSceneAndMovesTheSnapshotsLaparoscope) {
   const Snapshot& seen = simulation->GetSnapshot();
   EXPECT_NE(seen.laparoscope, input.laparoscope);
   for (const InstrumentSnapshot& tool : seen.instruments)
-    EXPECT_TRUE(
-        IsInView(seen.X_world_laparoscope, shared->laparoscope.field_of_view, tool.X_world_tool.translation));
+    EXPECT_TRUE(instrument::IsInView(seen.X_world_laparoscope, shared->laparoscope.field_of_view,
+                                     tool.X_world_tool.translation));
   const std::uint64_t hash = simulation->Hash();
   // given back, it is where the hand says
   input.settings.holds_camera = false;
@@ -152,7 +156,7 @@ std::size_t CountErrorsOutOfView(bool holds_camera) {
   auto simulation = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)));
   EXPECT_TRUE(simulation.ok());
   const Scene& played = simulation->GetScene();
-  Input input = CalcScriptInput(played, 0.0);
+  scene::Input input = CalcScriptInput(played, 0.0);
   input.settings.holds_camera = holds_camera;
   const auto& tray = played.instruments[kRight].tray;
   const auto hook = std::find_if(tray.begin(), tray.end(), [](const instrument::Tool& tool) {

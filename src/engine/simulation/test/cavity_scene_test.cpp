@@ -14,13 +14,15 @@ namespace trocar::simulation {
 
 using files::ReadScene;
 using host::FindDataFolder;
+using math::Vec3;
 using scene::CalcScriptInput;
+
 namespace {
 
 /// The cavity as the simulation fits it, and how far each organ's vertices may lie beyond it.
 struct FittedCavity {
   explicit FittedCavity(const Simulation& simulation) {
-    const Scene& scene = simulation.GetScene();
+    const scene::Scene& scene = simulation.GetScene();
     std::vector<Vec3> face, nodes;
     for (const patient::Organ& organ : scene.patient.organs) {
       nodes.insert(nodes.end(), organ.mesh.positions.begin(), organ.mesh.positions.end());
@@ -54,7 +56,7 @@ struct FittedCavity {
 Simulation MakePatient() {
   auto scene = ReadScene(*FindDataFolder() / "scenes" / "retraction.json");
   EXPECT_TRUE(scene.ok());
-  auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)));
+  auto made = Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)));
   EXPECT_TRUE(made.ok());
   return std::move(*made);
 }
@@ -64,7 +66,7 @@ TEST(PatientInCavity, ALiverThatIsPushedUpRestsOnTheDome) {
   Simulation simulation = MakePatient();
   const FittedCavity fitted(simulation);
   ASSERT_TRUE(fitted.cavity.has_wall && fitted.cavity.has_dome && fitted.cavity.has_floor);
-  Input input = CalcScriptInput(simulation.GetScene(), 0.0);
+  scene::Input input = CalcScriptInput(simulation.GetScene(), 0.0);
   input.settings.gravity = 0.0;  // less than when it was imaged: the organs rise
   input.settings.stiffness_scale = input.settings.shape_scale = 0.2;
   for (int tick = 0; tick < 200; ++tick) simulation.Step(input);
@@ -83,7 +85,7 @@ TEST(PatientInCavity, ALiverThatIsPushedUpRestsOnTheDome) {
 TEST(PatientInCavity, AtRestTheWallsDoNothing) {
   Simulation simulation = MakePatient();
   const FittedCavity fitted(simulation);
-  const Input home = CalcScriptInput(simulation.GetScene(), 0.0);
+  const scene::Input home = CalcScriptInput(simulation.GetScene(), 0.0);
   for (int tick = 0; tick < 30; ++tick) simulation.Step(home);
   EXPECT_LT(fitted.Beyond(simulation), surgery::CavityContactSettings{}.play);
 }

@@ -11,6 +11,9 @@
 #include "trocar/scene/patient_vessels.h"
 
 namespace trocar::simulation {
+
+using math::Vec3;
+
 namespace {
 
 using surgery::Fluid;
@@ -63,8 +66,8 @@ class ClipSlipTest : public OperationHarness {
         math::AnyPerpendicular(math::Normalized(state_.position[vessels_->Tubes().Node(caught.b)] -
                                                 state_.position[vessels_->Tubes().Node(caught.a)]));
     // tool frame: +z back along the shaft, jaws from the hinge to the tip at the origin
-    const Pose X{math::RotationBetween({0, 0, -1}, along),
-                 PointAt(caught) + (1.0 - std::min(1.0, caught.jaw_at)) * applier.jaw_length * along};
+    const math::Pose X{math::RotationBetween({0, 0, -1}, along),
+                       PointAt(caught) + (1.0 - std::min(1.0, caught.jaw_at)) * applier.jaw_length * along};
     return vessels_->Clip(applier, X, caught, state_.position);
   }
 

@@ -33,7 +33,7 @@ TEST(GeneratedPatient, RunsInTheDemonstrationScene) {
   ASSERT_TRUE(read.ok()) << read.error().Text();
   EXPECT_EQ(read->patient.name, patient->name);
   EXPECT_EQ(read->patient_folder, folder);
-  auto simulation = Simulation::Make(std::make_shared<const Scene>(*read));
+  auto simulation = Simulation::Make(std::make_shared<const scene::Scene>(*read));
   ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
   double worst_residual = 0;
   for (int tick = 0; tick < 240; ++tick) {
@@ -45,7 +45,7 @@ TEST(GeneratedPatient, RunsInTheDemonstrationScene) {
   const Snapshot& snapshot = simulation->GetSnapshot();
   EXPECT_EQ(snapshot.tick, 240u);
   ASSERT_FALSE(snapshot.positions.empty());
-  for (const Vec3& p : snapshot.positions) ASSERT_TRUE(math::IsFinite(p));
+  for (const math::Vec3& p : snapshot.positions) ASSERT_TRUE(math::IsFinite(p));
   for (std::uint64_t i = 0; i < snapshot.event_count && i < snapshot.events.size(); ++i) {
     EXPECT_NE(snapshot.events[i].kind, EventKind::kStateRestored);
     EXPECT_NE(snapshot.events[i].kind, EventKind::kOrganFrozen);

@@ -11,7 +11,10 @@
 
 namespace trocar::simulation {
 
+using math::Vec3;
+using scene::Input;
 using scene::SmallScene;
+
 namespace {
 
 class Neighbours : public SmallScene {
@@ -26,7 +29,7 @@ class Neighbours : public SmallScene {
     EXPECT_TRUE(files::WritePatient(folder_ / "patient", patient).ok());
     auto read = Read();
     EXPECT_TRUE(read.ok()) << read.error().Text();
-    auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)));
+    auto made = Simulation::Make(std::make_shared<const scene::Scene>(std::move(*read)));
     EXPECT_TRUE(made.ok()) << made.error().Text();
     return std::move(*made);
   }
@@ -36,10 +39,10 @@ class Neighbours : public SmallScene {
   /// Drives the left tip from its home to the ball's middle and holds it there.
   static Input Drive(const Simulation& simulation, int tick) {
     Input input = scene::CalcScriptInput(simulation.GetScene(), 0.0);
-    const auto& setup = simulation.GetScene().instruments[scene::kLeft];
+    const auto& setup = simulation.GetScene().instruments[instrument::kLeft];
     const Vec3 from{-0.050, 0.056, -0.070};
     const double t = std::min(1.0, tick / 120.0);
-    input.hands[scene::kLeft] =
+    input.hands[instrument::kLeft] =
         instrument::FindJoints(setup.p_world_port, math::Lerp(from, kCentre, t), 0.0, 0.0);
     return input;
   }
@@ -49,28 +52,28 @@ TEST_F(Neighbours, StopAToolAndAreDented) {
   Simulation simulation = Make(Stomach());
   for (int tick = 0; tick < 200; ++tick) simulation.Step(Drive(simulation, tick));
   const Snapshot& snapshot = simulation.GetSnapshot();
-  const InstrumentSnapshot& tool = snapshot.instruments[scene::kLeft];
+  const InstrumentSnapshot& tool = snapshot.instruments[instrument::kLeft];
   // the hand is at the middle, the tool that is seen is not in the ball but for what this gives way
   EXPECT_LT(math::Distance(tool.X_world_device.translation, kCentre), 0.001);
   EXPECT_GT(math::Distance(tool.X_world_tool.translation, kCentre), kRadius - 0.0125);
   EXPECT_GT(math::Norm(tool.force), 0.5);
-  EXPECT_EQ(snapshot.dents[scene::kLeft].neighbour, 0);
-  EXPECT_GT(math::Norm(snapshot.dents[scene::kLeft].push), 0.003);
-  EXPECT_LE(math::Norm(snapshot.dents[scene::kLeft].push), 0.0100001);
-  EXPECT_EQ(snapshot.dents[scene::kRight].neighbour, -1);
+  EXPECT_EQ(snapshot.dents[instrument::kLeft].neighbour, 0);
+  EXPECT_GT(math::Norm(snapshot.dents[instrument::kLeft].push), 0.003);
+  EXPECT_LE(math::Norm(snapshot.dents[instrument::kLeft].push), 0.0100001);
+  EXPECT_EQ(snapshot.dents[instrument::kRight].neighbour, -1);
   EXPECT_LT(tool.overlap, 0.0015);
 
   // and is at rest, to the force on the hand
   const Vec3 force = tool.force;
   for (int tick = 200; tick < 230; ++tick) simulation.Step(Drive(simulation, tick));
-  EXPECT_LT(math::Distance(simulation.GetSnapshot().instruments[scene::kLeft].force, force),
+  EXPECT_LT(math::Distance(simulation.GetSnapshot().instruments[instrument::kLeft].force, force),
             0.02 * math::Norm(force));
 }
 
 TEST_F(Neighbours, WithoutThemTheToolGoesThere) {
   Simulation simulation = Make({});
   for (int tick = 0; tick < 200; ++tick) simulation.Step(Drive(simulation, tick));
-  const InstrumentSnapshot& tool = simulation.GetSnapshot().instruments[scene::kLeft];
+  const InstrumentSnapshot& tool = simulation.GetSnapshot().instruments[instrument::kLeft];
   EXPECT_LT(math::Distance(tool.X_world_tool.translation, kCentre), 0.001);
   EXPECT_EQ(math::Norm(tool.force), 0.0);
 }
@@ -91,7 +94,7 @@ TEST_F(Neighbours, ThatNobodyTouchesChangeNothing) {
 TEST_F(Neighbours, GoOnTheSameFromASavedState) {
   Simulation simulation = Make(Stomach());
   for (int tick = 0; tick < 110; ++tick) simulation.Step(Drive(simulation, tick));
-  ASSERT_GT(math::Norm(simulation.GetSnapshot().dents[scene::kLeft].push), 0.001);
+  ASSERT_GT(math::Norm(simulation.GetSnapshot().dents[instrument::kLeft].push), 0.001);
   std::vector<std::byte> saved;
   simulation.Save(saved);
   for (int tick = 110; tick < 125; ++tick) simulation.Step(Drive(simulation, tick));
@@ -102,7 +105,7 @@ TEST_F(Neighbours, GoOnTheSameFromASavedState) {
   EXPECT_EQ(simulation.Hash(StatePart::kAll), hash);
   // and from the start
   simulation.Reset();
-  EXPECT_EQ(simulation.GetSnapshot().dents[scene::kLeft].neighbour, -1);
+  EXPECT_EQ(simulation.GetSnapshot().dents[instrument::kLeft].neighbour, -1);
   for (int tick = 0; tick < 125; ++tick) simulation.Step(Drive(simulation, tick));
   EXPECT_EQ(simulation.Hash(StatePart::kAll), hash);
 }
@@ -117,8 +120,8 @@ TEST_F(Neighbours, APatientsPortsAndTableTakeThePlaceOfTheScenes) {
   ASSERT_TRUE(read.ok()) << read.error().Text();
   const auto is_at = [](const Vec3& a, const Vec3& b) { return math::Distance(a, b) < 1e-9; };
   EXPECT_TRUE(is_at(read->laparoscope.p_world_port, {0.001, -0.01, 0.002}));
-  EXPECT_TRUE(is_at(read->instruments[scene::kLeft].p_world_port, {-0.04, 0.05, 0.003}));
-  EXPECT_TRUE(is_at(read->instruments[scene::kRight].p_world_port, {0.03, 0.06, 0.0}));  // the scene's
+  EXPECT_TRUE(is_at(read->instruments[instrument::kLeft].p_world_port, {-0.04, 0.05, 0.003}));
+  EXPECT_TRUE(is_at(read->instruments[instrument::kRight].p_world_port, {0.03, 0.06, 0.0}));  // the scene's
   EXPECT_NEAR(read->settings.head_up, 0.2, 1e-9);
   EXPECT_NEAR(read->settings.right_up, 0.1, 1e-9);
 }

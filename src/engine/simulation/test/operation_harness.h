@@ -18,16 +18,11 @@
 
 namespace trocar::simulation {
 
-using files::ReadScene;
-using scene::CalcScriptInput;
-using scene::kRight;
-using scene::MakePatientTissue;
-
-inline std::shared_ptr<const Scene> OperationScene() {
-  static const std::shared_ptr<const Scene> scene = [] {
-    auto read = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
+inline std::shared_ptr<const scene::Scene> OperationScene() {
+  static const std::shared_ptr<const scene::Scene> scene = [] {
+    auto read = files::ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
     EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().Text());
-    return std::make_shared<const Scene>(std::move(*read));
+    return std::make_shared<const scene::Scene>(std::move(*read));
   }();
   return scene;
 }
@@ -35,7 +30,7 @@ inline std::shared_ptr<const Scene> OperationScene() {
 class OperationHarness : public testing::Test {
  protected:
   static constexpr double kTick = 1.0 / 120;
-  static constexpr Vec3 kGravity{1.3, -2.0, -9.5};
+  static constexpr math::Vec3 kGravity{1.3, -2.0, -9.5};
 
   OperationHarness() {
     model_ = tissue::MakeTissueModel(Tissue().definition);
@@ -51,21 +46,23 @@ class OperationHarness : public testing::Test {
       organs_.push_back(std::move(*surface));
     }
     std::vector<surgery::TubeSurface> tubes;
-    for (const SurfaceInfo& surface : Tissue().surfaces) {
+    for (const scene::SurfaceInfo& surface : Tissue().surfaces) {
       if (surface.triangles.empty()) tubes.push_back({surface.first_node, surface.node_count, surface.radii});
     }
     tubes_ = std::move(*surgery::MakeTubeSet(state_.position, std::move(tubes)));
   }
 
-  static const std::shared_ptr<const PatientTissue>& SharedTissue() {
-    static const auto tissue = std::make_shared<const PatientTissue>(
-        std::move(*MakePatientTissue(*OperationScene(), Operation::kSpare)));
+  static const std::shared_ptr<const scene::PatientTissue>& SharedTissue() {
+    static const auto tissue = std::make_shared<const scene::PatientTissue>(
+        std::move(*scene::MakePatientTissue(*OperationScene(), Operation::kSpare)));
     return tissue;
   }
-  static const PatientTissue& Tissue() { return *SharedTissue(); }
+  static const scene::PatientTissue& Tissue() { return *SharedTissue(); }
   std::span<const surgery::OrganSurface> Organs() const { return organs_; }
-  std::span<const Vec3> Position() const { return state_.position; }
-  const SurfaceInfo& Gallbladder() const { return Tissue().surfaces[static_cast<std::size_t>(gallbladder_)]; }
+  std::span<const math::Vec3> Position() const { return state_.position; }
+  const scene::SurfaceInfo& Gallbladder() const {
+    return Tissue().surfaces[static_cast<std::size_t>(gallbladder_)];
+  }
 
   void MakeOperation() {
     state_ = tissue::MakeRestState(model_);
@@ -74,7 +71,7 @@ class OperationHarness : public testing::Test {
     ASSERT_TRUE(made.ok()) << made.error().Text();
     operation_ = std::move(*made);
     judge_.emplace(operation_->MakeJudge());
-    input_ = CalcScriptInput(*OperationScene(), 0.0);
+    input_ = scene::CalcScriptInput(*OperationScene(), 0.0);
     grasps_ = {};
     hands_ = {};
     hands_.input = &input_;
@@ -83,7 +80,7 @@ class OperationHarness : public testing::Test {
     hands_.gravity = kGravity;
     hands_.seconds = kTick;
     // far from everything
-    for (Pose& X : hands_.X_proxy) X.translation = {0, 0, 0.3};
+    for (math::Pose& X : hands_.X_proxy) X.translation = {0, 0, 0.3};
     hands_.X_device = hands_.X_proxy;
   }
   TissueNow Now() {
@@ -134,14 +131,14 @@ class OperationHarness : public testing::Test {
   void TakeGallbladderOut() {
     std::fill(state_.strand_is_intact.begin(), state_.strand_is_intact.end(), std::uint8_t{0});
     Judge();
-    SelectTool(kRight, instrument::ToolKind::kBag);
-    Vec3 centre;
+    SelectTool(instrument::kRight, instrument::ToolKind::kBag);
+    math::Vec3 centre;
     for (std::uint32_t i = 0; i < Gallbladder().node_count; ++i)
       centre += state_.position[Gallbladder().first_node + i] / static_cast<double>(Gallbladder().node_count);
-    hands_.X_proxy[kRight] = hands_.X_device[kRight] = {{}, centre};
+    hands_.X_proxy[instrument::kRight] = hands_.X_device[instrument::kRight] = {{}, centre};
     Act();
     Judge();
-    SelectTool(kRight, instrument::ToolKind::kHook);
+    SelectTool(instrument::kRight, instrument::ToolKind::kHook);
     Judge();
   }
 
@@ -161,7 +158,7 @@ class OperationHarness : public testing::Test {
     double farthest = -1;
     for (std::uint32_t i = 0; i < Tissue().spring_organs.size(); ++i) {
       if (Tissue().spring_organs[i] != gallbladder_ || !IsEdge(springs[i])) continue;
-      const Vec3 middle = 0.5 * (state_.position[springs[i].a] + state_.position[springs[i].b]);
+      const math::Vec3 middle = 0.5 * (state_.position[springs[i].a] + state_.position[springs[i].b]);
       const surgery::OrganSurface& liver = organs_[static_cast<std::size_t>(liver_)];
       const double distance = liver.tree.FindNearest(liver.Nodes(state_.position), middle).squared_distance;
       if (distance > farthest) farthest = distance, best = i;
@@ -179,9 +176,9 @@ class OperationHarness : public testing::Test {
   std::vector<std::uint32_t> torn_;
   std::unique_ptr<Operation> operation_;
   std::optional<cholecystectomy::OperationJudge> judge_;
-  Input input_;
+  scene::Input input_;
   HandsNow hands_;
-  std::array<surgery::Grasp, kHandCount> grasps_;
+  std::array<surgery::Grasp, instrument::kHandCount> grasps_;
 };
 
 }  // namespace trocar::simulation

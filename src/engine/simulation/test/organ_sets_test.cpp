@@ -37,17 +37,17 @@ class OrganSets : public SmallScene {
     auto read = Read();
     ASSERT_TRUE(read.ok()) << read.error().Text();
     EXPECT_EQ(read->patient.OrganOf(roles::OrganRole::kGallbladder), -1);
-    auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)));
+    auto made = Simulation::Make(std::make_shared<const scene::Scene>(std::move(*read)));
     ASSERT_TRUE(made.ok()) << made.error().Text();
     simulation_.emplace(std::move(*made));
-    Input input = scene::CalcScriptInput(simulation_->GetScene(), 0.0);
+    scene::Input input = scene::CalcScriptInput(simulation_->GetScene(), 0.0);
     for (int tick = 0; tick < 120; ++tick) {
       for (auto& hand : input.hands) hand.depth += 0.0002;
       simulation_->Step(input);
     }
     const Snapshot& snapshot = simulation_->GetSnapshot();
     EXPECT_EQ(snapshot.tick, 120u);
-    for (const Vec3& p : snapshot.positions) ASSERT_TRUE(math::IsFinite(p));
+    for (const math::Vec3& p : snapshot.positions) ASSERT_TRUE(math::IsFinite(p));
     for (std::uint64_t i = 0; i < snapshot.event_count && i < snapshot.events.size(); ++i)
       EXPECT_NE(snapshot.events[i].kind, scene::EventKind::kStateRestored);
   }
@@ -102,7 +102,7 @@ TEST_F(OrganSets, AnOrganWithoutAMaterialIsNamed) {
   Write("scene.json", SceneOf(MaterialOf("liver")));
   auto read = Read();
   ASSERT_TRUE(read.ok()) << read.error().Text();
-  const auto made = Simulation::Make(std::make_shared<const Scene>(std::move(*read)));
+  const auto made = Simulation::Make(std::make_shared<const scene::Scene>(std::move(*read)));
   ASSERT_FALSE(made.ok());
   EXPECT_NE(made.error().message.find("spleen"), std::string::npos);
 }

@@ -24,10 +24,10 @@ TEST(Recovery, TheGallbladderComesHomeAfterTheDemonstration) {
   ASSERT_TRUE(data.ok());
   auto read = ReadScene(*data / "scenes" / "demonstration.json");
   ASSERT_TRUE(read.ok()) << read.error().Text();
-  const auto scene = std::make_shared<const Scene>(std::move(*read));
+  const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
   auto still = Simulation::Make(scene), played = Simulation::Make(scene);
   ASSERT_TRUE(still.ok() && played.ok());
-  const Input home = CalcScriptInput(*scene, 0.0);
+  const scene::Input home = CalcScriptInput(*scene, 0.0);
   for (int tick = 0; tick < 400; ++tick) still->Step(home);
   double volume_error = 0, highest_pressure = 0;
   for (int tick = 0; tick < static_cast<int>((scene->script.Duration() + 3.0) / scene->tick_seconds);
@@ -40,7 +40,7 @@ TEST(Recovery, TheGallbladderComesHomeAfterTheDemonstration) {
   }
   EXPECT_LT(volume_error, 1e-4) << "0.01 % at every tick";
   EXPECT_GT(highest_pressure, 100.0) << "pulling a closed sac raises its pressure";
-  const SurfaceInfo& gallbladder = played->Surfaces()[1];
+  const scene::SurfaceInfo& gallbladder = played->Surfaces()[1];
   ASSERT_EQ(gallbladder.name, "gallbladder");
   for (std::uint32_t i = gallbladder.first_node; i < gallbladder.first_node + gallbladder.node_count; ++i) {
     EXPECT_LT(math::Distance(played->GetSnapshot().positions[i], still->GetSnapshot().positions[i]), 1e-4)

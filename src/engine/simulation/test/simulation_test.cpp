@@ -20,12 +20,16 @@
 
 namespace trocar::simulation {
 
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
 using scene::CalcScriptInput;
 using scene::EventKind;
 using scene::EventName;
-using scene::kLeft;
-using scene::kRight;
+using scene::Input;
+using scene::Scene;
 using scene::SmallScene;
+
 namespace {
 
 class SimulationTest : public SmallScene {
@@ -242,7 +246,7 @@ TEST_F(SimulationTest, ToolsThatMeetSaySoAndPushBack) {
   bool is_met = false;
   for (int i = 0; i <= 60; ++i) {
     const double apart = 0.02 * (60 - i) / 60;
-    for (int hand = 0; hand < kHandCount; ++hand) {
+    for (int hand = 0; hand < instrument::kHandCount; ++hand) {
       // each tip goes past the other's shaft
       const Vec3 side{hand == kLeft ? 0.01 : -0.01, hand == kLeft ? apart : -apart, 0};
       input.hands[hand] =
@@ -254,7 +258,7 @@ TEST_F(SimulationTest, ToolsThatMeetSaySoAndPushBack) {
   EXPECT_TRUE(is_met);
   const Snapshot& now = simulation.GetSnapshot();
   bool is_said = false;
-  for (const Event& event : now.events)
+  for (const scene::Event& event : now.events)
     is_said = is_said || (event.kind == EventKind::kToolsTouch && event.tick > 0);
   EXPECT_TRUE(is_said);
   EXPECT_GT(math::Norm(now.instruments[kLeft].force), 0.1);

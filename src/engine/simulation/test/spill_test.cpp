@@ -16,7 +16,15 @@
 
 namespace trocar::simulation {
 
-using scene::kLeft;
+using instrument::kLeft;
+using instrument::kRight;
+using math::Pose;
+using math::Vec3;
+using scene::EventKind;
+using scene::Scene;
+using surgery::StonePlace;
+using surgery::StoneSnapshot;
+
 namespace {
 
 using surgery::LooseStone;
@@ -52,9 +60,9 @@ struct BallOrgan {
   geometry::EditableMesh editable = std::move(*geometry::EditableMesh::Make(mesh, 64, 256));
 };
 
-TEST(WallHoles, NodesSideBySideMakeOneHole) {
+TEST(surgery::WallHoles, NodesSideBySideMakeOneHole) {
   const BallOrgan ball;
-  WallHoles holes;
+  surgery::WallHoles holes;
   const auto find = [&] { return holes.FindLargest(ball.surface, ball.mesh.positions, ball.editable); };
   EXPECT_EQ(find().rim, 0.0) << "a whole wall";
   const geometry::Triangle& t = ball.mesh.triangles[100];
@@ -94,7 +102,7 @@ class GallstoneSpillTest : public OperationHarness {
 
   /// Beside the gallbladder's body, on its free side.
   surgery::WallHole Hole(double rim) const {
-    const SurfaceInfo& wall = Gallbladder();
+    const scene::SurfaceInfo& wall = Gallbladder();
     const Vec3 body = OperationScene()->patient.FindLandmark("gallbladder_body")->position;
     surgery::WallHole hole;
     hole.rim = rim;
@@ -113,7 +121,7 @@ class GallstoneSpillTest : public OperationHarness {
     ground.positions = Position();
     ground.gravity = kGravity;
     ground.deepest = -0.3;
-    const std::array<Pose, kHandCount> none{};
+    const std::array<Pose, instrument::kHandCount> none{};
     for (double t = 0; t < seconds; t += kTick)
       stones_.Move(ground, tools.empty() ? std::span<const Pose>(none) : tools, {}, kTick);
   }
@@ -219,7 +227,7 @@ TEST_F(GallstoneSpillTest, JawsTakeOneStopAtItAndLetGo) {
   EXPECT_NEAR(jaw, 2 * std::asin(stone.radius / (grasper.jaw_length - 0.008)), 0.01) << "it keeps them apart";
   EXPECT_EQ(stones_.Count().spilled, 1) << "still in the abdomen";
   // lifted, and let go
-  const std::array<Pose, kHandCount> lifted{Pose{{}, X.translation + Vec3{0, 0, 0.03}}, Pose{}};
+  const std::array<Pose, instrument::kHandCount> lifted{Pose{{}, X.translation + Vec3{0, 0, 0.03}}, Pose{}};
   Fall(kTick, lifted);
   EXPECT_NEAR(Seen()[0].position.z, stone.position.z + 0.03, 1e-6);
   EXPECT_EQ(Seen()[0].hand, kLeft);
@@ -412,7 +420,7 @@ TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
   ASSERT_TRUE(made.ok()) << made.error().Text();
   Simulation& simulation = *made;
   const Snapshot& seen = simulation.GetSnapshot();
-  const SurfaceInfo& wall =
+  const scene::SurfaceInfo& wall =
       simulation.Surfaces()[static_cast<std::size_t>(scene->patient.FindOrgan("gallbladder"))];
   const Vec3 body = scene->patient.FindLandmark("gallbladder_body")->position;
   std::uint32_t node = wall.first_node;
@@ -422,7 +430,7 @@ TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
       node = wall.first_node + i;
   }
   const Vec3 outwards{0.82, -0.55, -0.18};
-  Input input = CalcScriptInput(*scene, 0.0);
+  scene::Input input = scene::CalcScriptInput(*scene, 0.0);
   std::uint64_t known = 0;
   int emitted = 0;
   for (int tick = 0; tick < 120 * 12; ++tick) {

@@ -6,12 +6,15 @@
 
 namespace trocar::simulation {
 
+using instrument::kLeft;
+using instrument::kRight;
+using scene::Condition;
 using scene::ConditionKind;
 using scene::EventKind;
-using scene::kLeft;
-using scene::kRight;
 using scene::RegionMark;
+using scene::Task;
 using scene::TaskPhase;
+
 namespace {
 
 constexpr double kTick = 1.0 / 120;
@@ -53,9 +56,9 @@ class Vocabulary : public testing::Test {
     }
   }
   bool IsDone() const { return snapshot_.task.goals[0].is_done; }
-  ObjectSnapshot& Ring() { return snapshot_.objects[0]; }
+  scene::ObjectSnapshot& Ring() { return snapshot_.objects[0]; }
 
-  Scene scene_;
+  scene::Scene scene_;
   Snapshot snapshot_;
   TaskMonitor monitor_;
 };
@@ -155,7 +158,7 @@ TEST_F(Vocabulary, SecondsMustHoldWithoutABreak) {
   Condition tip = Of(ConditionKind::kTipInRegion);
   tip.hand = kRight, tip.regions = {0}, tip.seconds = 0.5;
   Start(tip);
-  Vec3& at = snapshot_.instruments[kRight].X_world_tool.translation;
+  math::Vec3& at = snapshot_.instruments[kRight].X_world_tool.translation;
   at = {0, 0, -0.1};
   Tick(59);
   at = {0, 0.02, -0.1};
@@ -171,7 +174,7 @@ TEST_F(Vocabulary, CameraSeesWithinAngleDistanceAndFromTheRightSide) {
   Condition sees = Of(ConditionKind::kCameraSees);
   sees.regions = {0}, sees.angle = 5 * kDegree, sees.near = 0.05, sees.far = 0.12,
   sees.facing_angle = 40 * kDegree;
-  scene_.task->regions[0].facing = Vec3{0, 0, 1};
+  scene_.task->regions[0].facing = math::Vec3{0, 0, 1};
   const auto seen_from = [&](const math::Pose& X) {
     Start(sees);
     snapshot_.X_world_laparoscope = X;

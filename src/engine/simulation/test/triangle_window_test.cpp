@@ -12,6 +12,11 @@
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::simulation {
+
+using math::Vec3;
+using scene::Scene;
+using scene::StrandInfo;
+
 namespace {
 
 using Kind = StrandInfo::Kind;
@@ -52,7 +57,8 @@ class TriangleOfPatient : public OperationHarness {
     for (std::size_t t = 0; t < model_description_.exposable.size(); ++t) {
       const double exposable = model_description_.exposable[t];
       if (exposable == 0.0) continue;
-      const SurfaceInfo& tube = model_description_.surfaces[OperationScene()->patient.organs.size() + t];
+      const scene::SurfaceInfo& tube =
+          model_description_.surfaces[OperationScene()->patient.organs.size() + t];
       const std::int32_t gallbladder =
           scene::FindSurface(model_description_.surfaces, roles::OrganRole::kGallbladder);
       const std::uint32_t end = tube.first_node + (tube.ends[0] == gallbladder ? 0 : tube.node_count - 1);

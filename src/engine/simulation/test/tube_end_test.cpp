@@ -7,6 +7,9 @@
 #include "operation_harness.h"
 
 namespace trocar::simulation {
+
+using scene::StrandInfo;
+
 namespace {
 
 class TubeEnd : public OperationHarness {
@@ -16,8 +19,9 @@ class TubeEnd : public OperationHarness {
   /// Strands that tie a tube to the gallbladder.
   std::vector<std::uint32_t> EndOf(const char* name) const {
     const auto& surfaces = Tissue().surfaces;
-    const auto tube = std::find_if(surfaces.begin(), surfaces.end(),
-                                   [name](const SurfaceInfo& surface) { return surface.name == name; });
+    const auto tube =
+        std::find_if(surfaces.begin(), surfaces.end(),
+                     [name](const scene::SurfaceInfo& surface) { return surface.name == name; });
     std::vector<std::uint32_t> found;
     for (std::uint32_t i = 0; i < Tissue().strands.size(); ++i) {
       const StrandInfo& strand = Tissue().strands[i];
@@ -61,7 +65,7 @@ TEST_F(TubeEnd, StrandsNameWhatTheyHold) {
     switch (tissue.strands[i].kind) {
       case StrandInfo::Kind::kEnd: {
         ASSERT_GE(organ, 0);
-        const SurfaceInfo& held = tissue.surfaces[static_cast<std::size_t>(organ)];
+        const scene::SurfaceInfo& held = tissue.surfaces[static_cast<std::size_t>(organ)];
         EXPECT_GE(tissue.strands[i].b, held.first_node);
         EXPECT_LT(tissue.strands[i].b, held.first_node + held.node_count);
         ++ends;

@@ -9,9 +9,10 @@ namespace trocar::surgery {
 namespace {
 
 /// The piece between the blades, at the place up to which they are closed.
-geometry::BladeEdge CalcScissorsEdge(const instrument::Tool& tool, const Pose& X_world_tool, double jaw) {
+geometry::BladeEdge CalcScissorsEdge(const instrument::Tool& tool, const math::Pose& X_world_tool,
+                                     double jaw) {
   const double closed = std::clamp(1.0 - jaw / tool.max_jaw, 0.0, 1.0);
-  const Vec3 hinge = instrument::JawHinge(tool);
+  const math::Vec3 hinge = instrument::JawHinge(tool);
   const auto at = [&](int side) {
     return X_world_tool * math::Lerp(hinge, instrument::JawTip(tool, jaw, side), closed);
   };
@@ -20,7 +21,7 @@ geometry::BladeEdge CalcScissorsEdge(const instrument::Tool& tool, const Pose& X
 
 }  // namespace
 
-std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const Pose& X_world_tool, double jaw,
+std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const math::Pose& X_world_tool, double jaw,
                                    bool has_power, const BladeSettings& settings,
                                    BladeState& state) noexcept {
   const bool is_scissors = settings.kind == BladeKind::kScissors;
@@ -47,7 +48,7 @@ std::size_t FindCutStrands(const BladeMove& move, std::span<const tissue::Strand
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < strands.size() && count < cut.size(); ++i) {
     if (!state.strand_is_intact[i]) continue;
-    const Vec3 &a = state.position[strands[i].a], &b = state.position[strands[i].b];
+    const math::Vec3 &a = state.position[strands[i].a], &b = state.position[strands[i].b];
     const auto parts = moves.Moves();
     if (std::any_of(parts.begin(), parts.end(), [&](const geometry::FlatMove& part) {
           return geometry::FindCrossing(part.sweep, a, b).has_value();

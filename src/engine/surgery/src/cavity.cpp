@@ -10,6 +10,9 @@
 #include "trocar/surgery/organ_contact.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();

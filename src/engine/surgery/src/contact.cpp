@@ -10,6 +10,9 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 using collision::Capsule;
@@ -345,7 +348,7 @@ void FindOnTubes(const Search& search, ContactSet& contacts) noexcept {
 }  // namespace
 
 std::array<Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool, double jaw,
-                                                   const Pose& X_world_tool) noexcept {
+                                                   const math::Pose& X_world_tool) noexcept {
   const auto shapes = instrument::CalcCapsules(tool, jaw, tool.shaft_length);
   std::array<Capsule, kToolBodyCount> bodies;
   const instrument::Capsule* const parts[] = {&shapes.upper_jaw, &shapes.lower_jaw, &shapes.shaft};
@@ -372,7 +375,7 @@ bool ClosesAroundTubes(const instrument::Tool& tool) noexcept {
   return tool.kind == instrument::ToolKind::kScissors || tool.kind == instrument::ToolKind::kClipApplier;
 }
 
-bool IsPinch(const instrument::Tool& tool, ToolBody body, const Pose& X_world_tool,
+bool IsPinch(const instrument::Tool& tool, ToolBody body, const math::Pose& X_world_tool,
              const Vec3& normal) noexcept {
   constexpr double kInwards = 0.5;  // within 60 degrees of the direction in which the jaw closes
   if (body == ToolBody::kShaft || !HasJaws(tool)) return false;

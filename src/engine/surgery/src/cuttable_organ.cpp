@@ -62,7 +62,7 @@ std::vector<Triangle> CuttableOrgan::NodeTriangles() const {
 }
 
 geometry::CutReport CuttableOrgan::Cut(const geometry::BladeEdge& before, const geometry::BladeEdge& now,
-                                       std::span<const Vec3> position, geometry::CutFront& front,
+                                       std::span<const math::Vec3> position, geometry::CutFront& front,
                                        TopologyChange& change) noexcept {
   positions_.resize(mesh_.VertexCount());
   for (std::uint32_t v = 0; v < positions_.size(); ++v) positions_[v] = position[Node(v)];

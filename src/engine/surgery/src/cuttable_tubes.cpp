@@ -61,7 +61,7 @@ NodeChange& EditNode(std::uint32_t node, const tissue::TissueDefinition& definit
 CuttableTubes::CuttableTubes(std::uint32_t first_spare, std::uint32_t spare_count)
     : next_spare_(first_spare), end_spare_(first_spare + spare_count) {}
 
-void CuttableTubes::AddTube(std::uint32_t first_node, std::span<const Vec3> points,
+void CuttableTubes::AddTube(std::uint32_t first_node, std::span<const math::Vec3> points,
                             std::span<const double> radii) {
   TROCAR_ASSERT(next_spare_ <= end_spare_);
   geometry::AddLine(points, radii, graph_);
@@ -77,7 +77,7 @@ void CuttableTubes::ReserveFor(TopologyChange& change) const {
 }
 
 std::size_t CuttableTubes::Cut(const BladeMove& move, const tissue::TissueDefinition& definition,
-                               std::span<const Vec3> position, TopologyChange& change,
+                               std::span<const math::Vec3> position, TopologyChange& change,
                                std::span<geometry::CentreLineCut> cuts) noexcept {
   for (std::size_t p = 0; p < nodes_.size(); ++p) graph_.positions[p] = position[nodes_[p]];
   std::size_t count = 0;

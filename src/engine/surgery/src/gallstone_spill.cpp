@@ -10,6 +10,10 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
+
+using math::Pose;
+using math::Vec3;
+
 base::Result<GallstoneSpill> GallstoneSpill::Make(std::span<const double> diameters,
                                                   geometry::TriangleMesh omentum,
                                                   const StoneSettings& settings) {
@@ -229,7 +233,7 @@ void GallstoneSpill::Publish(std::span<StoneSnapshot> stones) const noexcept {
     const Stone& stone = stones_[i];
     StoneSnapshot& shown = stones[i];
     shown = {stone.body.position, stone.body.radius, stone.place, -1};
-    for (int hand = 0; hand < kHandCount; ++hand) {
+    for (int hand = 0; hand < instrument::kHandCount; ++hand) {
       if (HeldBy(hand) == static_cast<std::int32_t>(i)) shown.hand = hand;
     }
   }

@@ -14,6 +14,9 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 using math::Cos;

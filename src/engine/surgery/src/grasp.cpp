@@ -8,6 +8,10 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
+
+using math::Pose;
+using math::Vec3;
+
 namespace {
 
 using tissue::NodeCondition;

@@ -8,6 +8,9 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 /// Of each contact spring. Softer than tissue's: no solver gives way here, and several triangles answer one tool [N/m].

@@ -9,6 +9,9 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 /// What overlaps by more comes apart over several ticks [m].

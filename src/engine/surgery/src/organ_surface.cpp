@@ -10,6 +10,8 @@
 
 namespace trocar::surgery {
 
+using math::Vec3;
+
 base::Result<OrganSurface> MakeOrganSurface(std::span<const Vec3> positions, std::uint32_t first_node,
                                             const geometry::TriangleMesh& mesh) {
   TROCAR_ASSERT(first_node + mesh.positions.size() <= positions.size());

@@ -8,6 +8,9 @@
 #include "trocar/collision/queries.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 using instrument::TrocarJoints;
@@ -95,9 +98,9 @@ TrocarJoints FindProxy(const ToolDrive& drive, const TrocarJoints& last_offset,
   return proxy;
 }
 
-double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy, const Pose& X_world_device,
-                        double jaw, const ContactCandidates& candidates, std::int32_t grasped_surface,
-                        ProxyLimits& limits) noexcept {
+double AddOverlapLimits(const instrument::Tool& tool, const math::Pose& X_world_proxy,
+                        const math::Pose& X_world_device, double jaw, const ContactCandidates& candidates,
+                        std::int32_t grasped_surface, ProxyLimits& limits) noexcept {
   const auto proxy = CalcToolBodies(tool, jaw, X_world_proxy),
              device = CalcToolBodies(tool, jaw, X_world_device);
   double greatest = 0;

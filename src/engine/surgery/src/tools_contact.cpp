@@ -6,6 +6,8 @@
 
 namespace trocar::surgery {
 
+using math::Vec3;
+
 ToolsContact FindToolsContact(const std::array<ToolMotion, 2>& motions,
                               std::array<ProxyLimits, 2>& limits) noexcept {
   ToolsContact contact;

@@ -26,7 +26,7 @@ std::uint32_t AddSpareNodes(std::size_t count, tissue::TissueDefinition& definit
   TROCAR_ASSERT(!definition.rest.empty());
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   // somewhere finite: nothing is joined to them
-  const Vec3 place = definition.rest.front();
+  const math::Vec3 place = definition.rest.front();
   definition.rest.insert(definition.rest.end(), count, place);
   definition.mass.insert(definition.mass.end(), count, 0.0);
   definition.shape_stiffness.insert(definition.shape_stiffness.end(), count, 0.0);

@@ -11,13 +11,16 @@
 #include "trocar/surgery/vessels.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 constexpr double kTight = 0.999;  // closure that keeps the pressure from the next clip
 
 }  // namespace
 
-std::optional<Vessels::Caught> Vessels::Catch(const instrument::Tool& tool, const Pose& X_world_tool,
+std::optional<Vessels::Caught> Vessels::Catch(const instrument::Tool& tool, const math::Pose& X_world_tool,
                                               double jaw, std::span<const Vec3> position) const noexcept {
   const Vec3 hinge = X_world_tool * instrument::JawHinge(tool);
   const Vec3 tip = X_world_tool * instrument::JawTip(tool, 0.0, +1);
@@ -37,7 +40,7 @@ std::optional<Vessels::Caught> Vessels::Catch(const instrument::Tool& tool, cons
   return caught;
 }
 
-ClipResult Vessels::Clip(const instrument::Tool& tool, const Pose& X_world_tool,
+ClipResult Vessels::Clip(const instrument::Tool& tool, const math::Pose& X_world_tool,
                          const std::optional<Caught>& caught, std::span<const Vec3> position) noexcept {
   const Vec3 hinge = X_world_tool * instrument::JawHinge(tool);
   const Vec3 tip = X_world_tool * instrument::JawTip(tool, 0.0, +1);

@@ -8,6 +8,8 @@
 
 namespace trocar::surgery {
 
+using math::Vec3;
+
 Vessels::Vessels(VesselMap map, std::span<const VesselTube> tubes, std::uint32_t first_spare,
                  std::uint32_t spare_count, const VesselSettings& settings)
     : settings_(settings), map_(std::move(map)), tubes_(first_spare, spare_count) {

@@ -7,6 +7,9 @@
 #include "trocar/geometry/openings.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 /// Whether two vertices are corners of one triangle.

@@ -8,6 +8,9 @@
 #include "trocar/surgery/cuttable_tubes.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 TEST(Blade, ScissorsCutWhileTheyCloseFromHingeToTip) {
@@ -37,7 +40,7 @@ TEST(Blade, AHookCutsWhileItHasPower) {
   BladeSettings settings;
   settings.kind = BladeKind::kHook;
   BladeState state;
-  const auto at = [](double x) { return Pose{{}, {x, 0, 0}}; };
+  const auto at = [](double x) { return math::Pose{{}, {x, 0, 0}}; };
   EXPECT_FALSE(MoveBlade(tool, at(0), 0, false, settings, state).has_value());
   const auto first = MoveBlade(tool, at(0.01), 0, true, settings, state);
   ASSERT_TRUE(first.has_value());

@@ -11,6 +11,9 @@
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 constexpr auto kWall = static_cast<std::size_t>(CavityPart::kFrontWall);

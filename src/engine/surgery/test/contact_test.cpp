@@ -9,6 +9,9 @@
 #include "organ_fixture.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 class Contact : public OrganFixture {
@@ -57,7 +60,7 @@ TEST_F(Contact, ACrowdOfTrianglesIsStoppedByThoseMetFirst) {
   organs.push_back(MakeOrganSurface(fine.positions, 0, fine).value());
   const std::vector<double> motion(2, 0.0);
   const ContactCandidates candidates{organs, nullptr, fine.positions, fine.positions, motion};
-  const Pose outside = PoseAt(JointsAt({0, 0, 0.0225})), deep = PoseAt(JointsAt({0, 0, 0.002}));
+  const math::Pose outside = PoseAt(JointsAt({0, 0, 0.0225})), deep = PoseAt(JointsAt({0, 0, 0.002}));
   FindContacts({&tool_, 0, outside, outside, deep, 0.0, 0.0, -1}, candidates, settings_, last_, contacts_);
   std::array<std::uint32_t, 4096> found;
   const auto body = CalcToolBodies(tool_, 0.0, deep)[0];
@@ -115,7 +118,7 @@ TEST_F(Contact, TissueThatTurnsItsBackIsTouched) {
                        state_.position[t[2]] - state_.position[t[0]])
                .z > 0.0;
   };
-  const Pose X = PoseAt(JointsAt({0.009, 0, 0.0215}));
+  const math::Pose X = PoseAt(JointsAt({0.009, 0, 0.0215}));
   FindContacts({&tool_, 0, X, X, X, 0, 0, -1}, GetContactCandidates(), settings_, last_, contacts_);
   int turned = 0;
   for (const auto& spring : contacts_.springs) {

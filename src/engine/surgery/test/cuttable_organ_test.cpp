@@ -147,12 +147,12 @@ TEST_P(CutAndSolve, AHundredTicksAfterEveryStrokeAreFinite) {
       const auto held = static_cast<std::uint32_t>(random.Uniform() * 162);
       system.state.condition[held] = tissue::NodeCondition::kPrescribed;
       for (int tick = 0; tick < 100; ++tick) {
-        system.state.position[held] += Vec3{1e-4, 0, 5e-5};
+        system.state.position[held] += math::Vec3{1e-4, 0, 5e-5};
         const auto report = solver.Solve(settings, {}, system.state);
         ASSERT_TRUE(report.is_finite);
       }
       system.state.condition[held] = tissue::NodeCondition::kFree;
-      for (const Vec3& p : system.state.position) {
+      for (const math::Vec3& p : system.state.position) {
         ASSERT_TRUE(math::IsFinite(p));
         ASSERT_LT(math::Norm(p), 0.2);
       }

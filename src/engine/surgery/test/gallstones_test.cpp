@@ -13,6 +13,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 constexpr double kTick = 1.0 / 120;

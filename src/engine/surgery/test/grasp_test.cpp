@@ -8,6 +8,9 @@
 #include "organ_fixture.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 class Grasping : public OrganFixture {
@@ -76,7 +79,7 @@ TEST_F(Grasping, SlipsOnlyWhenThePullLasts) {
 TEST_F(Grasping, LeavesNodesThatAnotherToolHolds) {
   ASSERT_EQ(Take(), GraspChange::kGrasped);
   Grasp other;
-  const Pose X_world_tool{{}, {0, 0, 0.018}};
+  const math::Pose X_world_tool{{}, {0, 0, 0.018}};
   for (const double jaw : {kOpen, kClosed}) {
     (void)UpdateGrasp(tool_, X_world_tool, X_world_tool, jaw, organs_, &tubes_, model_, grip_, other, state_);
   }

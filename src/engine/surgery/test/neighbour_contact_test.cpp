@@ -9,6 +9,10 @@
 #include "trocar/instrument/trocar_kinematics.h"
 
 namespace trocar::surgery {
+
+using math::Pose;
+using math::Vec3;
+
 namespace {
 
 /// A ball of 30 mm below a port, and a grasper that is driven straight down on it.

@@ -11,6 +11,9 @@
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 /// A small ball above a large one, each on its own foundation.

@@ -58,11 +58,11 @@ class OrganFixture : public testing::Test {
   }
 
   /// Pose of the tool at joints, through a trocar 15 cm above the organ's middle.
-  Pose PoseAt(const instrument::TrocarJoints& joints) const {
+  math::Pose PoseAt(const instrument::TrocarJoints& joints) const {
     return instrument::CalcToolPose(kPort, joints);
   }
   /// Joints that bring a closed tool's tip to a place.
-  instrument::TrocarJoints JointsAt(const Vec3& tip, double jaw = 0.0) const {
+  instrument::TrocarJoints JointsAt(const math::Vec3& tip, double jaw = 0.0) const {
     return instrument::FindJoints(kPort, tip, 0.0, jaw);
   }
 
@@ -112,22 +112,22 @@ class OrganFixture : public testing::Test {
   ContactCandidates GetContactCandidates() const {
     return {organs_, &tubes_, state_.position, before_, motion_};
   }
-  Vec3 DuctMiddle() const { return state_.position[first_duct_node_ + kDuctNodes / 2]; }
+  math::Vec3 DuctMiddle() const { return state_.position[first_duct_node_ + kDuctNodes / 2]; }
 
-  static constexpr Vec3 kPort{0, 0, 0.15};
+  static constexpr math::Vec3 kPort{0, 0, 0.15};
   geometry::TriangleMesh mesh_;
   std::uint32_t first_duct_node_ = 0;
   tissue::TissueModel model_;
   tissue::TissueState state_;
   std::vector<OrganSurface> organs_;
   TubeSet tubes_;
-  std::vector<Vec3> before_;
+  std::vector<math::Vec3> before_;
   std::vector<double> motion_ = std::vector<double>(2, 0.0);
   std::optional<tissue::EquilibriumSolver> solver_;
   instrument::Tool tool_;
   ContactSettings settings_;
   ContactSet contacts_, last_;
-  Pose X_proxy_, X_proxy_before_;
+  math::Pose X_proxy_, X_proxy_before_;
   instrument::TrocarJoints offset_, proxy_;
   double last_jaw_ = 0, overlap_ = 0;
 };

@@ -14,6 +14,9 @@
 #include "trocar/tissue/state_guard.h"
 
 namespace trocar::surgery {
+
+using math::Vec3;
+
 namespace {
 
 using geometry::EditableMesh;

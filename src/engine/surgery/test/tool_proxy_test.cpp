@@ -9,6 +9,10 @@
 #include "trocar/surgery/tools_contact.h"
 
 namespace trocar::surgery {
+
+using math::Pose;
+using math::Vec3;
+
 namespace {
 
 using ToolProxy = OrganFixture;

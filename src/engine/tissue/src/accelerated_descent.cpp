@@ -119,7 +119,7 @@ void AcceleratedDescent::SetModel(const TissueModel& model, const OrderedModel& 
   GridModel grid = MakeGridModel(model, *grid_shape);
   while (true) {
     grids_.emplace_back(grid);
-    loads_.push_back({std::vector<Vec3>(grid.Size()), std::vector<double>(grid.Size()),
+    loads_.push_back({std::vector<math::Vec3>(grid.Size()), std::vector<double>(grid.Size()),
                       std::vector<std::uint8_t>(grid.Size())});
     if (std::min(grid.shape.rows, grid.shape.columns) < 2 * kSmallestGrid) break;
     grid = MakeCoarseGrid(grid);
@@ -162,7 +162,7 @@ void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState&
     const GridLoad& fine = loads_[level - 1];
     GridLoad& coarse = loads_[level];
     const GridShape from = grids_[level - 1].Shape(), to = grids_[level].Shape();
-    std::fill(coarse.force.begin(), coarse.force.end(), Vec3{});
+    std::fill(coarse.force.begin(), coarse.force.end(), math::Vec3{});
     std::fill(coarse.shape.begin(), coarse.shape.end(), 0.0);
     std::fill(coarse.is_free.begin(), coarse.is_free.end(), std::uint8_t{1});
     for (std::uint32_t i = 0; i < fine.force.size(); ++i) {

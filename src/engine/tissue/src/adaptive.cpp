@@ -19,7 +19,7 @@ constexpr int kDescentIterations = 400;
 
 SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& settings,
                           const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
-                          std::span<const Vec3> extrapolation) noexcept {
+                          std::span<const math::Vec3> extrapolation) noexcept {
   // A whole Newton step between two projections undoes constraints whose gradients it does not know, and pressure
   // and shape then swing about each other. The recurrence projects every few iterations.
   if (constraints != nullptr && constraints->Nodes().empty())

@@ -18,6 +18,10 @@
 #include "trocar/base/spare_capacity.h"
 
 namespace trocar::tissue {
+
+using math::Symmetric3;
+using math::Vec3;
+
 namespace {
 
 using math::AddIsotropic;

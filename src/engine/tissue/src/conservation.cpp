@@ -13,6 +13,10 @@
 #include "volume_constraint_set.h"
 
 namespace trocar::tissue {
+
+using math::Pose;
+using math::Vec3;
+
 namespace {
 
 /// Relative volume error at which the projection ends [-]; a thousandth of what is promised.

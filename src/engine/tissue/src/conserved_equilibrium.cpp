@@ -14,7 +14,7 @@ SolveReport FindConservedEquilibrium(EquilibriumSolver& solver, const SolverSett
   ConservationState moved = state;
   // all but the pressures stays as it was in the tick: CalcForce adds only them where it knows of no frame
   moved.regions.count = 0;
-  std::vector<Vec3> without_pressure(load.external_force.begin(), load.external_force.end());
+  std::vector<math::Vec3> without_pressure(load.external_force.begin(), load.external_force.end());
   for (std::size_t organ = 0; organ < state.organs.size() && !without_pressure.empty(); ++organ) {
     const auto [first, count] = conservation.OrganNodes()[organ];
     for (std::uint32_t i = first; i < first + count; ++i)

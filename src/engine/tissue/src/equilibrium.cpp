@@ -11,6 +11,8 @@
 
 namespace trocar::tissue {
 
+using math::Vec3;
+
 namespace {
 
 /// True where everything that a solve takes is finite.

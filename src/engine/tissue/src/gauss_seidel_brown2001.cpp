@@ -77,7 +77,7 @@ SolveReport SolveGaussSeidelBrown2001(const TissueModel& model, GaussSeidelScrat
     }
     for (std::size_t at = 0; at < wave.size(); ++at) {
       const std::uint32_t i = wave[at];
-      const Vec3 residual = calc_residual(i);
+      const math::Vec3 residual = calc_residual(i);
       if (!(math::SquaredNorm(residual) > threshold * threshold)) continue;  // the wave ends here
       const double stiffness = CalcNodeStiffness(model, load, state, i);
       if (stiffness > 0.0) state.position[i] += residual / stiffness;

@@ -9,6 +9,9 @@
 #include "trocar/tissue/spring_law.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 using math::AddDirection;

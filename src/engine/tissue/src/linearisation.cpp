@@ -10,6 +10,9 @@
 #include "trocar/base/spare_capacity.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 /// Slices a thread takes at a time; fixed, so that sums do not depend on the number of threads.
@@ -275,7 +278,7 @@ void Linearisation::AddContactDiagonal(LinkLevel& level, const Balance& balance)
     if (!balance.is_pressing[c]) continue;
     const ContactSpring& contact = load_->contacts[c];
     for (int corner = 0; corner < 3; ++corner) {
-      Symmetric3 m{};
+      math::Symmetric3 m{};
       AddDirection(m, contact.normal, contact.weights[corner] * contact.stiffness);
       for (std::size_t v = 0; v < 6; ++v)
         level.diagonal_excess[DiagonalAt(contact.nodes[corner]) + v * kSliceNodes] +=

@@ -19,7 +19,7 @@ struct OrderedModel {
   std::vector<double> graph_stiffness;    // (graph.others) k [N/m]
   SliceLayout layout;
   std::vector<std::uint32_t> spring_entries;  // (half-springs of the model) place of each
-  std::vector<Vec3> rest;                     // (n) [m]
+  std::vector<math::Vec3> rest;               // (n) [m]
   std::vector<double> mass;                   // (n) [kg]
   std::vector<double> shape;                  // (n) k_virtual [N/m]
 
@@ -49,9 +49,9 @@ OrderedModel MakeOrderedModel(const TissueModel& model);
 
 /// The springs of an ordered model as they are linearised now.
 struct OrderedSprings {
-  AlignedVector<double> stiffness;    // (entries) k [N/m]; 0 for strands and padding
-  AlignedVector<double> rest_length;  // (entries) [m]
-  double mean_length = 0;             // mean rest length of the model's own springs [m]
+  math::AlignedVector<double> stiffness;    // (entries) k [N/m]; 0 for strands and padding
+  math::AlignedVector<double> rest_length;  // (entries) [m]
+  double mean_length = 0;                   // mean rest length of the model's own springs [m]
 };
 /// Takes the model's own springs.
 /// \note Allocates nothing where the vectors have the capacity.
@@ -60,7 +60,7 @@ OrderedSprings MakeOrderedSprings(const TissueModel& model, const OrderedModel& 
 
 /// Load of one solve, in the solvers' order.
 struct OrderedLoad {
-  std::vector<Vec3> constant;  // (n) weight and external force [N]
+  std::vector<math::Vec3> constant;  // (n) weight and external force [N]
   std::vector<std::uint8_t> is_free;
   std::vector<ContactSpring> contacts;
   double stiffness_scale = 1, shape_scale = 1;
@@ -76,7 +76,7 @@ void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, std::uin
 
 /// Balance of forces at one set of positions.
 struct Balance {
-  AlignedVector<Float4> residual;         // (padded) R_i [N]; zero where the node is held
+  math::AlignedVector<Float4> residual;   // (padded) R_i [N]; zero where the node is held
   std::vector<std::uint8_t> is_pressing;  // (contacts)
   double energy = 0;                      // [J]
   double largest_residual = 0;            // [N]
@@ -128,7 +128,7 @@ class Linearisation {
     return nodes_[(std::size_t{node / kSliceNodes} * kBalanceValues + value) * kSliceNodes +
                   node % kSliceNodes];
   }
-  void AddOuter(std::uint32_t node, const Vec3& force, double size) noexcept;
+  void AddOuter(std::uint32_t node, const math::Vec3& force, double size) noexcept;
   double AddStrandsAndContacts(std::span<const Double4> position, Balance& balance) noexcept;
   void AddContactDiagonal(LinkLevel& level, const Balance& balance) noexcept;
   void Run(const Kernels& kernels, Workers& workers, BalancePass pass, double energy,
@@ -138,7 +138,7 @@ class Linearisation {
   const OrderedSprings* springs_;
   const OrderedLoad* load_ = nullptr;
   std::span<const std::uint8_t> strand_is_intact_;
-  AlignedVector<double> nodes_;              // (slices, kBalanceValues, kSliceNodes)
+  math::AlignedVector<double> nodes_;        // (slices, kBalanceValues, kSliceNodes)
   std::vector<std::uint32_t> strand_nodes_;  // those with strands, each once
 };
 

@@ -7,6 +7,9 @@
 #include "node_vectors.h"
 
 namespace trocar::tissue {
+
+using math::Symmetric3;
+
 namespace {
 
 /// Slices a thread takes at a time: eight parts of a patient, so that two or four threads have the same to do.

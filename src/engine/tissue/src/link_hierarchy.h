@@ -25,16 +25,13 @@
 
 namespace trocar::tissue {
 
-using math::AlignedVector;
-using math::Symmetric3;
-
 /// One level's matrix and the vectors of a cycle.
 struct LinkLevel {
   const SliceLayout* layout = nullptr;
-  AlignedVector<float> links, diagonal_excess, inverse, is_free;  // as in LinkMatrix
+  math::AlignedVector<float> links, diagonal_excess, inverse, is_free;  // as in LinkMatrix
   std::size_t link_floats = kBlockFloats;
   std::vector<std::uint8_t> near_held;  // (n) held, or next to one that is
-  AlignedVector<Float4> x, b, r;        // (padded nodes)
+  math::AlignedVector<Float4> x, b, r;  // (padded nodes)
 
   std::uint32_t Size() const { return layout->node_count; }
   LinkMatrix Matrix() const;

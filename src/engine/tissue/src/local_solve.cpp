@@ -232,7 +232,8 @@ LocalSolve::Report LocalSolve::Solve(const Kernels& kernels, Workers& workers, d
   for (std::uint32_t a = 0; a < free_count_; ++a) {
     const Double4 &to = position_[a], &from = first_[a];
     position[nodes_[a]] = to;
-    longest2 = math::Max(longest2, math::SquaredNorm(Vec3{to.x - from.x, to.y - from.y, to.z - from.z}));
+    longest2 =
+        math::Max(longest2, math::SquaredNorm(math::Vec3{to.x - from.x, to.y - from.y, to.z - from.z}));
   }
   report.longest = std::sqrt(longest2);
   return report;

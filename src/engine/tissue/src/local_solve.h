@@ -87,8 +87,8 @@ class LocalSolve {
   LinkLevel level_;
   Linearisation linearisation_;
   Balance balance_;
-  AlignedVector<Double4> position_, start_, first_;  // (padded)
-  AlignedVector<Float4> step_, r_, z_, p_, q_;       // (padded)
+  math::AlignedVector<Double4> position_, start_, first_;  // (padded)
+  math::AlignedVector<Float4> step_, r_, z_, p_, q_;       // (padded)
 };
 
 }  // namespace trocar::tissue

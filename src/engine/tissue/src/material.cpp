@@ -9,7 +9,7 @@
 
 namespace trocar::tissue {
 
-std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions,
+std::vector<double> CalcEdgeStiffness(std::span<const math::Vec3> positions,
                                       std::span<const geometry::Triangle> triangles,
                                       std::span<const geometry::Edge> edges, double membrane_modulus) {
   TROCAR_ASSERT(membrane_modulus >= 0.0);
@@ -28,7 +28,7 @@ std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions,
   return stiffness;
 }
 
-std::vector<BendingSpring> CalcBendingSprings(std::span<const Vec3> positions,
+std::vector<BendingSpring> CalcBendingSprings(std::span<const math::Vec3> positions,
                                               std::span<const geometry::Triangle> triangles,
                                               double membrane_modulus) {
   TROCAR_ASSERT(membrane_modulus >= 0.0);

@@ -9,6 +9,9 @@
 #include "trocar/base/spare_capacity.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 /// Part of the tolerated error that the linear solution may leave [-]. The tight one makes conjugate gradients go so far

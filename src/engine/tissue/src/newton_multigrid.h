@@ -41,7 +41,7 @@ class NewtonMultigrid {
   /// \note Real-time safe after Prepare(); bounded by settings.max_steps, max_linear_iterations and max_linear_total.
   SolveReport Solve(const Kernels& kernels, Workers& workers, double max_error,
                     const NewtonSettings& settings, const TissueLoad& load, TissueState& state,
-                    ConstraintSet* constraints, std::span<const Vec3> extrapolation) noexcept;
+                    ConstraintSet* constraints, std::span<const math::Vec3> extrapolation) noexcept;
 
  private:
   using SmallVector = ProjectedPreconditioner::SmallVector;
@@ -82,7 +82,7 @@ class NewtonMultigrid {
   };
 
   void Begin(Context& c) noexcept;
-  void Predict(Context& c, std::span<const Vec3> extrapolation) noexcept;
+  void Predict(Context& c, std::span<const math::Vec3> extrapolation) noexcept;
   void Linearise(Context& c) noexcept;
   void UpdateCoarseLevels(Context& c) noexcept;
   void Estimate(Context& c) noexcept;
@@ -114,10 +114,10 @@ class NewtonMultigrid {
   PressureStiffness pressure_;
   std::unique_ptr<LocalSolve> local_solve_;  // for solves that follow snap-through
   ProjectedPreconditioner preconditioner_;
-  AlignedVector<Double4> position_, start_;  // (padded)
+  math::AlignedVector<Double4> position_, start_;  // (padded)
   Balance balance_;
-  AlignedVector<Float4> step_, r_, z_, p_, q_;  // (padded)
-  bool has_follower_stiffness_ = false;         // whether pressures are in the stiffness of this solve
+  math::AlignedVector<Float4> step_, r_, z_, p_, q_;  // (padded)
+  bool has_follower_stiffness_ = false;               // whether pressures are in the stiffness of this solve
 };
 
 }  // namespace trocar::tissue

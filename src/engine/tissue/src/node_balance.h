@@ -7,9 +7,9 @@
 namespace trocar::tissue {
 
 /// Force of the contacts on one node; few contacts, so a scan is enough for a reference.
-inline Vec3 GatherContactForce(const TissueLoad& load, std::span<const Vec3> position,
-                               std::uint32_t node) noexcept {
-  Vec3 force;
+inline math::Vec3 GatherContactForce(const TissueLoad& load, std::span<const math::Vec3> position,
+                                     std::uint32_t node) noexcept {
+  math::Vec3 force;
   for (const ContactSpring& contact : load.contacts) {
     const double depth = CalcContactDepth(contact, position);
     if (!(depth > 0.0)) continue;
@@ -22,8 +22,8 @@ inline Vec3 GatherContactForce(const TissueLoad& load, std::span<const Vec3> pos
 }
 
 /// Largest force on node i through one spring, load or contact [N].
-inline double CalcForceScale(const TissueModel& model, const TissueLoad& load, std::span<const Vec3> position,
-                             std::uint32_t i) noexcept {
+inline double CalcForceScale(const TissueModel& model, const TissueLoad& load,
+                             std::span<const math::Vec3> position, std::uint32_t i) noexcept {
   double largest =
       math::Max(load.shape_scale * model.shape_stiffness[i] * math::Distance(model.rest[i], position[i]),
                 model.mass[i] * math::Norm(load.gravity));

@@ -16,14 +16,14 @@ namespace trocar::tissue {
 /// \param tension  of a half-spring at a length [m]: [N] before load.stiffness_scale
 /// \note Real-time safe.
 template <typename Tension>
-Vec3 GatherForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
-                 const TissueLoad& load, std::span<const Vec3> position, std::uint32_t i,
-                 const Tension& tension) noexcept {
-  const Vec3 here = position[i];
-  Vec3 springs;
+math::Vec3 GatherForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
+                       const TissueLoad& load, std::span<const math::Vec3> position, std::uint32_t i,
+                       const Tension& tension) noexcept {
+  const math::Vec3 here = position[i];
+  math::Vec3 springs;
   for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
     const auto& half = model.half_springs[h];
-    const Vec3 along = position[half.other] - here;
+    const math::Vec3 along = position[half.other] - here;
     const double length = std::sqrt(math::SquaredNorm(along));
     if (length > 0.0) springs += (tension(half, length) / length) * along;
   }
@@ -32,17 +32,17 @@ Vec3 GatherForce(const TissueModel& model, std::span<const std::uint8_t> strand_
     if (!strand_is_intact[half.strand]) continue;
     springs += half.stiffness * ((position[half.other] - here) - (model.rest[half.other] - model.rest[i]));
   }
-  Vec3 force = load.stiffness_scale * springs +
-               (load.shape_scale * model.shape_stiffness[i]) * (model.rest[i] - here) +
-               model.mass[i] * load.gravity;
+  math::Vec3 force = load.stiffness_scale * springs +
+                     (load.shape_scale * model.shape_stiffness[i]) * (model.rest[i] - here) +
+                     model.mass[i] * load.gravity;
   if (!load.external_force.empty()) force += load.external_force[i];
   return force;
 }
 
 /// By Hooke's law, every spring whole: what the solvers see, whose springs are linearised (spring_linearisation.h).
-inline Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
-                            const TissueLoad& load, std::span<const Vec3> position,
-                            std::uint32_t i) noexcept {
+inline math::Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
+                                  const TissueLoad& load, std::span<const math::Vec3> position,
+                                  std::uint32_t i) noexcept {
   return GatherForce(model, strand_is_intact, load, position, i,
                      [](const TissueModel::HalfSpring& half, double length) {
                        return half.stiffness * (length - half.rest_length);
@@ -50,8 +50,8 @@ inline Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8
 }
 
 /// By each spring's own law and what is left of it.
-inline Vec3 GatherLawForce(const TissueModel& model, const TissueState& state, const TissueLoad& load,
-                           std::uint32_t i) noexcept {
+inline math::Vec3 GatherLawForce(const TissueModel& model, const TissueState& state, const TissueLoad& load,
+                                 std::uint32_t i) noexcept {
   return GatherForce(model, state.strand_is_intact, load, state.position, i,
                      [&](const TissueModel::HalfSpring& half, double length) {
                        return state.spring_factor[half.spring] *
@@ -61,8 +61,8 @@ inline Vec3 GatherLawForce(const TissueModel& model, const TissueState& state, c
 }
 
 /// Adds every pressing contact's force to its three nodes.
-inline void AddContactForce(std::span<const ContactSpring> contacts, std::span<const Vec3> position,
-                            std::span<Vec3> force) noexcept {
+inline void AddContactForce(std::span<const ContactSpring> contacts, std::span<const math::Vec3> position,
+                            std::span<math::Vec3> force) noexcept {
   for (const ContactSpring& contact : contacts) {
     const double depth = CalcContactDepth(contact, position);
     if (!(depth > 0.0)) continue;

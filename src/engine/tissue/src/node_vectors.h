@@ -13,8 +13,6 @@
 
 namespace trocar::tissue {
 
-using math::AlignedVector;
-
 /// Nodes a thread takes at a time; fixed, so that sums do not depend on the number of threads.
 inline constexpr std::uint32_t kVectorChunk = 896;
 
@@ -48,8 +46,8 @@ inline float LargerOrNan(float a, float b) noexcept {
 }
 
 /// a . b of all nodes, in double precision and in an order that the threads do not change.
-inline double CalcDot(const Kernels& kernels, Workers& workers, const AlignedVector<Float4>& a,
-                      const AlignedVector<Float4>& b) noexcept {
+inline double CalcDot(const Kernels& kernels, Workers& workers, const math::AlignedVector<Float4>& a,
+                      const math::AlignedVector<Float4>& b) noexcept {
   std::array<double, Workers::kMaxChunks> parts;
   const std::uint32_t chunks =
       ForEachNodeChunk(workers, a.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t chunk) {
@@ -68,8 +66,9 @@ struct DotAndLongest {
 ///
 /// \param finish(first, last)  is called for each chunk of the nodes before it is read
 template <typename Finish>
-DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers, const AlignedVector<Float4>& a,
-                                const AlignedVector<Float4>& b, const Finish& finish) noexcept {
+DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers,
+                                const math::AlignedVector<Float4>& a, const math::AlignedVector<Float4>& b,
+                                const Finish& finish) noexcept {
   std::array<double, Workers::kMaxChunks> dots;
   std::array<float, Workers::kMaxChunks> largest2;
   const std::uint32_t chunks =
@@ -87,13 +86,14 @@ DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers, const 
   return {sum, std::sqrt(static_cast<double>(most))};
 }
 inline DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers,
-                                       const AlignedVector<Float4>& a,
-                                       const AlignedVector<Float4>& b) noexcept {
+                                       const math::AlignedVector<Float4>& a,
+                                       const math::AlignedVector<Float4>& b) noexcept {
   return CalcDotAndLongest(kernels, workers, a, b, [](std::uint32_t, std::uint32_t) {});
 }
 
 /// Length of the longest of all nodes' vectors; NaN where one is.
-inline double FindLongest(const Kernels& kernels, Workers& workers, const AlignedVector<Float4>& v) noexcept {
+inline double FindLongest(const Kernels& kernels, Workers& workers,
+                          const math::AlignedVector<Float4>& v) noexcept {
   std::array<float, Workers::kMaxChunks> parts;
   const std::uint32_t chunks =
       ForEachNodeChunk(workers, v.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t chunk) {

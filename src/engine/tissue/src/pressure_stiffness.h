@@ -61,11 +61,11 @@ class PressureStiffness {
     std::size_t triangle_count;
   };
   std::vector<KnownSurface> surfaces_;
-  std::vector<geometry::Triangle> triangles_;  // of all surfaces, one after the other
-  std::vector<std::uint8_t> surface_of_;       // (padded nodes) which, or kNoSurface
-  std::vector<std::uint32_t> left_, right_;    // (entries) as in FollowerPass
-  AlignedVector<double> factor_;               // (padded nodes) P / 6 [Pa]
-  AlignedVector<float> follower_stiffness_;    // (steps, 3, kSliceNodes) [N/m]
+  std::vector<geometry::Triangle> triangles_;      // of all surfaces, one after the other
+  std::vector<std::uint8_t> surface_of_;           // (padded nodes) which, or kNoSurface
+  std::vector<std::uint32_t> left_, right_;        // (entries) as in FollowerPass
+  math::AlignedVector<double> factor_;             // (padded nodes) P / 6 [Pa]
+  math::AlignedVector<float> follower_stiffness_;  // (steps, 3, kSliceNodes) [N/m]
   bool has_pressure_ = false;
 };
 

@@ -8,6 +8,8 @@
 
 namespace trocar::tissue {
 
+using math::AlignedVector;
+
 void ProjectedPreconditioner::SetModel(const OrderedModel& model) noexcept {
   TROCAR_ASSERT(model.layout.PaddedNodes() == model_->layout.PaddedNodes());
   model_ = &model;

@@ -49,27 +49,29 @@ class ProjectedPreconditioner {
   void PreconditionGradients(const Kernels& kernels, Workers& workers) noexcept;
 
   /// r <- P^T r: the multipliers carry what they can.
-  void ProjectResidual(const Kernels& kernels, Workers& workers, AlignedVector<Float4>& r) noexcept;
+  void ProjectResidual(const Kernels& kernels, Workers& workers, math::AlignedVector<Float4>& r) noexcept;
   /// r <- P^T r, z = P M^-1 r.
   /// \return r . z, and the length of the longest of z
-  DotAndLongest Apply(const Kernels& kernels, Workers& workers, AlignedVector<Float4>& r,
-                      AlignedVector<Float4>& z) noexcept;
+  DotAndLongest Apply(const Kernels& kernels, Workers& workers, math::AlignedVector<Float4>& r,
+                      math::AlignedVector<Float4>& z) noexcept;
 
   /// Part of the residual that each active constraint carries since SetActive(), in its own units.
   SmallVector& Multipliers() noexcept { return multipliers_; }
 
  private:
   struct Constraint {
-    std::size_t index = 0;                          // in the set
-    AlignedVector<Float4> gradient;                 // (padded) G
-    AlignedVector<Float4> preconditioned_gradient;  // (padded) Y
+    std::size_t index = 0;                                // in the set
+    math::AlignedVector<Float4> gradient;                 // (padded) G
+    math::AlignedVector<Float4> preconditioned_gradient;  // (padded) Y
   };
   /// Of each constraint's part with v.
-  SmallVector CalcDots(const Kernels& kernels, Workers& workers, AlignedVector<Float4> Constraint::*part,
-                       const AlignedVector<Float4>& v) const noexcept;
+  SmallVector CalcDots(const Kernels& kernels, Workers& workers,
+                       math::AlignedVector<Float4> Constraint::*part,
+                       const math::AlignedVector<Float4>& v) const noexcept;
   /// from -= sum of shares of each constraint's part, of some of the nodes
-  void Subtract(const Kernels& kernels, const SmallVector& shares, AlignedVector<Float4> Constraint::*part,
-                AlignedVector<Float4>& from, std::uint32_t first, std::uint32_t last) const noexcept;
+  void Subtract(const Kernels& kernels, const SmallVector& shares,
+                math::AlignedVector<Float4> Constraint::*part, math::AlignedVector<Float4>& from,
+                std::uint32_t first, std::uint32_t last) const noexcept;
 
   const OrderedModel* model_;
   LinkHierarchy* hierarchy_;

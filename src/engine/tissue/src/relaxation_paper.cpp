@@ -21,8 +21,8 @@ SolveReport SolveRelaxationPaper(const TissueModel& model, const IterationSettin
     double largest = 0, scale = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
       if (state.condition[i] == NodeCondition::kPrescribed) continue;
-      const Vec3 residual = GatherNodeForce(model, state.strand_is_intact, load, state.position, i) +
-                            GatherContactForce(load, state.position, i);
+      const math::Vec3 residual = GatherNodeForce(model, state.strand_is_intact, load, state.position, i) +
+                                  GatherContactForce(load, state.position, i);
       scale = math::Max(scale, CalcForceScale(model, load, state.position, i));
       largest = math::Max(largest, math::Norm(residual));
       state.position[i] += alpha * residual;

@@ -7,6 +7,10 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::tissue {
+
+using math::Quaternion;
+using math::Vec3;
+
 namespace {
 
 /// Weight of the previous rotation against the points [-]: decides only what the points leave open.
@@ -117,7 +121,7 @@ void MotionMoments::AddOffset(double w, const Vec3& rest_offset, const Vec3& off
   AddOuter(outer, w, offset, rest_offset);
 }
 
-Pose FitRigidMotion(const MotionMoments& moments, const Quaternion& previous) noexcept {
+math::Pose FitRigidMotion(const MotionMoments& moments, const Quaternion& previous) noexcept {
   if (!(moments.weight > 0.0)) return {previous, {}};
   const Vec3 rest_centre = moments.rest_sum / moments.weight, centre = moments.sum / moments.weight;
   Matrix3 m = moments.outer;

@@ -15,6 +15,8 @@
 
 namespace trocar::tissue {
 
+using math::Vec3;
+
 void SetSlicedSprings(const TissueModel& model, SlicedSprings& sliced) {
   const auto n = static_cast<std::uint32_t>(model.Size());
   sliced.starts.assign(1, 0);

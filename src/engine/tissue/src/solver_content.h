@@ -40,8 +40,8 @@ struct SliceReport {
 /// One Chebyshev step of the nodes of a slice, from `position` into `previous`. The version for the machine
 /// is chosen at run time; every version gives the same bits, because none contracts or reorders.
 void UpdateSlice(const SlicedSprings& springs, const SliceData& data, const StepFactors& factors,
-                 const Vec3* position, Vec3* previous, std::uint32_t node_count, std::uint32_t slice,
-                 SliceReport& report) noexcept;
+                 const math::Vec3* position, math::Vec3* previous, std::uint32_t node_count,
+                 std::uint32_t slice, SliceReport& report) noexcept;
 
 /// Stopping criteria of iterations that measure their residual.
 struct IterationSettings {
@@ -64,10 +64,10 @@ struct ChebyshevScratch {
   /// Goes on with another model of as many nodes.
   void SetModel(const TissueModel& model);
 
-  std::vector<Vec3> previous;      // (n) positions of the iteration before
-  std::vector<Symmetric3> blocks;  // (n) the node's own stiffness
+  std::vector<math::Vec3> previous;      // (n) positions of the iteration before
+  std::vector<math::Symmetric3> blocks;  // (n) the node's own stiffness
   std::vector<SliceData> slices;
-  std::vector<Vec3> constant_force;          // (n) weight and external force
+  std::vector<math::Vec3> constant_force;    // (n) weight and external force
   std::vector<std::uint32_t> strand_nodes;   // those with strands
   std::vector<std::uint32_t> touched_nodes;  // those with contacts in this solve
   std::vector<SliceReport> chunk_reports;
@@ -95,7 +95,7 @@ struct EquilibriumSolver::Content {
   SolveReport SolveAccelerated(int max_iterations, double max_error, const TissueLoad& load,
                                TissueState& state, ConstraintSet* constraints) noexcept;
   SolveReport SolveNewton(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
-                          ConstraintSet* constraints, std::span<const Vec3> extrapolation) noexcept;
+                          ConstraintSet* constraints, std::span<const math::Vec3> extrapolation) noexcept;
 
   GaussSeidelScratch& GaussSeidel();
   ChebyshevScratch& Chebyshev();
@@ -127,7 +127,7 @@ struct EquilibriumSolver::Content {
 /// Accelerated descent where a structured mesh starts cold, then Newton until the error is small enough.
 SolveReport SolveAdaptive(EquilibriumSolver::Content& content, const SolverSettings& settings,
                           const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
-                          std::span<const Vec3> extrapolation) noexcept;
+                          std::span<const math::Vec3> extrapolation) noexcept;
 
 /// Nodes a thread takes at a time; depends on the model alone, so that results do not depend on the threads.
 inline std::uint32_t CalcChunk(std::size_t node_count) noexcept {

@@ -7,6 +7,9 @@
 #include "node_vectors.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 /// Rows a thread takes at a time; fixed. The row above each chunk is evaluated twice.
@@ -176,7 +179,7 @@ SpringGrid::SpringGrid(const GridModel& model)
       if (i / kSliceNodes % 5 < 2) (*values)[i] = 1.0f;
     }
   }
-  const auto set = [&](AlignedVector<float>& to, std::uint32_t place, std::uint32_t node) {
+  const auto set = [&](math::AlignedVector<float>& to, std::uint32_t place, std::uint32_t node) {
     for (int direction = 0; direction < kGridDirections; ++direction) {
       float* const values = to.data() + At(place, kGridDirections * 5) + direction * 5 * kSliceNodes;
       for (int axis = 0; axis < 3; ++axis) {
@@ -197,7 +200,7 @@ SpringGrid::SpringGrid(const GridModel& model)
 
 void SpringGrid::SetLoad(const GridLoad& load, double scale) noexcept {
   const auto [rows, columns] = shape_;
-  const auto set = [&](AlignedVector<float>& to, std::uint32_t place, std::uint32_t node) {
+  const auto set = [&](math::AlignedVector<float>& to, std::uint32_t place, std::uint32_t node) {
     for (int direction = 0; direction < kGridDirections; ++direction) {
       float* const values = to.data() + At(place, kGridDirections * 5) + direction * 5 * kSliceNodes;
       for (int value = 0; value < 2; ++value) {

@@ -19,8 +19,6 @@
 
 namespace trocar::tissue {
 
-using math::AlignedVector;
-
 /// Rows and columns of a model whose node (row, column) has the index row * columns + column and whose
 /// springs go to at most its eight neighbours.
 struct GridShape {
@@ -31,15 +29,15 @@ std::optional<GridShape> FindGridShape(const TissueModel& model);
 
 /// Springs from a node towards one of its own neighbours.
 struct GridSprings {
-  std::vector<Vec3> rest_offset;    // (nodes) [m]; something other than zero where there is no spring
-  std::vector<double> stiffness;    // (nodes) k [N/m], 0 where there is none
-  std::vector<double> rest_length;  // (nodes) [m]
+  std::vector<math::Vec3> rest_offset;  // (nodes) [m]; something other than zero where there is no spring
+  std::vector<double> stiffness;        // (nodes) k [N/m], 0 where there is none
+  std::vector<double> rest_length;      // (nodes) [m]
 };
 
 /// A structured mesh's springs, by node and direction.
 struct GridModel {
   GridShape shape;
-  std::vector<Vec3> rest;  // (nodes) [m]
+  std::vector<math::Vec3> rest;  // (nodes) [m]
   std::array<GridSprings, kGridDirections> springs;
 
   std::size_t Size() const { return rest.size(); }
@@ -60,7 +58,7 @@ GridPlace FindGridPlace(std::uint32_t at, std::uint32_t count, std::uint32_t oth
 
 /// Loads and supports of one solve.
 struct GridLoad {
-  std::vector<Vec3> force;            // (nodes) [N]
+  std::vector<math::Vec3> force;      // (nodes) [N]
   std::vector<double> shape;          // (nodes) k_virtual, scaled [N/m]
   std::vector<std::uint8_t> is_free;  // (nodes)
 };
@@ -73,8 +71,8 @@ class SpringGrid {
   const GridShape& Shape() const { return shape_; }
   /// \param scale  on every spring's stiffness [-]
   void SetLoad(const GridLoad& load, double scale) noexcept;
-  void SetDisplacement(std::uint32_t node, const Vec3& u) noexcept;
-  Vec3 GetDisplacement(std::uint32_t node) const noexcept;
+  void SetDisplacement(std::uint32_t node, const math::Vec3& u) noexcept;
+  math::Vec3 GetDisplacement(std::uint32_t node) const noexcept;
   /// Sets the free nodes' displacements by interpolation from a coarser grid.
   void Interpolate(const SpringGrid& coarse) noexcept;
   /// One iteration.
@@ -109,10 +107,10 @@ class SpringGrid {
   bool is_alike_ = false;  // one row of springs stands for all but the last
   bool has_south_west_ = false;
   bool is_aligned_ = true;  // rest offsets: x alone to the east, y alone to the south, no z
-  AlignedVector<float> springs_, last_springs_;  // as in GridStep, scaled
-  std::vector<double> unscaled_;                 // (nodes, directions, 2) k and k l
-  std::vector<double> sum_stiffness_;            // (nodes) of all springs at the node
-  AlignedVector<float> nodes_, u_, previous_, reaction_;
+  math::AlignedVector<float> springs_, last_springs_;  // as in GridStep, scaled
+  std::vector<double> unscaled_;                       // (nodes, directions, 2) k and k l
+  std::vector<double> sum_stiffness_;                  // (nodes) of all springs at the node
+  math::AlignedVector<float> nodes_, u_, previous_, reaction_;
   std::vector<std::uint32_t> node_rows_;  // as in GridStep
   double lowest_ = 0, smallest_shape_ = 0;
 };

@@ -8,6 +8,9 @@
 #include "trocar/base/spare_capacity.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 /// Slices a thread takes at a time; fixed.

@@ -23,14 +23,14 @@ class SpringSlices {
   /// \param load     in the solvers' order, without contacts
   void SetLoad(const OrderedModel& model, const OrderedSprings& springs, const OrderedLoad& load,
                std::span<const std::uint8_t> strand_is_intact) noexcept;
-  void SetDisplacement(std::uint32_t node, const Vec3& u) noexcept;
-  Vec3 GetDisplacement(std::uint32_t node) const noexcept {
+  void SetDisplacement(std::uint32_t node, const math::Vec3& u) noexcept;
+  math::Vec3 GetDisplacement(std::uint32_t node) const noexcept {
     const float* const u = is_by_slice_ ? u_by_slice_.data() + BySlice(node) : &u_[node].x;
     const std::size_t apart = is_by_slice_ ? kSliceNodes : 1;
     return {static_cast<double>(u[0]), static_cast<double>(u[apart]), static_cast<double>(u[2 * apart])};
   }
   /// Adds to the load on a node, until the next SetLoad [N].
-  void AddForce(std::uint32_t node, const Vec3& force) noexcept;
+  void AddForce(std::uint32_t node, const math::Vec3& force) noexcept;
   /// One iteration.
   /// \return largest residual before it [N], NaN where one is; 0 unless measured
   double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
@@ -71,8 +71,8 @@ class SpringSlices {
   std::vector<std::uint8_t> is_scattered_;  // as in SliceStep
   bool has_lookups_ = false;                // for most steps
   bool is_by_slice_ = false;                // where the last step left the displacements
-  AlignedVector<float> springs_, nodes_, u_by_slice_, previous_by_slice_;
-  AlignedVector<Float4> u_, previous_;
+  math::AlignedVector<float> springs_, nodes_, u_by_slice_, previous_by_slice_;
+  math::AlignedVector<Float4> u_, previous_;
   double lowest_ = 0, smallest_shape_ = 0;
 };
 

@@ -17,6 +17,9 @@ inline constexpr bool kIsPlainState<tissue::Spring> = sizeof(tissue::Spring) ==
 }  // namespace trocar::base
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 bool IsMagnitude(double value) {

@@ -19,7 +19,7 @@ inline constexpr double kLinearRounding = 1e-12;
 
 /// Vectors of a solve, all of one length, (padded).
 struct LinearVectors {
-  AlignedVector<Float4>&step, &r, &z, &p, &q;
+  math::AlignedVector<Float4>&step, &r, &z, &p, &q;
 };
 struct TruncatedReport {
   int iterations = 0;

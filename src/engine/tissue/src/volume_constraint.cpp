@@ -8,6 +8,8 @@
 
 namespace trocar::tissue {
 
+using math::Vec3;
+
 double CalcVolumeGradient(std::span<const Vec3> position, std::span<const geometry::Triangle> triangles,
                           std::span<Vec3> gradient) noexcept {
   TROCAR_ASSERT(gradient.size() == position.size());

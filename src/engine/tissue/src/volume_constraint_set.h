@@ -13,12 +13,12 @@ class VolumeConstraintSet final : public ConstraintSet {
   VolumeConstraintSet(Conservation& conservation, ConservationState& state) noexcept
       : conservation_(&conservation), state_(&state) {}
 
-  void Project(TissueState& tissue, std::span<Vec3> previous) noexcept override {
+  void Project(TissueState& tissue, std::span<math::Vec3> previous) noexcept override {
     conservation_->KeepVolumes(tissue, previous, *state_);
   }
   int Interval() const noexcept override { return kProjectionInterval; }
   std::span<const NodeRange> Nodes() const noexcept override { return conservation_->OrganNodes(); }
-  std::span<const Vec3> Gradient() const noexcept override { return conservation_->VolumeGradient(); }
+  std::span<const math::Vec3> Gradient() const noexcept override { return conservation_->VolumeGradient(); }
   bool IsActive(std::size_t organ) const noexcept override {
     return Conservation::IsSealed(state_->organs[organ]);
   }

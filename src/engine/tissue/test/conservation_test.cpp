@@ -14,6 +14,9 @@
 #include "trocar_test/threads.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 // What AreVolumesInReach() has measured is taken once, for the positions that it was asked of, and is what would be
@@ -266,7 +269,7 @@ double ShapeError(const Sac& sac) {
   MotionMoments moments;
   for (std::size_t i = 0; i < sac.organ_nodes; ++i)
     moments.AddPoint(1.0, sac.model.rest[i], sac.tissue.position[i]);
-  Pose fit = FitRigidMotion(moments, {});
+  math::Pose fit = FitRigidMotion(moments, {});
   for (int i = 0; i < 3; ++i) fit = FitRigidMotion(moments, fit.rotation);
   double worst = 0;
   for (std::size_t i = 0; i < sac.organ_nodes; ++i) {
@@ -290,8 +293,8 @@ double CarryAway(bool follows, std::uint64_t* hash = nullptr, int threads = 1) {
   Vec3 last;
   for (int tick = 0; tick < 480; ++tick) {
     const double way = std::fmin(1.0, tick / 240.0);
-    const Quaternion turn = math::RotationAbout(math::Normalized(Vec3{1, 1, 0}), 0.5 * M_PI * way);
-    const Pose X{turn, centre - math::Rotate(turn, centre) + way * Vec3{0.12, -0.16, 0}};
+    const math::Quaternion turn = math::RotationAbout(math::Normalized(Vec3{1, 1, 0}), 0.5 * M_PI * way);
+    const math::Pose X{turn, centre - math::Rotate(turn, centre) + way * Vec3{0.12, -0.16, 0}};
     sac.Hold(pole, X);
     load = {.gravity = {}};
     (void)SolveConserving(solver, {}, kTick, conservation, load, sac.tissue, state);
@@ -349,7 +352,7 @@ TEST(Conservation, NoVolumeIsKeptByThrowingNodes) {
     Conservation conservation(sac.model, sac.settings);
     ConservationState state = conservation.MakeState(sac.tissue);
     for (std::size_t i = 1; i < sac.tissue.strand_is_intact.size(); ++i) sac.tissue.strand_is_intact[i] = 0;
-    const Quaternion turn = math::RotationAbout({0, 0, 1}, angle);
+    const math::Quaternion turn = math::RotationAbout({0, 0, 1}, angle);
     for (std::size_t i = 0; i < sac.organ_nodes; ++i)
       sac.tissue.position[i] = centre + math::Rotate(turn, sac.model.rest[i] - centre);
     state.organs[0].target *= 1.05;

@@ -11,6 +11,9 @@
 #include "trocar_test/threads.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 // A sac that hangs wrinkled answers a pressure by more volume than at rest: a solver that went the whole way

@@ -18,7 +18,7 @@ struct CrumpledSphere {
       const auto wobble = [&](int salt) {
         return 0.01 * std::sin(12.9898 * static_cast<double>(i) + 78.233 * salt);
       };
-      state.position[i] += Vec3{wobble(1), wobble(2), wobble(3)};
+      state.position[i] += math::Vec3{wobble(1), wobble(2), wobble(3)};
     }
   }
 };

@@ -12,6 +12,9 @@
 #include "trocar_test/threads.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 class BothSolvers : public testing::TestWithParam<SolverKind> {

@@ -8,6 +8,9 @@
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 struct RandomSystem {

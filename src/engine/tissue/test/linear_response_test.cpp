@@ -8,6 +8,9 @@
 #include "test_systems.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 // Oracle: the residual of the whole model, moved by a little of the answer, falls by as much of the force.

@@ -60,7 +60,7 @@ Elasticity MeasureLattice(double bending_share) {
   const auto stiffness =
       CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1 - bending_share) * membrane);
   struct Link {
-    Vec3 along;
+    math::Vec3 along;
     double k;
   };
   std::vector<Link> links;
@@ -74,7 +74,7 @@ Elasticity MeasureLattice(double bending_share) {
   const auto c = [&](int i, int j) {
     double sum = 0;
     for (const Link& link : links) {
-      const Vec3 u = math::Normalized(link.along);
+      const math::Vec3 u = math::Normalized(link.along);
       sum += link.k * math::SquaredNorm(link.along) * u[i] * u[i] * u[j] * u[j] / area;
     }
     return sum;

@@ -10,6 +10,9 @@
 #include "trocar/tissue/state_guard.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -18,6 +18,9 @@
 #include "trocar_test/threads.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 /// A pressed and pulled sphere with strands, a duct of two rows of springs at its pole, and a spring whose ends meet.
@@ -113,7 +116,8 @@ std::vector<float> Values(const LinkHierarchy& hierarchy) {
 }
 
 /// Value v of the `floats` of a node or an entry.
-double ValueAt(const AlignedVector<float>& values, std::size_t at, std::size_t v, std::size_t floats = 6) {
+double ValueAt(const math::AlignedVector<float>& values, std::size_t at, std::size_t v,
+               std::size_t floats = 6) {
   return static_cast<double>(
       values[at / kSliceNodes * floats * kSliceNodes + v * kSliceNodes + at % kSliceNodes]);
 }

@@ -16,6 +16,9 @@
 #include "trocar_test/threads.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 /// Two spheres apart from each other, pressed out of shape, a node of each held.
@@ -79,7 +82,7 @@ struct Follower {
   }
   /// K x, in the caller's order.
   std::vector<Vec3> Multiply(const std::vector<Vec3>& x) {
-    AlignedVector<Float4> direction(position.size()), product(position.size());
+    math::AlignedVector<Float4> direction(position.size()), product(position.size());
     for (std::uint32_t i = 0; i < model.Size(); ++i) {
       const Vec3& v = x[model.old_of_new[i]];
       direction[i] = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0.0f};

@@ -10,6 +10,11 @@
 #include "trocar/math/random.h"
 
 namespace trocar::tissue {
+
+using math::Pose;
+using math::Quaternion;
+using math::Vec3;
+
 namespace {
 
 std::vector<Vec3> RandomPoints(math::Random& random, int count, const Vec3& extent) {

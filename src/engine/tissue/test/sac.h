@@ -35,7 +35,7 @@ struct Sac {
       if (mesh.positions[i].y < 0.05 + 0.8 * kRadius) continue;
       definition.fixed.push_back(static_cast<std::uint32_t>(definition.rest.size()));
       definition.strands.push_back({i, definition.fixed.back(), 30.0});
-      definition.rest.push_back(mesh.positions[i] + Vec3{0, 0.001, 0});
+      definition.rest.push_back(mesh.positions[i] + math::Vec3{0, 0.001, 0});
       definition.mass.push_back(0.0);
       definition.shape_stiffness.push_back(0.0);
     }
@@ -47,14 +47,15 @@ struct Sac {
     return CalcClosedVolume(std::span(tissue.position).first(organ_nodes), settings.organs[0].triangles);
   }
   /// Nodes around the pole in a direction.
-  std::vector<std::uint32_t> Pole(const Vec3& direction, double share = 0.93) const {
+  std::vector<std::uint32_t> Pole(const math::Vec3& direction, double share = 0.93) const {
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t i = 0; i < organ_nodes; ++i) {
-      if (math::Dot(model.rest[i] - Vec3{0.02, 0.05, -0.1}, direction) > share * kRadius) nodes.push_back(i);
+      if (math::Dot(model.rest[i] - math::Vec3{0.02, 0.05, -0.1}, direction) > share * kRadius)
+        nodes.push_back(i);
     }
     return nodes;
   }
-  void Hold(const std::vector<std::uint32_t>& nodes, const Pose& X) {
+  void Hold(const std::vector<std::uint32_t>& nodes, const math::Pose& X) {
     for (const auto node : nodes) {
       tissue.condition[node] = NodeCondition::kPrescribed;
       tissue.position[node] = X * model.rest[node];

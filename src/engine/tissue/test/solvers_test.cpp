@@ -15,6 +15,9 @@
 #include "trocar_test/threads.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 /// A square sheet in the x-y plane, held at its border and pulled across at its middle.

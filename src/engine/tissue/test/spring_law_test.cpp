@@ -17,6 +17,9 @@
 #include "trocar/tissue/model_check.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 constexpr SpringLaw kWall{.stiffening = 12.0, .stiffening_strain = 0.2};

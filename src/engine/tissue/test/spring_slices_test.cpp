@@ -16,6 +16,9 @@
 #include "trocar_test/threads.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 struct MeshSettings {

@@ -20,7 +20,7 @@ TEST(StateGuard, RestoresTheLastGoodStateInTheSameTick) {
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 3.0}) {
     state.position[1].x = bad;
     EXPECT_EQ(guard.Check(state), GuardVerdict::kRestored) << bad;
-    EXPECT_EQ(state.position[1], (Vec3{0, 0, -0.11}));
+    EXPECT_EQ(state.position[1], (math::Vec3{0, 0, -0.11}));
     EXPECT_EQ(guard.Check(state), GuardVerdict::kGood);
   }
 }

@@ -22,6 +22,9 @@
 #include "trocar_test/threads.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 constexpr double kSacRadius = 0.015, kSeconds = 1.0 / 120;
@@ -219,7 +222,7 @@ class Tissue {
   /// The jaw takes the pole below and the tail's end, and goes on with them.
   void Move() {
     const double way = 4e-4 * std::max(0, tick_ - course_->grasped);
-    const Pose X{math::RotationAbout({1, 0, 0}, 20.0 * way), way * Vec3{0.5, -0.3, 1.0}};
+    const math::Pose X{math::RotationAbout({1, 0, 0}, 20.0 * way), way * Vec3{0.5, -0.3, 1.0}};
     for (std::uint32_t i = 0; i < system_.first_spare; ++i) {
       const bool is_tail_end = i + 1 == system_.first_spare;
       const bool is_pole = i < system_.sac.node_count && kCentre.z + 0.9 * kSacRadius < model_.rest[i].z;

@@ -87,7 +87,7 @@ struct Theatre {
     for (int weakened = 0; weakened < 5; ++weakened) springs[random() % springs.size()].stiffness *= 0.4;
     const std::uint32_t node = static_cast<std::uint32_t>(random() % mesh.positions.size()),
                         twin = next_spare++;
-    definition.rest[twin] = definition.rest[node] + Vec3{1e-4, 0, 0};
+    definition.rest[twin] = definition.rest[node] + math::Vec3{1e-4, 0, 0};
     definition.mass[twin] = definition.mass[node] *= 0.5;
     definition.shape_stiffness[twin] = definition.shape_stiffness[node] *= 0.5;
     std::erase(definition.fixed, twin);

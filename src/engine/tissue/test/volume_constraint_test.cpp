@@ -10,6 +10,9 @@
 #include "trocar/geometry/primitives.h"
 
 namespace trocar::tissue {
+
+using math::Vec3;
+
 namespace {
 
 TEST(CalcVolumeGradient, AgreesWithTheVolumeAndItsFiniteDifferences) {

@@ -11,6 +11,11 @@
 #include "trocar/device/hand_calibration.h"
 
 namespace trocar::device {
+
+using math::Pose;
+using math::Quaternion;
+using math::Vec3;
+
 namespace {
 
 using base::ErrorCode;

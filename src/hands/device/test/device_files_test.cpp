@@ -13,6 +13,9 @@
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::device {
+
+using math::Vec3;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -344,7 +347,7 @@ TEST(Faults, AreParsed) {
 TEST(Faults, JumpsSpoilSensorsAndCursorsAlike) {
   const std::vector<Fault> jumps = {*ParseFault("jump@1")};
   const auto cursor = SpoilCursor(jumps, [](int, double) { return Vec3{}; });
-  const auto sensor = SpoilMotion(jumps, [](int, double) { return Pose{}; });
+  const auto sensor = SpoilMotion(jumps, [](int, double) { return math::Pose{}; });
   int off = 0;
   for (int i = 0; i < 1000; ++i) {
     const double time = 1.0005 + 0.001 * i;

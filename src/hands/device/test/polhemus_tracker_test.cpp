@@ -192,7 +192,7 @@ TEST(PolhemusTracker, WithoutTakingAllThatIsThereAFloodIsOldNews) {
     const IoResult got = port->Read(bytes);
     framer.Feed({bytes.data(), got.count}, [&](const TrackerRecord& record) {
       if (record.station != 1) return;
-      const Vec3 p = truth(kLeftHand, time).translation;
+      const math::Vec3 p = truth(kLeftHand, time).translation;
       const double off = std::min(math::Distance(record.position, p), math::Distance(-record.position, p));
       farthest = std::max(farthest, off);
     });

@@ -9,6 +9,10 @@
 #include "trocar/device/emulator.h"
 
 namespace trocar::device {
+
+using math::Pose;
+using math::Vec3;
+
 namespace {
 
 constexpr double kStep = 1.0 / 60;
@@ -121,7 +125,7 @@ TEST_F(TrackedHandsTest, ChoosesTheHemisphereOfTheSettingsAtFirst) {
 TEST_F(TrackedHandsTest, KnowsThatMinusQIsQ) {
   for (int i = 0; i < 60; ++i) {
     Pose pose = PoseAt(kStep * i);
-    Quaternion& q = pose.rotation;
+    math::Quaternion& q = pose.rotation;
     if (i % 2 == 1) q = {-q.w, -q.x, -q.y, -q.z};
     hands_.Accept(kLeftHand, pose, kStep * i);
   }

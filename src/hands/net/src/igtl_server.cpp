@@ -38,8 +38,8 @@ bool IsDue(double time, double period, double& next) noexcept {
 
 std::string FormatTools(const simulation::Snapshot& snapshot) {
   const std::array<device::IgtlTool, 3> tools = {{
-      {"LeftTool", RasFromWorld(snapshot.instruments[scene::kLeft].X_world_tool)},
-      {"RightTool", RasFromWorld(snapshot.instruments[scene::kRight].X_world_tool)},
+      {"LeftTool", RasFromWorld(snapshot.instruments[instrument::kLeft].X_world_tool)},
+      {"RightTool", RasFromWorld(snapshot.instruments[instrument::kRight].X_world_tool)},
       {"Laparoscope", RasFromWorld(snapshot.X_world_laparoscope)},
   }};
   std::string bytes;

@@ -43,7 +43,7 @@ class IgtlServerTest : public testing::Test {
     duct.first_node = kNodes;
     duct.node_count = 2;
     snapshot_.positions.resize(kNodes + 2, {0.1, 0.2, 0.3});
-    snapshot_.instruments[scene::kLeft].X_world_tool.translation = {0.01, 0.02, 0.03};
+    snapshot_.instruments[instrument::kLeft].X_world_tool.translation = {0.01, 0.02, 0.03};
     surfaces_ = {organ, duct};
     Serve(surfaces_);
   }

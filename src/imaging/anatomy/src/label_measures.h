@@ -12,8 +12,6 @@
 
 namespace trocar::anatomy {
 
-using math::Vec3;
-
 /// How a map's axes lie. Vectors are (left, cranial, anterior), their zero is the centre of the first voxel.
 struct VoxelFrame {
   std::array<double, 3> step_mm{};  ///< distance of voxels along each axis

@@ -9,6 +9,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kGrain = 100.0;  // points are kept to 1 / kGrain pixel, as the file keeps them

@@ -8,6 +8,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 // Pixel centres are moved by less than any contour's accuracy, so that no corner lies exactly on a centre's

@@ -8,6 +8,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kLeastShift = 0.5;  // a smaller reach moves nothing [pixels]

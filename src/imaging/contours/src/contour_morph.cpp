@@ -10,6 +10,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kStep = 2.0;            // distance of matched points [pixels]

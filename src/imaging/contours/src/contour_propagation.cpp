@@ -10,6 +10,9 @@
 #include "trocar/contours/contour_spline.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kRowStep = 2.0;     // distance of the rows of the band [pixels]

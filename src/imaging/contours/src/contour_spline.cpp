@@ -10,6 +10,9 @@
 #include "trocar/math/cubic_spline.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 /// Rounds of division; each at least halves the offending chords, so the curve ends at the polygon.

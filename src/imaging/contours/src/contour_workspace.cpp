@@ -15,6 +15,9 @@
 #include "trocar/roles/roles.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 using base::Error;

@@ -16,6 +16,9 @@
 #include "trocar/contours/edge_field.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 using base::Error;

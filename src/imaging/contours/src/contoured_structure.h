@@ -20,7 +20,8 @@ namespace trocar::contours {
 struct ContouredStructure {
   OrganReport report;
   std::vector<meshing::FilledSlice> slices;
-  std::vector<std::vector<std::vector<Vec2>>> curves;  ///< of each slice; empty where the slice has holes
+  std::vector<std::vector<std::vector<math::Vec2>>>
+      curves;  ///< of each slice; empty where the slice has holes
   /// How far the organ goes on before the first and behind the last slice [mm].
   std::array<double, 2> ends_mm = {0, 0};
 };

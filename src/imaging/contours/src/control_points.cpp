@@ -14,6 +14,9 @@
 #include "trocar/roles/roles.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 using base::ErrorCode;

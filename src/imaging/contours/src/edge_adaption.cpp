@@ -9,6 +9,9 @@
 #include "trocar/contours/contour_spline.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kStep = 0.5;  // distance between the places tried along a normal [pixels]

@@ -8,6 +8,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 std::vector<float> MakeGaussian(double sigma) {

@@ -8,6 +8,9 @@
 #include "edge_cost.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kColumnStep = 0.5;  // of the band [pixels]

@@ -18,7 +18,7 @@ inline constexpr double kEdgeRowStep = 2.0;
 /// A contour's edge.
 struct EdgePath {
   ClosedCurve curve;                  ///< (rows) where it was looked for
-  std::vector<Vec2> at;               ///< (rows) the edge beside each row [pixels]
+  std::vector<math::Vec2> at;         ///< (rows) the edge beside each row [pixels]
   std::vector<std::uint8_t> is_edge;  ///< (rows) a clear edge is there
 };
 

@@ -10,6 +10,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr std::size_t kFewest = 8;

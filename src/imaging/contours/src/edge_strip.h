@@ -14,16 +14,16 @@ namespace trocar::contours {
 
 /// Points at equal steps along a closed curve, with unit normals that point outwards.
 struct ClosedCurve {
-  std::vector<Vec2> at, normal;  ///< (n) [pixels], [-]
+  std::vector<math::Vec2> at, normal;  ///< (n) [pixels], [-]
 };
 
 /// \param polyline  (m) m >= 3 closed [pixels], of any sense of rotation, which is kept
 /// \param step_px   distance of the points, > 0; at least 8 and at most `most` points are made
-ClosedCurve ResampleClosed(std::span<const Vec2> polyline, double step_px, std::size_t most = 4000);
+ClosedCurve ResampleClosed(std::span<const math::Vec2> polyline, double step_px, std::size_t most = 4000);
 
 /// Closed curve of the given points, with their normals.
 /// \param at  (n) n >= 3 points of a closed curve at about equal steps [pixels]
-ClosedCurve MakeClosedCurve(std::vector<Vec2> at);
+ClosedCurve MakeClosedCurve(std::vector<math::Vec2> at);
 
 /// Twice the enclosed area by the length: the radius of a circle, half the width of a band [pixels].
 double CalcHalfWidth(const ClosedCurve& curve);

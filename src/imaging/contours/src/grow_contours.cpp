@@ -14,6 +14,9 @@
 #include "trocar/math/vector.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 using base::Error;

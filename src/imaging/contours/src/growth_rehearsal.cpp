@@ -18,6 +18,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 using base::Error;

@@ -11,6 +11,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr std::array<int, 8> kStepX = {1, 1, 0, -1, -1, -1, 0, 1};

@@ -14,6 +14,9 @@
 #include "trocar/contours/reference_contours.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kShortestMm = 48.0;  // outlines below are too small for a band this wide

@@ -13,6 +13,9 @@
 #include "trocar/meshing/volume_mesher.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 using base::Error;

@@ -8,6 +8,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 using Colour = std::array<std::uint8_t, 3>;

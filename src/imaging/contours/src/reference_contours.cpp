@@ -11,6 +11,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 /// Label axes may differ from the series' extent by this much [mm].

@@ -14,6 +14,9 @@
 #include "trocar/contours/contour_spline.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kBendSlices = 1.0;  // weight of bending from slice to slice against one edge [-]

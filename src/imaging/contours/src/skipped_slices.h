@@ -26,12 +26,13 @@ namespace trocar::contours {
 /// \param fields    (n) of the slices between them, at equal steps from the first contour to the second
 /// \return (n) closed polylines [pixels], one a slice
 /// \pre adaption.skipped_shift_px >= 0.5 (TROCAR_ASSERT)
-std::vector<std::vector<Vec2>> FollowBetween(const ContourMatch& match, std::span<const EdgeField> fields,
-                                             const EdgeAdaptionSettings& adaption);
+std::vector<std::vector<math::Vec2>> FollowBetween(const ContourMatch& match,
+                                                   std::span<const EdgeField> fields,
+                                                   const EdgeAdaptionSettings& adaption);
 
 /// How an organ goes on beyond its last contoured slice.
 struct FollowedEnd {
-  std::vector<std::vector<Vec2>> contours;  ///< of the next slices, outwards [pixels]
+  std::vector<std::vector<math::Vec2>> contours;  ///< of the next slices, outwards [pixels]
   /// The slice after them does not show the organ. Otherwise it is not known whether it does.
   bool is_ended = false;
 };
@@ -42,7 +43,8 @@ struct FollowedEnd {
 /// \param fields    (n) of the slices beyond, outwards
 /// \param least_px  a contour narrower than this is the end [pixels], > 0
 /// \pre adaption.skipped_shift_px >= 0.5 (TROCAR_ASSERT)
-FollowedEnd FollowEnd(const EdgeField& last, std::span<const Vec2> contour, std::span<const EdgeField> fields,
-                      double least_px, const EdgeAdaptionSettings& adaption);
+FollowedEnd FollowEnd(const EdgeField& last, std::span<const math::Vec2> contour,
+                      std::span<const EdgeField> fields, double least_px,
+                      const EdgeAdaptionSettings& adaption);
 
 }  // namespace trocar::contours

@@ -5,6 +5,9 @@
 #include <utility>
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 /// Of the quick spline; its crossings are sought over all pairs of steps [pixels].

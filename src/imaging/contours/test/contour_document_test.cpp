@@ -12,6 +12,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 ControlPoints MakePoints() {

@@ -8,6 +8,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 // even-odd rule at the same pixel centre, straight from its definition

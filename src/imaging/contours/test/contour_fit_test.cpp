@@ -10,6 +10,9 @@
 #include "phantom_picture.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kRadius = 45.0;

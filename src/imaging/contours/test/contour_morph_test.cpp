@@ -9,6 +9,9 @@
 #include "trocar/contours/contour_fill.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 std::vector<Vec2> MakeCircle(double cx, double cy, double radius) {

@@ -8,6 +8,9 @@
 #include "phantom_picture.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 images::ColorImage MakeDisc(const Vec2& centre, double radius, std::uint64_t seed) {

@@ -13,6 +13,9 @@
 #include "trocar/contours/contour_spline.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kRadius = 24.0;  // mm

@@ -8,6 +8,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 TEST(FitContour, FollowsACircle) {

@@ -21,6 +21,9 @@
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -53,8 +53,8 @@ TEST(ControlPoints, ComeBackUnchanged) {
   EXPECT_EQ(FormatControlPoints(*parsed), text);
   const Structure* liver = parsed->FindStructure("liver");
   ASSERT_NE(liver, nullptr);
-  EXPECT_EQ(liver->slices[1].holes[0][2], (Vec2{22, 30}));
-  EXPECT_EQ(liver->slices[0].contours[0][1], (Vec2{50.25, 12}));
+  EXPECT_EQ(liver->slices[1].holes[0][2], (math::Vec2{22, 30}));
+  EXPECT_EQ(liver->slices[0].contours[0][1], (math::Vec2{50.25, 12}));
   EXPECT_EQ(liver->adaption.max_shift_px, 2.5);
   EXPECT_EQ(liver->adaption.skipped_shift_px, 1.5);
   EXPECT_EQ(liver->reference_left_out[1], 6);

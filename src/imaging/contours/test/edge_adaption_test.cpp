@@ -9,6 +9,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kCentre = 60.0, kRadius = 35.0;

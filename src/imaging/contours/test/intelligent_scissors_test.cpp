@@ -8,6 +8,9 @@
 #include "phantom_picture.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 const Vec2 kCentre{80, 80};

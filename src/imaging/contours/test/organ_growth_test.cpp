@@ -13,6 +13,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 using math::Vec3;

@@ -15,6 +15,9 @@
 #include "trocar/contours/contour_fill.h"
 
 namespace trocar::contours {
+
+using math::Vec2;
+
 namespace {
 
 constexpr std::size_t kBetween = 7;  // of every eighth slice

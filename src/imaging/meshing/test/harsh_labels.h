@@ -16,8 +16,6 @@
 
 namespace trocar::meshing::test {
 
-using math::Vec3;
-
 /// What is wrong with a label map.
 struct LabelFaults {
   std::string name;
@@ -37,10 +35,10 @@ class HarshLiver {
  public:
   explicit HarshLiver(const LabelFaults& faults) : random_(faults.seed) {
     if (faults.vessel_generations > 0)
-      Branch({20, -10, -60}, math::Normalized(Vec3{0.2, 0.2, 0.95}), random_.Uniform(4, 8),
+      Branch({20, -10, -60}, math::Normalized(math::Vec3{0.2, 0.2, 0.95}), random_.Uniform(4, 8),
              faults.vessel_generations - 1);
     for (int i = 0; i < faults.sheets; ++i) {
-      const Vec3 normal = {random_.Uniform(-1, 1), random_.Uniform(-1, 1), random_.Uniform(-1, 1)};
+      const math::Vec3 normal = {random_.Uniform(-1, 1), random_.Uniform(-1, 1), random_.Uniform(-1, 1)};
       sheets_.push_back({math::Normalized(normal), random_.Uniform(-40, 40), random_.Uniform(0.8, 2.5)});
     }
     for (int i = 0; i < faults.lumps; ++i)
@@ -48,7 +46,7 @@ class HarshLiver {
                         random_.Uniform(4, 22)});
   }
 
-  bool Holds(const Vec3& p) const {
+  bool Holds(const math::Vec3& p) const {
     const double x = (p.x - 25) / 70, y = p.y / 65, z = (p.z - 5) / 55;
     bool inside = x * x + y * y + z * z < 1;
     inside |= p.x > -110 && p.x < 30 && std::fabs(p.y - 10) < 45 - 0.2 * std::fabs(p.x) &&
@@ -56,7 +54,7 @@ class HarshLiver {
     for (const Ball& ball : lumps_) inside |= Norm(p - ball.centre) < ball.radius;
     if (!inside) return false;
     for (const Vessel& vessel : vessels_) {
-      const Vec3 along = vessel.to - vessel.from;
+      const math::Vec3 along = vessel.to - vessel.from;
       const double part = std::clamp(Dot(p - vessel.from, along) / Dot(along, along), 0.0, 1.0);
       if (Norm(p - vessel.from - part * along) < vessel.radius) return false;
     }
@@ -68,24 +66,25 @@ class HarshLiver {
 
  private:
   struct Vessel {
-    Vec3 from, to;
+    math::Vec3 from, to;
     double radius;
   };
   struct Sheet {
-    Vec3 normal;
+    math::Vec3 normal;
     double offset, half_thickness;
   };
   struct Ball {
-    Vec3 centre;
+    math::Vec3 centre;
     double radius;
   };
 
-  void Branch(const Vec3& from, const Vec3& direction, double radius, int generations) {
-    const Vec3 to = from + random_.Uniform(20, 35) * direction;
+  void Branch(const math::Vec3& from, const math::Vec3& direction, double radius, int generations) {
+    const math::Vec3 to = from + random_.Uniform(20, 35) * direction;
     vessels_.push_back({from, to, radius});
     for (int child = 0; child < 2 && generations > 0; ++child) {
-      const Vec3 turned = {direction.x + random_.Uniform(-0.8, 0.8), direction.y + random_.Uniform(-0.8, 0.8),
-                           direction.z + random_.Uniform(-0.8, 0.8)};
+      const math::Vec3 turned = {direction.x + random_.Uniform(-0.8, 0.8),
+                                 direction.y + random_.Uniform(-0.8, 0.8),
+                                 direction.z + random_.Uniform(-0.8, 0.8)};
       Branch(to, math::Normalized(turned), 0.75 * radius, generations - 1);
     }
   }
@@ -113,7 +112,7 @@ inline images::LabelVolume MakeHarshLabels(const LabelFaults& faults) {
         const double u = faults.voxel_mm[0] * (i - 0.5 * (map.size[0] - 1));
         const double v = faults.voxel_mm[1] * (j - 0.5 * (map.size[1] - 1));
         const double w = faults.voxel_mm[2] * (sampled - 0.5 * (map.size[2] - 1));
-        const Vec3 p = {c * u - s * v, c * (s * u + c * v) - s * w, s * (s * u + c * v) + c * w};
+        const math::Vec3 p = {c * u - s * v, c * (s * u + c * v) - s * w, s * (s * u + c * v) + c * w};
         map.labels.push_back(body.Holds(p) && p.z <= faults.cut_above_mm ? 1 : 0);
       }
     }

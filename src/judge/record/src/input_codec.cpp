@@ -9,6 +9,9 @@
 #include "trocar/base/state_archive.h"
 
 namespace trocar::record {
+
+using scene::Input;
+
 namespace {
 
 constexpr int kGridBits = 30;
@@ -185,7 +188,7 @@ bool TakeFields(std::span<const std::byte>& bytes, T& value) {
 
 /// What changes seldom: feet, tools, the assistant.
 struct Controls {
-  std::array<scene::HandControls, scene::kHandCount> hands;
+  std::array<scene::HandControls, instrument::kHandCount> hands;
   scene::AssistantCommand assistant = scene::AssistantCommand::kWait;
 
   void VisitState(base::StateArchive& archive) {

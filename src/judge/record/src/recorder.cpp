@@ -45,7 +45,7 @@ constexpr double kLowSeconds = 60, kLowShare = 0.05;
 
 /// What one tick hands over.
 struct Entry {
-  Input input;
+  scene::Input input;
   std::uint64_t tick = 0;
   std::uint64_t hash = 0;
   bool has_hash = false;
@@ -432,7 +432,7 @@ Recorder::~Recorder() {
   content_->Stop();
 }
 
-void Recorder::Add(const Input& input, const Simulation& simulation) noexcept {
+void Recorder::Add(const scene::Input& input, const Simulation& simulation) noexcept {
   Content& c = *content_;
   if (c.handover.has_overrun.load(std::memory_order_relaxed) || c.has_failed.load(std::memory_order_relaxed))
     return;

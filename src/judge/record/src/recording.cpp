@@ -143,7 +143,7 @@ class RecordingReader {
     if ((head & kNewRow) != 0) decoder_.Reset();
     content = content.subspan(4);
     for (std::uint32_t n = head & ~kNewRow; n > 0; --n) {
-      Input input;
+      scene::Input input;
       if (!decoder_.Decode(content, input)) return "a row of inputs is not understood";
       recording_.inputs.push_back(input);
     }

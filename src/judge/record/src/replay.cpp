@@ -209,7 +209,7 @@ base::Status Replay::CompareAll(const std::function<bool(double)>& progress, con
   std::vector<std::byte> state;
   if (watch) watch(simulation_.GetSnapshot(), {});
   while (!IsAtEnd()) {
-    const Input& input = recording_->inputs[Tick() - recording_->FirstTick()];
+    const scene::Input& input = recording_->inputs[Tick() - recording_->FirstTick()];
     Step();
     if (watch) watch(simulation_.GetSnapshot(), input);
     if (progress && Tick() % kProgressTicks == 0 &&

@@ -84,8 +84,8 @@ bool Restates(const scene::ErrorRule& rule, const std::vector<OperationError>& f
 struct TraceBuilder::Content {
   // constant
   std::vector<SurfaceInfo> surfaces;
-  std::array<std::vector<std::int16_t>, scene::kHandCount> tool_index;  // (tray) place in tool_names
-  std::array<std::vector<bool>, scene::kHandCount> is_electrode;        // (tray)
+  std::array<std::vector<std::int16_t>, instrument::kHandCount> tool_index;  // (tray) place in tool_names
+  std::array<std::vector<bool>, instrument::kHandCount> is_electrode;        // (tray)
   std::optional<scene::Task> task;
   double field_of_view = 0;
 
@@ -167,7 +167,7 @@ void TraceBuilder::Content::AddHand(const Snapshot& now, const scene::HandContro
   sample.force = math::Norm(seen.force);
   sample.tool = tool_index[hand][tray];
   sample.organ = static_cast<std::int16_t>(seen.organ);
-  sample.in_view = simulation::IsInView(now.X_world_laparoscope, field_of_view, sample.tip);
+  sample.in_view = instrument::IsInView(now.X_world_laparoscope, field_of_view, sample.tip);
   sample.grasping = seen.is_grasping;
   sample.in_contact = seen.is_touching;
   sample.touching_tool = seen.is_touching_tool;
@@ -301,7 +301,7 @@ void TraceBuilder::Content::AddJudgement(const Snapshot& now) {
 }
 
 void TraceBuilder::Add(const Snapshot& now,
-                       const std::array<scene::HandControls, scene::kHandCount>& controls) {
+                       const std::array<scene::HandControls, instrument::kHandCount>& controls) {
   Content& c = *content_;
   if (c.IsEmpty()) {
     // what happened before is not of this attempt

@@ -11,6 +11,9 @@
 #include "wandering_input.h"
 
 namespace trocar::record {
+
+using scene::Input;
+
 namespace {
 
 /// Also where it is not a number.

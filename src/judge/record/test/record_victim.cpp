@@ -22,11 +22,11 @@ int main(int argc, char** argv) {
   settings.waits = true;
   auto recorder = record::Recorder::Start(argv[2], description, *simulation, settings);
   if (!recorder.ok()) return 4;
-  const record::Input home = scene::CalcScriptInput(*shared, 0);
+  const scene::Input home = scene::CalcScriptInput(*shared, 0);
   std::printf("0\n");
   std::fflush(stdout);
   for (std::uint64_t tick = 0, told = 0;; ++tick) {
-    const record::Input input = record::MakeWanderingInput(home, tick);
+    const scene::Input input = record::MakeWanderingInput(home, tick);
     simulation->Step(input);
     (*recorder)->Add(input, *simulation);
     if (const std::uint64_t kept = (*recorder)->Status().kept; kept != told) {

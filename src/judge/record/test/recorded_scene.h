@@ -33,7 +33,7 @@ class RecordedScene : public scene::SmallScene {
     description.player = "a test";
     return description;
   }
-  Input InputOf(std::uint64_t tick) const {
+  scene::Input InputOf(std::uint64_t tick) const {
     return MakeWanderingInput(scene::CalcScriptInput(*scene_, 0), tick);
   }
   static RecorderSettings Settings() {
@@ -50,7 +50,7 @@ class RecordedScene : public scene::SmallScene {
     auto recorder = Recorder::Start(File(), Describe(), simulation, std::move(settings));
     ASSERT_TRUE(recorder.ok()) << recorder.error().Text();
     for (std::uint64_t tick = 0; tick < ticks; ++tick) {
-      const Input input = InputOf(tick);
+      const scene::Input input = InputOf(tick);
       simulation.Step(input);
       (*recorder)->Add(input, simulation);
     }

@@ -70,7 +70,7 @@ TEST_F(RecorderTest, NotesEvents) {
   std::vector<std::string> seen;
   std::uint64_t count = 0;
   for (int tick = 0; tick < 150; ++tick) {
-    const Input input = scene::CalcScriptInput(*scene_, simulation.GetSnapshot().time);
+    const scene::Input input = scene::CalcScriptInput(*scene_, simulation.GetSnapshot().time);
     simulation.Step(input);
     (*recorder)->Add(input, simulation);
     const auto& now = simulation.GetSnapshot();

@@ -45,11 +45,11 @@ class TraceTest : public RecordedScene {
   std::optional<simulation::Simulation> simulation_;
   simulation::Snapshot snapshot_;
   std::optional<TraceBuilder> builder_;
-  std::array<scene::HandControls, scene::kHandCount> controls_{};
+  std::array<scene::HandControls, instrument::kHandCount> controls_{};
 };
 
 TEST_F(TraceTest, TakesOverPoseForceAndState) {
-  auto& right = snapshot_.instruments[scene::kRight];
+  auto& right = snapshot_.instruments[instrument::kRight];
   right.X_world_tool = {{}, {0.01, 0.02, -0.1}};
   right.X_world_device = {{}, {0.01, 0.02, -0.103}};
   right.force = {0, 3, 4};
@@ -61,7 +61,7 @@ TEST_F(TraceTest, TakesOverPoseForceAndState) {
   Add();
   const training::AttemptTrace trace = builder_->Calc();
   ASSERT_EQ(trace.Ticks(), 1u);
-  const training::ToolSample& sample = trace.hands[scene::kRight][0];
+  const training::ToolSample& sample = trace.hands[instrument::kRight][0];
   EXPECT_EQ(sample.tip, (math::Vec3{0.01, 0.02, -0.1}));
   EXPECT_EQ(sample.axis, (math::Vec3{0, 0, -1}));
   EXPECT_DOUBLE_EQ(sample.force, 5.0);
@@ -76,7 +76,7 @@ TEST_F(TraceTest, TakesOverPoseForceAndState) {
   EXPECT_EQ(trace.camera[0].lens, (math::Vec3{0, 0, 0.05}));
   EXPECT_EQ(trace.camera[0].direction, (math::Vec3{0, 0, -1}));
   EXPECT_EQ(trace.camera[0].roll, 0.0);
-  EXPECT_EQ(trace.hands[scene::kLeft][0].press, 0.0) << "it touches nothing";
+  EXPECT_EQ(trace.hands[instrument::kLeft][0].press, 0.0) << "it touches nothing";
 }
 
 TEST_F(TraceTest, RollIsHowFarThePictureLeans) {
@@ -90,28 +90,28 @@ TEST_F(TraceTest, RollIsHowFarThePictureLeans) {
 }
 
 TEST_F(TraceTest, KeepsEveryEventOnce) {
-  Emit(EventKind::kGrasp, scene::kLeft);  // before the attempt
+  Emit(EventKind::kGrasp, instrument::kLeft);  // before the attempt
   Add();
   Add();
-  Emit(EventKind::kSlip, scene::kLeft);
-  Emit(EventKind::kGraspMissed, scene::kRight);
+  Emit(EventKind::kSlip, instrument::kLeft);
+  Emit(EventKind::kGraspMissed, instrument::kRight);
   Add();
   for (int i = 0; i < 20; ++i) {
-    Emit(EventKind::kGrasp, scene::kRight);
+    Emit(EventKind::kGrasp, instrument::kRight);
     Add();
   }
   const training::AttemptTrace trace = builder_->Calc();
   ASSERT_EQ(trace.events.size(), 22u);
   EXPECT_EQ(trace.events[0].kind, "slip");
   EXPECT_NEAR(trace.events[0].time, 2 * trace.dt, 1e-15);
-  EXPECT_EQ(trace.events[0].position, trace.hands[scene::kLeft][2].tip);
+  EXPECT_EQ(trace.events[0].position, trace.hands[instrument::kLeft][2].tip);
   EXPECT_FALSE(trace.events[0].is_error);
   EXPECT_EQ(trace.events[21].kind, "grasp");
 }
 
 TEST_F(TraceTest, AnErrorOfTheOperationSaysWhichAndWhere) {
   Add();
-  Emit(EventKind::kOperationError, scene::kRight,
+  Emit(EventKind::kOperationError, instrument::kRight,
        static_cast<int>(cholecystectomy::OperationError::kWrongStructureCut));
   Add();
   const training::AttemptTrace trace = builder_->Calc();
@@ -152,7 +152,7 @@ TEST_F(TraceTest, IsTheSameLiveAndReplayedWithAnyNumberOfThreads) {
   TraceBuilder live(simulation);
   live.Add(simulation.GetSnapshot());
   for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
-    const Input input = InputOf(tick);
+    const scene::Input input = InputOf(tick);
     simulation.Step(input);
     live.Add(simulation.GetSnapshot(), input.controls);
   }

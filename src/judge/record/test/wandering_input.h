@@ -10,10 +10,10 @@
 namespace trocar::record {
 
 /// \param home  of the scene
-inline Input MakeWanderingInput(const Input& home, std::uint64_t tick) {
-  Input input = home;
+inline scene::Input MakeWanderingInput(const scene::Input& home, std::uint64_t tick) {
+  scene::Input input = home;
   const double t = static_cast<double>(tick) / 120;
-  for (int hand = 0; hand < scene::kHandCount; ++hand) {
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
     const double phase = t + 2 * hand;
     // a hand's noise in the last digits
     const double noise = 1e-5 * std::sin(1e4 * phase * phase);

@@ -11,6 +11,9 @@
 #include "trocar/report/axis.h"
 
 namespace trocar::report {
+
+using math::Vec2;
+
 namespace {
 
 using training::AttemptTrace;

@@ -15,9 +15,9 @@ std::uint32_t On(Ground ground, TwoColours colours) {
   return ground == Ground::kLight ? colours.light : colours.dark;
 }
 
-void Trace(cairo_t* cairo, const std::vector<Vec2>& points) {
+void Trace(cairo_t* cairo, const std::vector<math::Vec2>& points) {
   bool is_down = false;
-  for (const Vec2& point : points) {
+  for (const math::Vec2& point : points) {
     if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
       is_down = false;
     } else if (is_down) {

@@ -11,6 +11,9 @@
 #include "trocar/host/translate.h"
 
 namespace trocar::report {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kWideWidth = 960;  // of a drawing that stands alone [px]

@@ -8,6 +8,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::report {
+
+using math::Vec2;
+
 namespace {
 
 // of the letters of a sans-serif face, relative to their size

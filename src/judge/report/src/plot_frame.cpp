@@ -9,6 +9,9 @@
 #include "trocar/report/axis.h"
 
 namespace trocar::report {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kMarkSize = 10.5;  // of the numbers at the axes [px]

@@ -25,8 +25,8 @@ struct PlotFrame {
   double left = 0, top = 0, width = 0, height = 0;  ///< [px]
   Extent x, y;
 
-  Vec2 Map(const Vec2& point) const;
-  std::vector<Vec2> Map(const std::vector<Vec2>& points) const;
+  math::Vec2 Map(const math::Vec2& point) const;
+  std::vector<math::Vec2> Map(const std::vector<math::Vec2>& points) const;
   double Right() const { return left + width; }
   double Bottom() const { return top + height; }
 

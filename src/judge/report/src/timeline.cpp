@@ -10,6 +10,9 @@
 #include "trocar/training/metric_settings.h"
 
 namespace trocar::report {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kWidth = 960, kLabelRoom = 112, kRightRoom = 22;  // [px]

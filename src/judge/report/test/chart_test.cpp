@@ -13,6 +13,9 @@
 #include "trocar/report/axis.h"
 
 namespace trocar::report {
+
+using math::Vec2;
+
 namespace {
 
 using testing::ElementsAre;

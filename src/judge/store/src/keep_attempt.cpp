@@ -71,7 +71,7 @@ base::Result<Attempt> ReplayAttempt(record::Recording recording, const std::file
   record::TraceBuilder builder(replay->GetSimulation());
   const auto played = replay->Verify(
       choice.progress,
-      [&](const simulation::Snapshot& now, const record::Input& input) { builder.Add(now, input.controls); });
+      [&](const simulation::Snapshot& now, const scene::Input& input) { builder.Add(now, input.controls); });
   if (!played.ok()) {
     if (played.error().code == base::ErrorCode::kCancelled) return played.error();
     mark.why = WhyUnverified::kCannotReplay;

@@ -13,6 +13,9 @@
 #include "trocar/training/signal.h"
 
 namespace trocar::training {
+
+using math::Vec3;
+
 namespace {
 
 constexpr double kTremorLow = 5.0, kTremorHigh = 20.0;   // [Hz]

@@ -9,6 +9,9 @@
 #include "trocar/training/smoothness.h"
 
 namespace trocar::training {
+
+using math::Vec3;
+
 namespace {
 
 using math::Atan2;

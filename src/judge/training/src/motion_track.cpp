@@ -10,6 +10,9 @@
 #include "trocar/training/signal.h"
 
 namespace trocar::training {
+
+using math::Vec3;
+
 namespace {
 
 /// One number of each sample, at the even rate and filtered.

@@ -20,8 +20,8 @@ struct Movement {
 
 /// All arrays have one entry per resampled time k / sample_rate_hz.
 struct MotionTrack {
-  std::vector<Vec3> tip;           // m; of the laparoscope its lens
-  std::vector<Vec3> axis;          // unit; of the laparoscope its line of sight
+  std::vector<math::Vec3> tip;     // m; of the laparoscope its lens
+  std::vector<math::Vec3> axis;    // unit; of the laparoscope its line of sight
   std::vector<double> insertion;   // m
   std::vector<double> speed;       // m/s, of the tip
   std::vector<double> slow_speed;  // m/s, over idle_window

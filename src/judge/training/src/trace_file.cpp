@@ -9,6 +9,9 @@
 #include "trocar/host/json.h"
 
 namespace trocar::training {
+
+using math::Vec3;
+
 namespace {
 
 using host::JsonView;

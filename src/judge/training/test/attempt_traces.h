@@ -16,7 +16,7 @@ namespace trocar::training {
 
 using HandMotion = std::function<ToolSample(double)>;
 
-inline ToolSample TipAt(const Vec3& tip) {
+inline ToolSample TipAt(const math::Vec3& tip) {
   ToolSample sample;
   sample.tip = tip;
   return sample;

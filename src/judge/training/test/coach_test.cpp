@@ -90,7 +90,7 @@ TEST(CoachMeasures, TremorIsItsRootMeanSquareAndTheHandThatTrembles) {
 
 TEST(CoachMeasures, AHandThatWaitsIsNamedWithItsLongestWait) {
   AttemptTrace trace = MakeAttempt(30);
-  const Vec3 rest = trace.hands[0][0].tip;
+  const math::Vec3 rest = trace.hands[0][0].tip;
   // ticks 1200 to 2400, and to the end of the leg in which it stopped
   for (std::size_t i = 1200; i < trace.Ticks(); ++i) trace.hands[0][i].tip = rest;
   const CoachMeasure waits = Get(CalcCoachMeasures(trace), "one_hand_waits");

@@ -6,6 +6,9 @@
 #include "trocar/training/metric_definition.h"
 
 namespace trocar::training {
+
+using math::Vec3;
+
 namespace {
 
 constexpr double kSeconds = 30.0;

@@ -32,7 +32,7 @@ AttemptTrace MakeFullTrace() {
     trace.camera.push_back({{0.001 * static_cast<double>(i), 0, 0}, {0, 1, 0}, 0.1});
   trace.organ_names = {"liver", "cystic_duct"};
   trace.events.resize(2);
-  trace.events[0] = {0.05,  "grasp", 1, 1, 2.5, Vec3{1, 2, 3}, false, cholecystectomy::Severity::kMinor,
+  trace.events[0] = {0.05,  "grasp", 1, 1, 2.5, math::Vec3{1, 2, 3}, false, cholecystectomy::Severity::kMinor,
                      false, ""};
   trace.events[1] = {0.06, "wire_touched",    -1, -1, 0.0, {}, true, cholecystectomy::Severity::kMajor,
                      true, "The ring touched"};

@@ -51,9 +51,9 @@ void ActWatch::Look(const simulation::Snapshot& now, const scene::Input& input) 
   clips_ = operation.clip_count;
   topology_ = operation.topology.version;
   bool has_bag = false;
-  for (std::size_t hand = 0; hand < scene::kHandCount; ++hand)
+  for (std::size_t hand = 0; hand < instrument::kHandCount; ++hand)
     has_bag = has_bag || ToolOf(*scene_, now, hand).kind == ToolKind::kBag;
-  for (std::size_t hand = 0; hand < scene::kHandCount; ++hand) {
+  for (std::size_t hand = 0; hand < instrument::kHandCount; ++hand) {
     const simulation::InstrumentSnapshot& tool = now.instruments[hand];
     const ToolKind kind = ToolOf(*scene_, now, hand).kind;
     const scene::HandControls& controls = input.controls[hand];
@@ -90,7 +90,7 @@ void ActWatch::Look(const simulation::Snapshot& now, const scene::Input& input) 
 
 std::vector<Act> ActWatch::Acts() const {
   std::vector<Act> acts;
-  for (std::size_t hand = 0; hand < scene::kHandCount; ++hand)
+  for (std::size_t hand = 0; hand < instrument::kHandCount; ++hand)
     if (is_instrument_[hand]) acts.push_back(acts_[hand]);
   return acts;
 }

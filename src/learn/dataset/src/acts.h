@@ -36,10 +36,10 @@ class ActWatch {
 
   const scene::Scene* scene_;
   std::span<const scene::SurfaceInfo> surfaces_;
-  std::array<Act, scene::kHandCount> acts_;
-  std::array<bool, scene::kHandCount> is_instrument_{};
-  std::array<double, scene::kHandCount> cut_until_{}, clip_until_{};  // [s]
-  std::array<cholecystectomy::Target, scene::kHandCount> last_target_{};
+  std::array<Act, instrument::kHandCount> acts_;
+  std::array<bool, instrument::kHandCount> is_instrument_{};
+  std::array<double, instrument::kHandCount> cut_until_{}, clip_until_{};  // [s]
+  std::array<cholecystectomy::Target, instrument::kHandCount> last_target_{};
   std::size_t cuts_ = 0, clips_ = 0;
   std::uint32_t topology_ = 0;
 };

@@ -15,7 +15,7 @@ constexpr double kWidestView = 2.4;  // rad
 
 scene::Input HomeOf(const scene::Scene& scene) {
   scene::Input input;
-  for (int hand = 0; hand < scene::kHandCount; ++hand) input.hands[hand] = scene.instruments[hand].home;
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) input.hands[hand] = scene.instruments[hand].home;
   input.laparoscope = scene.laparoscope.home;
   input.settings = scene.settings;
   return input;

@@ -155,7 +155,7 @@ class TrocarWriter : public VideoWriter {
     Put<double>("pose", {4, 4}, {pose.begin(), pose.end()});
     std::vector<double> tips, forces, joints;
     std::vector<std::uint8_t> tools;
-    for (std::size_t hand = 0; hand < scene::kHandCount; ++hand) {
+    for (std::size_t hand = 0; hand < instrument::kHandCount; ++hand) {
       const simulation::InstrumentSnapshot& tool = now.instruments[hand];
       const auto tip = ToMatrix(tool.X_world_tool);
       tips.insert(tips.end(), tip.begin(), tip.end());
@@ -164,10 +164,10 @@ class TrocarWriter : public VideoWriter {
                                    tool.joints.jaw});
       tools.push_back(now.operation.tools[hand]);
     }
-    Put("tools", {scene::kHandCount}, tools);
-    Put("tool_poses", {scene::kHandCount, 4, 4}, tips);
-    Put("forces", {scene::kHandCount, 3}, forces);
-    Put("joints", {scene::kHandCount, kJoints}, joints);
+    Put("tools", {instrument::kHandCount}, tools);
+    Put("tool_poses", {instrument::kHandCount, 4, 4}, tips);
+    Put("forces", {instrument::kHandCount, 3}, forces);
+    Put("joints", {instrument::kHandCount, kJoints}, joints);
     std::vector<float> positions;
     for (const math::Vec3& p : now.positions)
       for (const double coordinate : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(coordinate));

@@ -13,6 +13,9 @@
 #include "trocar/base/assert.h"
 
 namespace trocar::environment {
+
+using instrument::kHandCount;
+
 namespace {
 
 constexpr std::array<const char*, kHandCount> kHandNames = {"left.", "right."};

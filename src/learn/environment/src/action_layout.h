@@ -13,9 +13,6 @@
 
 namespace trocar::environment {
 
-using scene::Hand;
-using scene::kHandCount;
-
 /// Greatest rates, which an action of 1 asks for. Those of the joints move a tip 0.12 m deep about as fast as a tip may move.
 inline constexpr double kMaxTurn = 1.0;       // of pan and tilt [rad/s]
 inline constexpr double kMaxSpin = 3.0;       // [rad/s]
@@ -24,7 +21,7 @@ inline constexpr double kMaxJaw = 2.5;        // [rad/s]
 
 /// Motion of hands and camera that an action asks for.
 struct Motion {
-  std::array<std::array<double, 5>, kHandCount>
+  std::array<std::array<double, 5>, instrument::kHandCount>
       rates{};                     ///< pan, tilt, spin, depth, jaw; or x, y, z, spin, jaw
   std::array<double, 4> camera{};  ///< pan, tilt, spin, depth
 };
@@ -46,7 +43,7 @@ class ActionLayout {
   /// \param ports        p_world_port of each hand
   /// \param seconds      between the two [s], > 0
   /// \param[out] action  (Size())
-  void Write(std::span<const math::Vec3, kHandCount> ports, const scene::Input& before,
+  void Write(std::span<const math::Vec3, instrument::kHandCount> ports, const scene::Input& before,
              const scene::Input& after, double seconds, std::span<double> action) const;
   /// Moves what is held for the time `dt` [s].
   void Move(const scene::Scene& scene, const Motion& motion, double dt, scene::Input& input) const;
@@ -60,8 +57,8 @@ class ActionLayout {
 
   ActionKind kind_;
   bool moves_camera_ = false, has_assistant_ = false;
-  std::array<std::vector<Pedal>, kHandCount> pedals_;  // of each hand
-  std::array<std::size_t, kHandCount> tools_{};        // in its tray
+  std::array<std::vector<Pedal>, instrument::kHandCount> pedals_;  // of each hand
+  std::array<std::size_t, instrument::kHandCount> tools_{};        // in its tray
   std::vector<Field> fields_;
   std::size_t size_ = 0;
 };

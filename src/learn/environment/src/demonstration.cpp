@@ -34,7 +34,7 @@ struct Demonstration::Content {
     return kind == ActionKind::kTip ? tip : joints;
   }
 
-  std::array<math::Vec3, kHandCount> ports;
+  std::array<math::Vec3, instrument::kHandCount> ports;
   double most_seconds;
   StateLayout state;
   ActionLayout joints, tip;

@@ -177,7 +177,8 @@ base::Status Environment::Reset(std::optional<std::uint64_t> seed) {
   }
   const scene::Scene& scene = now.simulation.GetScene();
   now.input = {};
-  for (int hand = 0; hand < kHandCount; ++hand) now.input.hands[hand] = scene.instruments[hand].home;
+  for (int hand = 0; hand < instrument::kHandCount; ++hand)
+    now.input.hands[hand] = scene.instruments[hand].home;
   now.input.laparoscope = scene.laparoscope.home;
   now.input.settings = scene.settings;
   if (scene.operation && !settings.moves_camera) now.input.settings.holds_camera = true;
@@ -230,8 +231,8 @@ base::Result<Outcome> Environment::StepBy(
     now.Tick();
     if (now.simulation.GetSnapshot().task.IsOver()) break;
   }
-  const std::array<math::Vec3, kHandCount> ports = {scene.instruments[0].p_world_port,
-                                                    scene.instruments[1].p_world_port};
+  const std::array<math::Vec3, instrument::kHandCount> ports = {scene.instruments[0].p_world_port,
+                                                                scene.instruments[1].p_world_port};
   layout.Write(ports, before, now.input, now.model->TicksPerAction() * scene.tick_seconds, action);
   return EndStep();
 }

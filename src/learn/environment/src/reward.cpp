@@ -20,7 +20,7 @@ double DistanceToThing(const scene::Scene& scene, const Snapshot& now, const sce
   const auto index = static_cast<std::size_t>(condition.object);
   const math::Pose& X = now.objects[index].X_world_object;
   double nearest = std::numeric_limits<double>::infinity();
-  for (int hand = 0; hand < scene::kHandCount; ++hand) {
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
     if (condition.hand != scene::kAnyHand && condition.hand != hand) continue;
     const Vec3& tip = now.instruments[hand].X_world_tool.translation;
     nearest = std::min(nearest, math::Norm(X.translation - tip));
@@ -55,7 +55,7 @@ double CalcDistance(const scene::Scene& scene, const Snapshot& now, const scene:
     }
     case ConditionKind::kTipInRegion: {
       double nearest = std::numeric_limits<double>::infinity();
-      for (int hand = 0; hand < scene::kHandCount; ++hand) {
+      for (int hand = 0; hand < instrument::kHandCount; ++hand) {
         if (condition.hand != scene::kAnyHand && condition.hand != hand) continue;
         nearest = std::min(
             nearest, DistanceToRegions(scene, condition, now.instruments[hand].X_world_tool.translation));
@@ -116,7 +116,7 @@ Standing CalcStanding(const simulation::Simulation& simulation) {
 void RewardMeter::Begin(const simulation::Simulation& simulation) {
   before_ = CalcStanding(simulation);
   const Snapshot& now = simulation.GetSnapshot();
-  for (int hand = 0; hand < scene::kHandCount; ++hand)
+  for (int hand = 0; hand < instrument::kHandCount; ++hand)
     tips_[hand] = now.instruments[hand].X_world_tool.translation;
   force_ = path_ = time_ = 0;
 }
@@ -125,7 +125,7 @@ void RewardMeter::AfterTick(const simulation::Simulation& simulation) noexcept {
   const Snapshot& now = simulation.GetSnapshot();
   const double dt = simulation.GetScene().tick_seconds;
   time_ += dt;
-  for (int hand = 0; hand < scene::kHandCount; ++hand) {
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
     const Vec3& tip = now.instruments[hand].X_world_tool.translation;
     force_ += dt * math::Norm(now.instruments[hand].force);
     path_ += math::Norm(tip - tips_[hand]);

@@ -33,7 +33,7 @@ class RewardMeter {
 
  private:
   Standing before_;
-  std::array<math::Vec3, scene::kHandCount> tips_{};
+  std::array<math::Vec3, instrument::kHandCount> tips_{};
   double force_ = 0, path_ = 0, time_ = 0;  // [N s], [m], [s]
 };
 

@@ -104,7 +104,7 @@ void StateLayout::Write(const simulation::Simulation& simulation, double time_sh
   const Snapshot& now = simulation.GetSnapshot();
   const simulation::OperationSnapshot& operation = now.operation;
   Writer out(state);
-  for (int hand = 0; hand < scene::kHandCount; ++hand) {
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
     const simulation::InstrumentSnapshot& tool = now.instruments[hand];
     out.Put(tool.X_world_tool.translation);
     out.Put(math::Rotate(tool.X_world_tool.rotation, Vec3{0, 0, 1}));

@@ -84,12 +84,13 @@ TEST(Environment, TipActionMovesTheTipByThatMuch) {
   Environment environment = MakeEnvironment({.task = "peg_transfer", .actions = ActionKind::kTip});
   ASSERT_TRUE(environment.Reset(1).ok());
   const math::Vec3 before =
-      environment.GetSimulation().GetSnapshot().instruments[scene::kLeft].X_world_tool.translation;
+      environment.GetSimulation().GetSnapshot().instruments[instrument::kLeft].X_world_tool.translation;
   std::vector<double> action(10);
   action[2] = 0.5;  // up, half of 0.12 m/s for 0.1 s
   ASSERT_TRUE(environment.Step(action).ok());
   const math::Vec3 moved =
-      environment.GetSimulation().GetSnapshot().instruments[scene::kLeft].X_world_tool.translation - before;
+      environment.GetSimulation().GetSnapshot().instruments[instrument::kLeft].X_world_tool.translation -
+      before;
   EXPECT_NEAR(moved.z, 0.006, 5e-4);
   EXPECT_NEAR(moved.x, 0, 5e-4);
   EXPECT_NEAR(moved.y, 0, 5e-4);
@@ -161,7 +162,7 @@ TEST(Environment, IsPlayedByASurgeon) {
     ASSERT_EQ(played.GetSimulation().Hash(), simulation->Hash()) << "after action " << i;
     if (i >= 30) continue;
     ASSERT_TRUE(repeated.Step(action).ok());
-    for (const int hand : {scene::kLeft, scene::kRight}) {
+    for (const int hand : {instrument::kLeft, instrument::kRight}) {
       const auto tip = [hand](const Environment& of) {
         return of.GetSimulation().GetSnapshot().instruments[hand].X_world_tool.translation;
       };

@@ -32,13 +32,14 @@ TEST(Ear, PedalsSoundOnlyWithAnElectrodeInTheHand) {
   Ear ear;
   const auto listen = [&] { return ear.Listen(scene, snapshot, input, true).energy; };
   EXPECT_EQ(listen(), EnergyTone::kNone);
-  input.controls[scene::kRight].coagulate = true;
+  input.controls[instrument::kRight].coagulate = true;
   EXPECT_EQ(listen(), EnergyTone::kCoagulation);
-  input.controls[scene::kLeft].cut = true;
+  input.controls[instrument::kLeft].cut = true;
   EXPECT_EQ(listen(), EnergyTone::kCut);
   snapshot.operation.tools = {1, 1};
   EXPECT_EQ(listen(), EnergyTone::kNone);
-  snapshot.operation.has_current[scene::kLeft] = true;  // of an expert, whose pedals are not in the input
+  snapshot.operation.has_current[instrument::kLeft] =
+      true;  // of an expert, whose pedals are not in the input
   input.controls = {};
   EXPECT_EQ(listen(), EnergyTone::kCoagulation);
   EXPECT_EQ(ear.Listen(scene, snapshot, input, false).energy, EnergyTone::kNone);

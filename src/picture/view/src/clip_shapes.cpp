@@ -71,7 +71,7 @@ void ClipShapes::AddTo(render::Renderer& renderer, render::Frame& frame,
                        const simulation::OperationSnapshot& operation) {
   const std::size_t count = std::min(operation.clip_count, operation.clips.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const simulation::ClipSnapshot& clip = operation.clips[i];
+    const surgery::ClipSnapshot& clip = operation.clips[i];
     if (i >= shown_.size()) {
       shown_.push_back({renderer.AddSurface(MakeClip(clip.gap), render::Material::kTitanium), clip.gap});
     } else if (std::abs(shown_[i].gap - clip.gap) > kSameGap) {

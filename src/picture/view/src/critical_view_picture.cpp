@@ -135,7 +135,7 @@ Sight FindSight(const Ducts& ducts, Occluders& occluders, const math::Pose& X_wo
       for (const double distance : kDistances) {
         Sight sight = sight_at(turn, tilt, distance);
         sight.shows_triangle = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-          return simulation::IsInView(sight.X_world_camera, field_of_view, p) &&
+          return instrument::IsInView(sight.X_world_camera, field_of_view, p) &&
                  !occluders.Hide(p, sight.X_world_camera.translation);
         });
         if (sight.shows_triangle) return sight;

@@ -26,15 +26,14 @@ constexpr double kLength = 0.006, kLengthGain = 0.034;      // m
 Film::Film(const simulation::Snapshot& snapshot) : down_(math::Normalized(snapshot.gravity, {0, 0, -1})) {
   const simulation::OperationSnapshot& operation = snapshot.operation;
   for (std::size_t i = 0; i < std::min(operation.flow.leak_count, operation.flow.leaks.size()); ++i) {
-    const simulation::LeakSnapshot& leak = operation.flow.leaks[i];
+    const surgery::LeakSnapshot& leak = operation.flow.leaks[i];
     if (!(leak.rate > kLeastRate)) continue;
     // a hundredfold rate is seen as about thrice the width
     const double flow = std::clamp(std::pow(leak.rate / kFullRate, 0.3), 0.0, 1.5);
     runs_.push_back({leak.position, kWidth + kWidthGain * flow, kLength + kLengthGain * flow,
                      std::min(1.0, 0.45 + 0.6 * flow), leak.fluid == surgery::Fluid::kBlood});
   }
-  for (const simulation::OozeSnapshot& ooze :
-       std::span(operation.flow.oozes).first(operation.flow.ooze_count)) {
+  for (const surgery::OozeSnapshot& ooze : std::span(operation.flow.oozes).first(operation.flow.ooze_count)) {
     const double flow = std::clamp(std::sqrt(ooze.rate / kFullOoze), 0.0, 1.0);
     runs_.push_back(
         {ooze.position, kOozeWidth * (0.5 + 0.5 * flow), kOozeLength * flow, 0.35 + 0.55 * flow, true});

@@ -37,7 +37,7 @@ class HandTools {
                  const instrument::Tool& tool) const;
   void AddAssistant(render::Frame& frame, const simulation::Snapshot& snapshot) const;
 
-  std::array<Hand, scene::kHandCount> hands_;
+  std::array<Hand, instrument::kHandCount> hands_;
   ShownTool assistant_;  // the third grasper
   scene::SuctionParameters suction_;
 };

@@ -118,7 +118,7 @@ struct LaparoscopeView::Content {
   double light_scale = 1;
   render::Frame frame;
   Overlay overlay;
-  std::array<Vec3, scene::kHandCount> forces, tips;
+  std::array<Vec3, instrument::kHandCount> forces, tips;
 
   explicit Content(render::Renderer made) : renderer(std::move(made)) {}
 

@@ -52,7 +52,7 @@ void AddRope(render::Frame& frame, const Vec3& from, const Vec3& to, double widt
   }
 }
 
-void AddJet(render::Frame& frame, const simulation::LeakSnapshot& leak, const Vec3& gravity, double time,
+void AddJet(render::Frame& frame, const surgery::LeakSnapshot& leak, const Vec3& gravity, double time,
             Material liquid, std::uint32_t seed) {
   double speed = std::min(kFastest, kJetSpeed + kJetGain * leak.rate);
   if (leak.fluid == surgery::Fluid::kBlood) {
@@ -75,7 +75,7 @@ void AddJet(render::Frame& frame, const simulation::LeakSnapshot& leak, const Ve
   }
 }
 
-void AddDrip(render::Frame& frame, const simulation::LeakSnapshot& leak, const Vec3& down, double time,
+void AddDrip(render::Frame& frame, const surgery::LeakSnapshot& leak, const Vec3& down, double time,
              Material liquid, std::uint32_t seed) {
   // a bead that swells at the opening, then runs down
   const double volume = 4.0 / 3.0 * M_PI * kDropRadius * kDropRadius * kDropRadius;
@@ -93,7 +93,7 @@ void AddStreams(render::Frame& frame, const simulation::Snapshot& snapshot) {
   const simulation::OperationSnapshot& operation = snapshot.operation;
   const Vec3 down = math::Normalized(snapshot.gravity, {0, 0, -1});
   for (std::size_t i = 0; i < std::min(operation.flow.leak_count, operation.flow.leaks.size()); ++i) {
-    const simulation::LeakSnapshot& leak = operation.flow.leaks[i];
+    const surgery::LeakSnapshot& leak = operation.flow.leaks[i];
     if (!(leak.rate > kLeastRate)) continue;
     const Material liquid = leak.fluid == surgery::Fluid::kBlood ? Material::kBlood : Material::kBile;
     const auto seed = static_cast<std::uint32_t>(64 * i);

@@ -13,8 +13,6 @@
 
 namespace trocar::view {
 
-using math::Vec3;
-
 /// Material of a neighbour: bowel is seen as it is, the rest lies behind fat or peritoneum.
 render::Material LookOf(roles::NeighbourRole role) noexcept;
 /// Whether it lies within the peritoneal cavity, so that the wall goes round it.
@@ -26,7 +24,7 @@ class NeighbourView {
   NeighbourView(const patient::Neighbour& neighbour, std::int32_t index);
 
   const geometry::TriangleMesh& Mesh() const { return mesh_; }  ///< at rest
-  const std::vector<Vec3>& Normals() const { return normals_; }
+  const std::vector<math::Vec3>& Normals() const { return normals_; }
   render::Material GetMaterial() const { return material_; }
 
   /// \param ambient_occlusion  (vertices) [-]
@@ -34,7 +32,7 @@ class NeighbourView {
   /// The surface with what tools have pressed into it.
   void Update(render::Renderer& renderer, const simulation::Snapshot& snapshot);
   render::SurfaceId Surface() const { return surface_; }
-  const std::vector<Vec3>& FinePositions() const { return fine_positions_; }
+  const std::vector<math::Vec3>& FinePositions() const { return fine_positions_; }
 
  private:
   void Refine(render::Renderer* renderer);
@@ -45,7 +43,7 @@ class NeighbourView {
   render::SurfaceRefiner refiner_;
   render::SurfaceId surface_;
   bool is_dented_ = false;  // on the graphics card
-  std::vector<Vec3> positions_, normals_, fine_positions_, fine_normals_;
+  std::vector<math::Vec3> positions_, normals_, fine_positions_, fine_normals_;
 };
 
 }  // namespace trocar::view

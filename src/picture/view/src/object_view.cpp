@@ -165,7 +165,7 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const si
     const auto pieces =
         std::span(start.operation.topology.tube_pieces).first(start.operation.topology.tube_piece_count);
     double nearest = std::numeric_limits<double>::infinity(), radius = 0;
-    for (const simulation::TubePiece& piece : pieces) {
+    for (const surgery::TubePiece& piece : pieces) {
       const Vec3 &a = start.positions[piece.a], &b = start.positions[piece.b];
       const double t = std::clamp(math::Dot(region.centre - a, b - a) / math::SquaredNorm(b - a), 0.0, 1.0);
       const double distance = math::Distance(region.centre, math::Lerp(a, b, t));

@@ -11,6 +11,10 @@
 #include "trocar/geometry/mesh_topology.h"
 
 namespace trocar::view {
+
+using geometry::Triangle;
+using math::Vec3;
+
 namespace {
 
 constexpr double kFirstStretch = 1.30, kFullStretch = 2.4;  // of the area: it begins to whiten, it is white

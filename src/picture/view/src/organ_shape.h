@@ -14,9 +14,6 @@
 
 namespace trocar::view {
 
-using geometry::Triangle;
-using math::Vec3;
-
 class OrganShape {
  public:
   /// \param index  of the surface in Simulation::Surfaces()
@@ -24,7 +21,8 @@ class OrganShape {
 
   /// Connectivity after a cut, over rows of the snapshot. Where it has changed the surface is uploaded anew at the next
   /// Upload.
-  void SetTriangles(std::span<const Triangle> triangles, std::span<const Vec3> positions, RowMemory& memory);
+  void SetTriangles(std::span<const geometry::Triangle> triangles, std::span<const math::Vec3> positions,
+                    RowMemory& memory);
   /// Moves the vertices to a snapshot's nodes.
   void Update(const simulation::Snapshot& snapshot, const Film& film);
 
@@ -36,9 +34,9 @@ class OrganShape {
   render::SurfaceId Surface() const { return surface_; }
   render::Material GetMaterial() const { return material_; }
   /// Before it is refined.
-  std::span<const Triangle> Triangles() const { return triangles_; }
-  const std::vector<Vec3>& Positions() const { return positions_; }
-  const std::vector<Vec3>& Normals() const { return normals_; }
+  std::span<const geometry::Triangle> Triangles() const { return triangles_; }
+  const std::vector<math::Vec3>& Positions() const { return positions_; }
+  const std::vector<math::Vec3>& Normals() const { return normals_; }
 
  private:
   void Resize();
@@ -48,16 +46,16 @@ class OrganShape {
   std::int32_t surface_index_;
   render::Material material_;
   render::SurfaceId surface_;
-  bool is_changed_ = false;              // connectivity, since the last upload
-  bool has_marks_ = false;               // on the graphics card
-  std::vector<Triangle> row_triangles_;  // of the last SetTriangles
-  std::vector<std::uint32_t> rows_;      // vertex -> row of the snapshot
-  std::vector<Triangle> triangles_;      // over vertices
-  std::vector<Vec3> positions_, normals_;
+  bool is_changed_ = false;                        // connectivity, since the last upload
+  bool has_marks_ = false;                         // on the graphics card
+  std::vector<geometry::Triangle> row_triangles_;  // of the last SetTriangles
+  std::vector<std::uint32_t> rows_;                // vertex -> row of the snapshot
+  std::vector<geometry::Triangle> triangles_;      // over vertices
+  std::vector<math::Vec3> positions_, normals_;
   std::vector<double> rest_areas_;  // (vertices) of the triangles round each; empty until it is known [m^2]
   std::vector<double> areas_;       // now
   std::optional<render::SurfaceRefiner> refiner_;
-  std::vector<Vec3> fine_positions_, fine_normals_;
+  std::vector<math::Vec3> fine_positions_, fine_normals_;
   std::vector<render::SurfaceMark> marks_;  // fine; empty: none to show
   std::vector<render::SurfaceMark> shown_;  // of the uploaded surface
 };

@@ -65,18 +65,18 @@ bool IsInBag(const Snapshot& now) {
   return now.operation.is_in_bag;
 }
 bool IsRinsing(const Snapshot& now) {
-  return now.operation.is_rinsing[scene::kRight];
+  return now.operation.is_rinsing[instrument::kRight];
 }
 template <int kStones>
 bool HasSpilled(const Snapshot& now) {
   const auto& stones = now.operation.stones;
-  return std::count_if(stones.begin(), stones.end(), [](const simulation::StoneSnapshot& stone) {
-           return stone.place == simulation::StonePlace::kSpilled;
+  return std::count_if(stones.begin(), stones.end(), [](const surgery::StoneSnapshot& stone) {
+           return stone.place == surgery::StonePlace::kSpilled;
          }) >= kStones;
 }
 bool Bleeds(const Snapshot& now) {
   const auto leaks = std::span(now.operation.flow.leaks).first(now.operation.flow.leak_count);
-  return std::any_of(leaks.begin(), leaks.end(), [](const simulation::LeakSnapshot& leak) {
+  return std::any_of(leaks.begin(), leaks.end(), [](const surgery::LeakSnapshot& leak) {
     return leak.fluid == surgery::Fluid::kBlood && leak.rate > 1e-7;
   });
 }

@@ -53,9 +53,8 @@ void StoneView::AddTo(render::Renderer& renderer, render::Frame& frame,
                       const simulation::OperationSnapshot& operation) {
   shapes_.resize(std::max(shapes_.size(), operation.stones.size()));
   for (std::size_t i = 0; i < operation.stones.size(); ++i) {
-    const simulation::StoneSnapshot& stone = operation.stones[i];
-    if (stone.place != simulation::StonePlace::kSpilled && stone.place != simulation::StonePlace::kHeld)
-      continue;
+    const surgery::StoneSnapshot& stone = operation.stones[i];
+    if (stone.place != surgery::StonePlace::kSpilled && stone.place != surgery::StonePlace::kHeld) continue;
     Shape& shape = shapes_[i];
     if (shape.radius != stone.radius) {
       if (shape.radius > 0.0) renderer.RemoveSurface(shape.surface);

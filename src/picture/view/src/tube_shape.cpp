@@ -14,6 +14,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::view {
+
+using math::Vec3;
+
 namespace {
 
 constexpr int kSides = TubeCourse::kSides;
@@ -41,7 +44,7 @@ render::SurfaceMark MixMarks(const render::SurfaceMark& a, const render::Surface
 }
 
 /// Between the legs of a clip the walls lie on each other and spread to the sides.
-Vec3 PressFlat(const Vec3& p_world, const math::Pose& X_clip_world, const simulation::ClipSnapshot& clip) {
+Vec3 PressFlat(const Vec3& p_world, const math::Pose& X_clip_world, const surgery::ClipSnapshot& clip) {
   Vec3 p = X_clip_world * p_world;
   const double far = std::abs(p.z);
   if (far > kClipFlat + kClipFade || std::abs(p.x) > kClipReach || std::abs(p.y) > kClipReach) return p_world;
@@ -55,14 +58,14 @@ Vec3 PressFlat(const Vec3& p_world, const math::Pose& X_clip_world, const simula
 
 }  // namespace
 
-std::vector<TubeChain> FindChains(std::span<const simulation::TubePiece> pieces, std::uint32_t surface,
+std::vector<TubeChain> FindChains(std::span<const surgery::TubePiece> pieces, std::uint32_t surface,
                                   const scene::SurfaceInfo& info) {
   struct Node {
     std::vector<std::uint32_t> neighbours;
     double radius = 0;
   };
   std::map<std::uint32_t, Node> nodes;
-  for (const simulation::TubePiece& piece : pieces) {
+  for (const surgery::TubePiece& piece : pieces) {
     if (piece.surface != surface || piece.a == piece.b) continue;
     nodes[piece.a].neighbours.push_back(piece.b);
     nodes[piece.b].neighbours.push_back(piece.a);
@@ -147,7 +150,7 @@ void TubeShape::Resize(std::span<const Vec3> rest_of_rows) {
   marks_.clear();
 }
 
-void TubeShape::SetPieces(std::span<const simulation::TubePiece> pieces, RowMemory& memory,
+void TubeShape::SetPieces(std::span<const surgery::TubePiece> pieces, RowMemory& memory,
                           std::span<const Vec3> positions) {
   std::vector<TubeChain> chains = FindChains(pieces, index_, info_);
   if (chains == chains_) return;
@@ -179,7 +182,7 @@ void TubeShape::Update(const simulation::Snapshot& snapshot, const Film& film) {
     offset += courses_[c].SkinSize();
   }
   for (std::size_t i = 0; i < std::min(operation.clip_count, operation.clips.size()); ++i) {
-    const simulation::ClipSnapshot& clip = operation.clips[i];
+    const surgery::ClipSnapshot& clip = operation.clips[i];
     if (clip.is_lost) continue;
     const math::Pose X_clip_world = math::Inverse(clip.X_world_clip);
     for (Vec3& p : positions_) p = PressFlat(p, X_clip_world, clip);

@@ -143,7 +143,7 @@ TEST_F(OperationViewTest, AClipIsSeenBetweenTheJawsWhileThereIsOne) {
 TEST_F(OperationViewTest, AClipLiesWhereItIsAndPressesTheDuctFlat) {
   MakeView();
   const Image bare = Draw();
-  simulation::ClipSnapshot clip;
+  surgery::ClipSnapshot clip;
   // legs along y, closing what runs along x
   clip.X_world_clip = {
       math::RotationAbout({0, 1, 0}, 0.5 * M_PI) * math::RotationAbout({0, 0, 1}, 0.5 * M_PI), DuctNode(6)};
@@ -329,7 +329,7 @@ TEST_F(OperationViewTest, ACutDuctEndsInTwoStumpsWithADarkLumen) {
 TEST_F(OperationViewTest, BloodRunsDripsAndWetsBelowALeak) {
   MakeView();
   const Image dry = Draw();
-  simulation::LeakSnapshot& leak = now_.operation.flow.leaks[0];
+  surgery::LeakSnapshot& leak = now_.operation.flow.leaks[0];
   leak = {{0, 0.006, -0.0863}, {0, 0, 1}, surgery::Fluid::kBlood, 1e-6};
   EXPECT_EQ(Draw(), dry) << "not counted yet";
   now_.operation.flow.leak_count = 1;
@@ -356,7 +356,7 @@ TEST_F(OperationViewTest, FatIsRedWhereBloodRunsOverIt) {
   MakeView(strands);
   const Image dry = Draw();
   // below ball and duct: it wets nothing else; so slow that no more than two drops are seen at once
-  simulation::LeakSnapshot& leak = now_.operation.flow.leaks[0];
+  surgery::LeakSnapshot& leak = now_.operation.flow.leaks[0];
   leak = {{0, -0.036, -0.088}, {0, 0, 1}, surgery::Fluid::kBlood, 2e-9};
   now_.operation.flow.leak_count = 1;
   const Change change = CountChanges(dry, Draw(), leak.position, 0.020);
@@ -406,10 +406,10 @@ TEST_F(OperationViewTest, StonesAreSeenOnceTheyAreOut) {
   MakeView();
   const Image clean = Draw();
   now_.operation.stones.assign(3, {});
-  simulation::StoneSnapshot& stone = now_.operation.stones[1];
-  stone = {{0.001, 0.004, -0.083}, 0.002, simulation::StonePlace::kInside, -1};
+  surgery::StoneSnapshot& stone = now_.operation.stones[1];
+  stone = {{0.001, 0.004, -0.083}, 0.002, surgery::StonePlace::kInside, -1};
   EXPECT_EQ(Draw(), clean);
-  for (const auto place : {simulation::StonePlace::kSpilled, simulation::StonePlace::kHeld}) {
+  for (const auto place : {surgery::StonePlace::kSpilled, surgery::StonePlace::kHeld}) {
     stone.place = place;
     const Change change = CountChanges(clean, Draw(), stone.position, 0.0024);
     EXPECT_GT(change.near, 20);
@@ -419,8 +419,8 @@ TEST_F(OperationViewTest, StonesAreSeenOnceTheyAreOut) {
   // another of another size in its place, as in another operation
   stone.radius = 0.004;
   EXPECT_GT(CountChanges(clean, Draw(), stone.position, 0.0048).near, 100);
-  for (const auto place : {simulation::StonePlace::kInBag, simulation::StonePlace::kAspirated,
-                           simulation::StonePlace::kTakenOut}) {
+  for (const auto place :
+       {surgery::StonePlace::kInBag, surgery::StonePlace::kAspirated, surgery::StonePlace::kTakenOut}) {
     stone.place = place;
     EXPECT_EQ(Draw(), clean);
   }

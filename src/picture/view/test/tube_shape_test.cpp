@@ -114,7 +114,7 @@ TEST_F(TubeShapeTest, RagsAndThreadsHangOnALivingWallAndKeepTheirPlaceThroughACu
   RowMemory memory;
   memory.Resize(kNodes);
   for (std::uint32_t i = 0; i < kNodes; ++i) memory.Set(i, now_.positions[i], 1.0);
-  std::vector<simulation::TubePiece> pieces;
+  std::vector<surgery::TubePiece> pieces;
   for (std::uint32_t i = 0; i + 1 < kNodes; ++i)
     if (i != 7) pieces.push_back({i, i + 1, kRadius, kRadius, 0});
   tube.SetPieces(pieces, memory, now_.positions);

@@ -14,10 +14,10 @@
 
 namespace trocar::files {
 
+using instrument::kLeft;
 using scene::CalcLaparoscopePose;
 using scene::ConditionKind;
 using scene::FindView;
-using scene::kLeft;
 using scene::LaparoscopeSetup;
 using scene::ObjectColour;
 namespace {

@@ -16,9 +16,6 @@
 
 namespace trocar::tissue_cuda {
 
-using math::Vec3;
-using tissue::NodeCondition;
-
 /// How a system's springs differ.
 enum class Springs {
   kUniform,  ///< as in the paper: one constant, at rest in the mesh, no virtual springs
@@ -26,8 +23,9 @@ enum class Springs {
 };
 
 /// Definition over nodes and edges, drawn from a seed.
-inline tissue::TissueDefinition MakeSystem(std::vector<Vec3> rest, const std::vector<geometry::Edge>& edges,
-                                           Springs springs, std::uint64_t seed) {
+inline tissue::TissueDefinition MakeSystem(std::vector<math::Vec3> rest,
+                                           const std::vector<geometry::Edge>& edges, Springs springs,
+                                           std::uint64_t seed) {
   math::Random random(seed);
   tissue::TissueDefinition definition;
   definition.rest = std::move(rest);
@@ -47,7 +45,7 @@ inline tissue::TissueDefinition MakeSystem(std::vector<Vec3> rest, const std::ve
 /// Grid of `columns` x `rows` with one diagonal a cell; one end fixed.
 inline tissue::TissueDefinition MakeGridSystem(std::uint32_t columns, std::uint32_t rows, Springs springs,
                                                double spacing = 1.0) {
-  std::vector<Vec3> rest;
+  std::vector<math::Vec3> rest;
   std::vector<geometry::Edge> edges;
   for (std::uint32_t row = 0; row < rows; ++row) {
     for (std::uint32_t column = 0; column < columns; ++column) {
@@ -100,17 +98,17 @@ inline tissue::TissueState MakeMovedState(const tissue::TissueModel& model, doub
   tissue::TissueState state = tissue::MakeRestState(model);
   math::Random random(3);
   for (std::size_t i = 0; i < model.Size(); ++i) {
-    const Vec3 move{random.Uniform(-extent, extent), random.Uniform(-extent, extent),
-                    random.Uniform(-extent, extent)};
+    const math::Vec3 move{random.Uniform(-extent, extent), random.Uniform(-extent, extent),
+                          random.Uniform(-extent, extent)};
     if (!model.is_fixed[i]) state.position[i] += move;
   }
-  if (model.Size() > 2) state.condition[model.Size() / 2] = NodeCondition::kPrescribed;
+  if (model.Size() > 2) state.condition[model.Size() / 2] = tissue::NodeCondition::kPrescribed;
   return state;
 }
 
 /// External forces on every third node.
-inline std::vector<Vec3> MakeForces(std::size_t count) {
-  std::vector<Vec3> forces(count);
+inline std::vector<math::Vec3> MakeForces(std::size_t count) {
+  std::vector<math::Vec3> forces(count);
   for (std::size_t i = 0; i < count; i += 3) forces[i] = {0.01, -0.02, 0.03 * static_cast<double>(i % 5)};
   return forces;
 }
@@ -119,7 +117,7 @@ inline std::vector<Vec3> MakeForces(std::size_t count) {
 struct Case {
   tissue::TissueModel model;
   tissue::TissueState state;
-  std::vector<Vec3> forces;
+  std::vector<math::Vec3> forces;
   std::vector<tissue::ContactSpring> contacts;
   tissue::TissueLoad load;
 };
@@ -137,7 +135,7 @@ inline std::unique_ptr<Case> MakeCase(tissue::TissueDefinition definition, bool 
   if (!has_all) return made;
   if (!made->state.strand_is_intact.empty()) made->state.strand_is_intact[2] = 0;
   made->forces = MakeForces(n);
-  for (Vec3& force : made->forces) force *= 0.01;
+  for (math::Vec3& force : made->forces) force *= 0.01;
   for (std::uint32_t c = 0; c < 4 && n > 20; ++c) {
     tissue::ContactSpring contact{{c, n / 2 + c, (7 * c + 3) % n}, {0.2, 0.3, 0.5}, {0.6, 0, 0.8}, 0, 2.0};
     const double depth = tissue::CalcContactDepth(contact, made->model.rest);
@@ -155,17 +153,17 @@ inline std::unique_ptr<Case> MakeCase(tissue::TissueDefinition definition, bool 
 /// shares.
 inline void RelaxPlainly(const tissue::TissueModel& model, const tissue::TissueLoad& load, double alpha,
                          int steps, tissue::TissueState& state) {
-  std::vector<Vec3> residual(model.Size());
+  std::vector<math::Vec3> residual(model.Size());
   for (int step = 0; step < steps; ++step) {
     tissue::CalcResidual(model, state, load, residual);
     for (std::size_t i = 0; i < model.Size(); ++i) {
-      if (state.condition[i] != NodeCondition::kPrescribed) state.position[i] += alpha * residual[i];
+      if (state.condition[i] != tissue::NodeCondition::kPrescribed) state.position[i] += alpha * residual[i];
     }
   }
 }
 
 /// Largest distance between the nodes of two states, and of one state from rest.
-inline double CalcLargestDistance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+inline double CalcLargestDistance(const std::vector<math::Vec3>& a, const std::vector<math::Vec3>& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double distance = math::Distance(a[i], b[i]);

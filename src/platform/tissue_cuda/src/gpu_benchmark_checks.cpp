@@ -117,7 +117,7 @@ Status CheckEquilibrium(GpuBenchmarkRun& run) {
         tissue::CalcResidual(problem.model, truth, load, residual);
         double largest = 0;
         for (std::size_t i = 0; i < residual.size(); ++i) {
-          if (truth.condition[i] != NodeCondition::kPrescribed)
+          if (truth.condition[i] != tissue::NodeCondition::kPrescribed)
             largest = math::Max(largest, math::Norm(residual[i]));
         }
         const double force = math::Norm(problem.forces[0]);

@@ -8,6 +8,9 @@
 #include "stand_in.h"
 
 namespace trocar::tissue_cuda {
+
+using math::Vec3;
+
 namespace {
 
 using tissue::SolverKind;
@@ -111,7 +114,7 @@ struct Shift final : tissue::ConstraintSet {
   void Project(TissueState& state, std::span<Vec3> before) noexcept override {
     ++calls;
     for (std::size_t i = 0; i < state.position.size(); ++i) {
-      if (state.condition[i] == NodeCondition::kPrescribed) continue;
+      if (state.condition[i] == tissue::NodeCondition::kPrescribed) continue;
       const Vec3 move{1e-5 * static_cast<double>(i % 3), 0, -2e-5};
       state.position[i] += move;
       if (!before.empty()) before[i] += move;

@@ -8,6 +8,9 @@
 #include "stand_in.h"
 
 namespace trocar::tissue_cuda {
+
+using math::Vec3;
+
 namespace {
 
 using base::ErrorCode;
@@ -130,7 +133,7 @@ TEST(GpuSolver, TakesNewConditionsForcesContactsAndStrandsWithoutBeingMadeAgain)
     if (tick == 2) load.contacts = {&contact, 1};
     if (tick == 3) {
       state.strand_is_intact[1] = 0;
-      state.condition[50] = NodeCondition::kPrescribed;
+      state.condition[50] = tissue::NodeCondition::kPrescribed;
       state.position[50] += Vec3{0.001, 0, 0};
     }
     TissueState expected = state;

@@ -28,7 +28,7 @@ template <typename Real>
 double CompareSteps(Layout layout, const tissue::TissueDefinition& definition, int steps,
                     std::uint32_t seed) {
   const TissueModel model = tissue::MakeTissueModel(definition);
-  const std::vector<Vec3> forces = MakeForces(model.Size());
+  const std::vector<math::Vec3> forces = MakeForces(model.Size());
   const tissue::TissueLoad load{
       .gravity = {0.1, 0, -9.81}, .stiffness_scale = 1.25, .shape_scale = 0.5, .external_force = forces};
   const double alpha = 0.5 * tissue::CalcLargestAlpha(model, load);
@@ -137,11 +137,11 @@ TEST(PaperLayouts, SharedMemoryNeedsItsBorder) {
 TEST(PaperLayouts, ReportTheResidualWhereTheyAreAsked) {
   const TissueModel model = tissue::MakeTissueModel(MakeGridSystem(9, 7, Springs::kVaried));
   const TissueState state = MakeMovedState(model, 0.1);
-  std::vector<Vec3> residual(model.Size());
+  std::vector<math::Vec3> residual(model.Size());
   tissue::CalcResidual(model, state, {}, residual);
   double largest = 0;
   for (std::size_t i = 0; i < residual.size(); ++i) {
-    if (state.condition[i] != NodeCondition::kPrescribed)
+    if (state.condition[i] != tissue::NodeCondition::kPrescribed)
       largest = std::max(largest, math::Norm(residual[i]));
   }
   for (const Layout layout : kPaperLayouts) {

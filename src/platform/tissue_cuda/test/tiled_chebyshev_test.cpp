@@ -11,6 +11,9 @@
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue_cuda {
+
+using math::Vec3;
+
 namespace {
 
 using tissue::SolverKind;
@@ -134,7 +137,7 @@ TEST(TiledChebyshev, LeavesPrescribedNodesToTheBit) {
   const auto given = MakeCase(MakeScatteredSphere(3, Springs::kVaried, 0.03), true);
   const Solved solved = Solve<TiledStreaming, float>(*given, {9, 1e-9}, 2, 1);
   for (std::size_t i = 0; i < given->model.Size(); ++i) {
-    if (given->state.condition[i] == NodeCondition::kPrescribed) {
+    if (given->state.condition[i] == tissue::NodeCondition::kPrescribed) {
       EXPECT_EQ(solved.position[i], given->state.position[i]);
     }
   }

@@ -8,7 +8,13 @@
 
 namespace trocar::agent {
 
+using instrument::kLeft;
+using instrument::kRight;
 using math::Pose;
+using math::Vec3;
+using roles::TubeRole;
+using simulation::Snapshot;
+
 namespace {
 
 constexpr double kStandOff = 0.012;   // of a tool's tip from the vessel while it is lined up [m]
@@ -86,7 +92,7 @@ void CholecystectomySurgeon::CutTube(std::size_t tube, double share) {
 
 /// Of the gallbladder, near what the left hand holds, so that it does not give way; towards the right hand's trocar.
 Vec3 CholecystectomySurgeon::WallBesideHold(const Snapshot& seen) const {
-  const SurfaceInfo& wall = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
+  const scene::SurfaceInfo& wall = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
   const auto positions = std::span(seen.positions).subspan(wall.first_node, wall.node_count);
   const auto cost = [&](const Vec3& p) {
     const double away = math::Distance(p, hands_[kLeft].Tip());
@@ -220,7 +226,7 @@ void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scen
       InsertBlind();
       break;
     case OperationErrorScenario::kRinses:
-      Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = AssistantCommand::kRetract;
+      Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = scene::AssistantCommand::kRetract;
       scissors();
       CutTube(artery, 0.65);
       LookAt(Place::OnTube(artery, 0.65), 0.0, 0.080);

@@ -8,6 +8,11 @@
 #include "state_fields.h"
 
 namespace trocar::agent {
+
+using instrument::kRight;
+using math::Vec3;
+using simulation::Snapshot;
+
 namespace {
 
 constexpr double kPull = 12.0;            // at which a hand stops to draw [N]
@@ -68,7 +73,7 @@ void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) 
       picture_.field = act.place;
       const Vec3 p = Find(act.place, seen);
       const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - p);
-      const Vec3 along = TubeDirection(seen, FindTube(TubeRole::kCysticDuct), 0.5);
+      const Vec3 along = TubeDirection(seen, FindTube(roles::TubeRole::kCysticDuct), 0.5);
       AimCamera(p, math::Rotate(math::RotationAbout(along, act.amount), to_eye), act.distance);
       break;
     }
@@ -85,7 +90,7 @@ void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) 
       LineUpScissors(act, seen);
       break;
     case Kind::kDissect:
-      dissection_.traction.p_hold = HandOf(kLeft).Tip();
+      dissection_.traction.p_hold = HandOf(instrument::kLeft).Tip();
       dissection_.traction.drawn = 0;
       unheld_seconds_ = 0;
       break;
@@ -100,7 +105,7 @@ bool CholecystectomySurgeon::IsDone(const SurgeonAct& act, const Snapshot& seen)
   HandMotion& hand = hands_[h];
   switch (act.kind) {
     case Kind::kAssist:
-      return act.command == AssistantCommand::kRelease
+      return act.command == scene::AssistantCommand::kRelease
                  ? !seen.operation.assistant.is_holding
                  : seen.operation.assistant.is_holding || !seen.operation.assistant.is_there;
     case Kind::kReach:

@@ -9,8 +9,12 @@
 
 namespace trocar::agent {
 
+using instrument::IsInView;
+using instrument::kRight;
 using math::Pose;
-using simulation::IsInView;
+using math::Vec3;
+using simulation::Snapshot;
+
 namespace {
 
 constexpr double kPatience = 4.0;  // for one fibre [s]
@@ -113,7 +117,8 @@ void CholecystectomySurgeon::GoOn() {
 
 /// Goes on; when the left hand has slipped, it takes hold anew first.
 bool CholecystectomySurgeon::GoOnOrHoldAnew(const Snapshot& seen) {
-  unheld_seconds_ = seen.instruments[kLeft].is_grasping ? 0.0 : unheld_seconds_ + scene_->tick_seconds;
+  unheld_seconds_ =
+      seen.instruments[instrument::kLeft].is_grasping ? 0.0 : unheld_seconds_ + scene_->tick_seconds;
   if (unheld_seconds_ <= kSlipped || dissection_.holds_left <= 0) return GoOnDissecting(dissection_, seen);
   --dissection_.holds_left;
   LeaveFibre(dissection_);
@@ -273,7 +278,7 @@ double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& see
       continue;
     }
     // what is stretched lies open
-    const StrandInfo& strand = known_.strands[strands[i]];
+    const scene::StrandInfo& strand = known_.strands[strands[i]];
     const double stretch = math::Distance(seen.positions[strand.a], seen.positions[strand.b]) -
                            math::Distance(known_.rest[strand.a], known_.rest[strand.b]);
     const Vec3 out = math::Normalized(HandOf(kRight).Port() - at);

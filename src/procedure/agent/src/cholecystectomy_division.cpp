@@ -9,8 +9,12 @@
 
 namespace trocar::agent {
 
+using instrument::kRight;
 using math::Pose;
-using simulation::LeakSnapshot;
+using math::Vec3;
+using simulation::Snapshot;
+using surgery::LeakSnapshot;
+
 namespace {
 
 using instrument::ToolKind;
@@ -52,7 +56,7 @@ void CholecystectomySurgeon::PlanDivision(const SurgeonAct& act, const Snapshot&
       Decide(SurgeonAct::Kind::kGoRoundDuct, "turn the neck").amount =
           rounds % 2 == 0 ? kTurnForClips : -kTurnForClips;
     } else {
-      DrawGently(kLeft, 0.008 * known_.bed_normal + (rounds % 2 == 0 ? 0.012 : -0.012) * aside);
+      DrawGently(instrument::kLeft, 0.008 * known_.bed_normal + (rounds % 2 == 0 ? 0.012 : -0.012) * aside);
     }
   }
   work.avoid.resize(work.tubes.size());

@@ -12,10 +12,13 @@
 namespace trocar::agent {
 
 using math::Pose;
-using simulation::ClipSnapshot;
+using math::Vec3;
+using simulation::Snapshot;
+using surgery::ClipSnapshot;
+
 namespace {
 
-using Kind = StrandInfo::Kind;
+using Kind = scene::StrandInfo::Kind;
 
 constexpr double kBare = 0.0103;          // of each of them, or all that is exposable, for the view [m]
 constexpr double kSkeletonised = 0.0125;  // likewise of each tube that enters, from the gallbladder on [m]
@@ -39,7 +42,7 @@ double CholecystectomySurgeon::CalcAzimuth(std::span<const Vec3> positions, cons
   for (const std::uint32_t node : known_.neck_nodes)
     moments.AddPoint(1.0, known_.rest[node], positions[node]);
   const Pose X_world_neck = tissue::FitRigidMotion(moments, math::Quaternion{});
-  const auto& duct = known_.tube_nodes[FindTube(TubeRole::kCysticDuct)];
+  const auto& duct = known_.tube_nodes[FindTube(roles::TubeRole::kCysticDuct)];
   const Vec3 along = math::Normalized(known_.rest[duct.front()] - known_.rest[duct.back()]);
   const Vec3 front = math::Normalized(Vec3{0, 0, 1} - along * along.z, {1, 0, 0});
   const Vec3 to_eye =
@@ -225,7 +228,7 @@ DivisionField CholecystectomySurgeon::FieldOf(const Snapshot& seen, std::size_t 
     if (other == tube || (care < 1.0 && IsDivided(seen, other))) continue;
     field.others.push_back(&lines[other]);
   }
-  field.port = HandOf(kRight).Port();
+  field.port = HandOf(instrument::kRight).Port();
   field.applier = instrument::FindTool("clip_applier");
   field.scissors = instrument::FindTool("scissors");
   field.clearance = [this, &seen](const collision::Segment& segment) { return Clearance(seen, segment); };
@@ -238,7 +241,7 @@ std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3&
                                                const HoldFilter& may) {
   const auto gallbladder = static_cast<std::size_t>(known_.gallbladder),
              liver = static_cast<std::size_t>(known_.liver);
-  const SurfaceInfo& surface = known_.surfaces[gallbladder];
+  const scene::SurfaceInfo& surface = known_.surfaces[gallbladder];
   std::vector<Vec3> normals(surface.node_count);
   for (const auto& triangle : surface.triangles) {
     const Vec3 &a = seen.positions[surface.first_node + triangle[0]],
@@ -249,7 +252,7 @@ std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3&
   (void)Clearance(seen, {near, near});  // brings the trees up to date
   const auto positions =
       std::span(seen.positions).subspan(known_.surfaces[liver].first_node, known_.surfaces[liver].node_count);
-  const double length = scene_->instruments[kLeft].tool.jaw_length;
+  const double length = scene_->instruments[instrument::kLeft].tool.jaw_length;
   std::uint32_t best = known_.hold;
   double best_worth = -std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
@@ -262,7 +265,7 @@ std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3&
           return math::Distance(seen.positions[other], p) < kSameHold;
         }))
       continue;
-    const Vec3 out = math::Normalized(HandOf(kLeft).Port() - p);
+    const Vec3 out = math::Normalized(HandOf(instrument::kLeft).Port() - p);
     const double facing = math::Dot(math::Normalized(normals[i]), out);
     if (facing < 0.1) continue;
     const collision::Segment jaws{p - kJawsBeyond * out, p + (length - kJawsBeyond) * out};

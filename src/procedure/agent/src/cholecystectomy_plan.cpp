@@ -9,7 +9,14 @@
 
 namespace trocar::agent {
 
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
+using roles::TubeRole;
+using scene::AssistantCommand;
 using simulation::InstrumentSnapshot;
+using simulation::Snapshot;
+
 namespace {
 
 using instrument::ToolKind;

@@ -8,6 +8,10 @@
 #include "cholecystectomy_surgeon.h"
 
 namespace trocar::agent {
+
+using instrument::kRight;
+using simulation::Snapshot;
+
 namespace {
 
 constexpr double kBack = 0.008;       // of the tip before the next spread [m]
@@ -33,7 +37,7 @@ SpreadField CholecystectomySurgeon::SeeSpreadField(const Spreading& work, const 
   SpreadField field;
   for (std::uint32_t i = 0; i < work.strands.size(); ++i) {
     if (seen.operation.strand_is_intact[work.strands[i]] == 0) continue;
-    const StrandInfo& strand = known_.strands[work.strands[i]];
+    const scene::StrandInfo& strand = known_.strands[work.strands[i]];
     field.fibres.push_back({seen.positions[strand.a], seen.positions[strand.b]});
     field.weights.push_back(work.weights[i]);
     index.push_back(i);

@@ -11,13 +11,23 @@
 
 namespace trocar::agent {
 
+using instrument::IsInView;
+using instrument::kRight;
+using math::Vec3;
+using roles::LandmarkRole;
+using roles::OrganRole;
+using roles::TubeRole;
 using scene::CalcLaparoscopePose;
 using scene::FindView;
 using scene::InstrumentSetup;
+using scene::Scene;
+using scene::StrandInfo;
+using scene::SurfaceInfo;
 using scene::ViewRequest;
 using simulation::DescribeModel;
 using simulation::InstrumentSnapshot;
-using simulation::IsInView;
+using simulation::Snapshot;
+
 namespace {
 
 /// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
@@ -60,7 +70,8 @@ bool IsCholecystectomy(const Scene& scene) {
 CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
                                                OperationErrorScenario error_scenario, std::uint64_t seed)
     : scene_(std::move(scene)),
-      hands_{MakeHand(*scene_, kLeft, skill.hand, seed), MakeHand(*scene_, kRight, skill.hand, seed)} {
+      hands_{MakeHand(*scene_, instrument::kLeft, skill.hand, seed),
+             MakeHand(*scene_, kRight, skill.hand, seed)} {
   picture_.camera = picture_.to = scene_->laparoscope.home;
   auto model = DescribeModel(*scene_);
   if (!model.ok()) {
@@ -73,7 +84,7 @@ CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scen
   }
 }
 
-void CholecystectomySurgeon::Learn(ModelDescription model) {
+void CholecystectomySurgeon::Learn(simulation::ModelDescription model) {
   const patient::Patient& patient = scene_->patient;
   known_.strands = std::move(model.strands);
   known_.surfaces = std::move(model.surfaces);
@@ -225,7 +236,7 @@ bool CholecystectomySurgeon::WatchProgress(const SurgeonAct& act, const Snapshot
   return false;
 }
 
-Input CholecystectomySurgeon::Act(const Snapshot& seen) {
+scene::Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   const double dt = scene_->tick_seconds;
   has_view_ = has_view_ || seen.operation.critical_view.IsAchieved();
   if (stops_) acts_.clear();
@@ -262,8 +273,8 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
       std::clamp(picture_.to.spin - picture_.camera.spin, -4 * kCameraRate * dt, 4 * kCameraRate * dt);
   picture_.camera.depth += std::clamp(picture_.to.depth - picture_.camera.depth, -0.03 * dt, 0.03 * dt);
   picture_.camera.jaw = picture_.to.jaw;
-  Input input;
-  for (int hand = 0; hand < kHandCount; ++hand)
+  scene::Input input;
+  for (int hand = 0; hand < instrument::kHandCount; ++hand)
     input.hands[static_cast<std::size_t>(hand)] = HandOf(hand).Step(dt);
   input.controls = controls_;
   input.assistant = assistant_;

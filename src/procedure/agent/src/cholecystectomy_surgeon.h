@@ -29,13 +29,6 @@
 
 namespace trocar::agent {
 
-using roles::LandmarkRole;
-using roles::OrganRole;
-using roles::TubeRole;
-using scene::StrandInfo;
-using scene::SurfaceInfo;
-using simulation::ModelDescription;
-
 /// The one thing that a careless surgeon does wrong; kNone: the whole operation, well done.
 enum class OperationErrorScenario : std::uint8_t {
   kNone,
@@ -65,10 +58,10 @@ enum class OperationErrorScenario : std::uint8_t {
 
 class CholecystectomySurgeon final : public Surgeon {
  public:
-  CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
+  CholecystectomySurgeon(std::shared_ptr<const scene::Scene> scene, const SurgeonSkill& skill,
                          OperationErrorScenario error_scenario, std::uint64_t seed);
 
-  Input Act(const Snapshot& seen) override;
+  scene::Input Act(const simulation::Snapshot& seen) override;
   bool HasFinished() const override { return has_finished_; }
   std::string_view Doing() const override { return doing_; }
   std::string_view BailOutReason() const override { return bail_out_; }
@@ -83,7 +76,7 @@ class CholecystectomySurgeon final : public Surgeon {
   static constexpr double kCleared = 0.91;  // of the triangle: a little more than the view asks [-]
   static constexpr std::uint64_t kNever = ~std::uint64_t{0};
 
-  void Learn(ModelDescription model);
+  void Learn(simulation::ModelDescription model);
   void PlanOperation();
   void PlanErrorScenario(OperationErrorScenario error_scenario);
   void PullHard();
@@ -92,15 +85,15 @@ class CholecystectomySurgeon final : public Surgeon {
   void FreeGallbladder();
 
   // what is under way
-  void Begin(const SurgeonAct& act, const Snapshot& seen);
-  bool IsDone(const SurgeonAct& act, const Snapshot& seen);
+  void Begin(const SurgeonAct& act, const simulation::Snapshot& seen);
+  bool IsDone(const SurgeonAct& act, const simulation::Snapshot& seen);
   /// Plans on; what it adds is done next.
-  void PlanOn(const SurgeonAct& act, const Snapshot& seen);
+  void PlanOn(const SurgeonAct& act, const simulation::Snapshot& seen);
   SurgeonAct& Add(SurgeonAct::Kind kind, std::string doing, double time_limit);
   /// Adds an act that plans on when it is reached, from what is seen then.
   SurgeonAct& Decide(SurgeonAct::Kind kind, std::string doing) { return Add(kind, std::move(doing), 1.0); }
-  Vec3 Find(const Place& place, const Snapshot& seen) const;
-  Vec3 FindUnhooked(const Place& place, const Snapshot& seen) const;
+  math::Vec3 Find(const Place& place, const simulation::Snapshot& seen) const;
+  math::Vec3 FindUnhooked(const Place& place, const simulation::Snapshot& seen) const;
 
   // verbs
   void Reach(int hand, const Place& tip, double hurry = 1);
@@ -108,12 +101,12 @@ class CholecystectomySurgeon final : public Surgeon {
   void Wait(double seconds);
   void Exchange(int hand, instrument::ToolKind kind, bool over_field = true);
   void Grasp(int hand, const Place& at, double squeeze = 0);
-  void Draw(int hand, const Vec3& by);
-  void DrawGently(int hand, const Vec3& by, double roll = 0);
+  void Draw(int hand, const math::Vec3& by);
+  void DrawGently(int hand, const math::Vec3& by, double roll = 0);
   void LetGo(int hand);
   void Ease(int hand);
   void LineUp(const std::string& what, std::size_t tube, double share, double jaw);
-  void LineUpTool(const SurgeonAct& act, const Snapshot& seen);
+  void LineUpTool(const SurgeonAct& act, const simulation::Snapshot& seen);
   void PlaceClip(std::size_t tube, double share, double beyond = 0.5, int tries = 2);
   void CloseClip(std::size_t tube, double share);
   void CutTube(std::size_t tube, double share);
@@ -121,71 +114,74 @@ class CholecystectomySurgeon final : public Surgeon {
   void Rinse(const Place& at, double rinse_seconds, double aspirate_seconds);
   void SetJaw(std::string doing, double jaw);
   void Dissect(DissectionGoal goal);
-  bool GoOnDissecting(Dissection& work, const Snapshot& seen);
-  void WorkOnFibre(Dissection& work, const Snapshot& seen);
-  double ChooseFibre(Dissection& work, const Snapshot& seen);
+  bool GoOnDissecting(Dissection& work, const simulation::Snapshot& seen);
+  void WorkOnFibre(Dissection& work, const simulation::Snapshot& seen);
+  double ChooseFibre(Dissection& work, const simulation::Snapshot& seen);
   Traction PlanTraction(const DissectionGoal& goal) const;
-  bool TakeUpSlack(Traction& traction, const Snapshot& seen, double parted);
+  bool TakeUpSlack(Traction& traction, const simulation::Snapshot& seen, double parted);
   void LeaveFibre(Dissection& work);
   void BackOff();
   void Swing(Dissection& work);
-  void GoOnSwinging(Traction& traction, const Snapshot& seen);
-  Vec3 HookStand(const Snapshot& seen, std::uint32_t strand, double spin) const;
-  void Approach(HookTarget& target, const Vec3& tip);
+  void GoOnSwinging(Traction& traction, const simulation::Snapshot& seen);
+  math::Vec3 HookStand(const simulation::Snapshot& seen, std::uint32_t strand, double spin) const;
+  void Approach(HookTarget& target, const math::Vec3& tip);
   void LookAt(const Place& target, double turn, double distance);
   void HoldOn(const Place& near, int tries = kHoldTries, const HoldFilter& may = {});
   void Spread();
-  bool GoOnSpreading(Spreading& work, const Snapshot& seen);
-  SpreadField SeeSpreadField(const Spreading& work, const Snapshot& seen, std::vector<std::uint32_t>& index);
+  bool GoOnSpreading(Spreading& work, const simulation::Snapshot& seen);
+  SpreadField SeeSpreadField(const Spreading& work, const simulation::Snapshot& seen,
+                             std::vector<std::uint32_t>& index);
   static const instrument::Tool* ToolOf(const Spreading& work);
-  bool MayClose(const Spreading& work, const Snapshot& seen);
+  bool MayClose(const Spreading& work, const simulation::Snapshot& seen);
   void GoOn();
-  bool GoOnOrHoldAnew(const Snapshot& seen);
-  bool IsEnough(const DissectionGoal& goal, const Snapshot& seen) const;
+  bool GoOnOrHoldAnew(const simulation::Snapshot& seen);
+  bool IsEnough(const DissectionGoal& goal, const simulation::Snapshot& seen) const;
 
   // the operation's parts
-  void ChooseHold(const SurgeonAct& act, const Snapshot& seen);
-  void TakeHold(const SurgeonAct& act, const Snapshot& seen);
-  void CheckHold(const SurgeonAct& act, const Snapshot& seen);
+  void ChooseHold(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void TakeHold(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void CheckHold(const SurgeonAct& act, const simulation::Snapshot& seen);
   void ClearTriangle(int rounds, bool is_second_look = false);
-  void PlanTriangle(const SurgeonAct& act, const Snapshot& seen);
-  void CheckTriangle(const SurgeonAct& act, const Snapshot& seen);
-  void SwingOutOfWay(const Snapshot& seen, DissectionGoal& goal);
-  void OpenTriangle(const SurgeonAct& act, const Snapshot& seen);
-  bool CutLastFibres(const SurgeonAct& act, const Snapshot& seen);
-  void TurnNeck(const Snapshot& seen, int side, double by, double turn = 0);
-  void GoRoundDuct(const Snapshot& seen, double angle);
+  void PlanTriangle(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void CheckTriangle(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void SwingOutOfWay(const simulation::Snapshot& seen, DissectionGoal& goal);
+  void OpenTriangle(const SurgeonAct& act, const simulation::Snapshot& seen);
+  bool CutLastFibres(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void TurnNeck(const simulation::Snapshot& seen, int side, double by, double turn = 0);
+  void GoRoundDuct(const simulation::Snapshot& seen, double angle);
   void FreeFromFundus(int rounds);
-  void PlanFundusFirst(const SurgeonAct& act, const Snapshot& seen);
+  void PlanFundusFirst(const SurgeonAct& act, const simulation::Snapshot& seen);
   void BailOut(std::string reason);
-  bool WatchProgress(const SurgeonAct& act, const Snapshot& seen);
-  std::string ExplainMissingView(const Snapshot& seen) const;
-  void PlanLowerThird(const SurgeonAct& act, const Snapshot& seen);
-  void PlanCriticalView(const SurgeonAct& act, const Snapshot& seen);
-  void PlanLookFromSide(const SurgeonAct& act, const Snapshot& seen);
-  void PlanBed(const SurgeonAct& act, const Snapshot& seen);
-  void CheckPlacedClip(const SurgeonAct& act, const Snapshot& seen);
+  bool WatchProgress(const SurgeonAct& act, const simulation::Snapshot& seen);
+  std::string ExplainMissingView(const simulation::Snapshot& seen) const;
+  void PlanLowerThird(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void PlanCriticalView(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void PlanLookFromSide(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void PlanBed(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void CheckPlacedClip(const SurgeonAct& act, const simulation::Snapshot& seen);
   void FreeLowerThird(int rounds);
   void ShowCriticalView(int rounds);
   void LookFromSide(int side, int tries = kNeckTurns, bool is_last_hold = false);
   void LookPastShaft(std::size_t which, double arc);
-  void PlanLookPastShaft(const SurgeonAct& act, const Snapshot& seen);
-  std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side, double aside);
-  void UpdateSight(const Snapshot& seen);
-  bool Shows(const Snapshot& seen, const math::Pose& X_world_lens, std::span<const Vec3> points);
-  std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
+  void PlanLookPastShaft(const SurgeonAct& act, const simulation::Snapshot& seen);
+  std::optional<instrument::TrocarJoints> FindSideView(const simulation::Snapshot& seen, int side,
+                                                       double aside);
+  void UpdateSight(const simulation::Snapshot& seen);
+  bool Shows(const simulation::Snapshot& seen, const math::Pose& X_world_lens,
+             std::span<const math::Vec3> points);
+  std::optional<std::size_t> FindExtraArtery(const simulation::Snapshot& seen);
   void Divide(std::vector<std::size_t> tubes, int rounds = 3);
-  void PlanDivision(const SurgeonAct& act, const Snapshot& seen);
-  void GoOnDividing(const Snapshot& seen);
+  void PlanDivision(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void GoOnDividing(const simulation::Snapshot& seen);
   void ClipAt(std::size_t which, double arc);
-  void LineUpClip(const SurgeonAct& act, const Snapshot& seen);
-  void LineUpScissors(const SurgeonAct& act, const Snapshot& seen);
+  void LineUpClip(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void LineUpScissors(const SurgeonAct& act, const simulation::Snapshot& seen);
   void CloseWhenBetween(std::size_t which, double arc, int tries);
-  void CheckClip(const SurgeonAct& act, const Snapshot& seen);
+  void CheckClip(const SurgeonAct& act, const simulation::Snapshot& seen);
   void CutAt(std::size_t which, double arc);
-  void CheckBlades(const SurgeonAct& act, const Snapshot& seen);
-  void CheckBeforeCut(const SurgeonAct& act, const Snapshot& seen);
-  void PlanCoagulation(const SurgeonAct& act, const Snapshot& seen);
+  void CheckBlades(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void CheckBeforeCut(const SurgeonAct& act, const simulation::Snapshot& seen);
+  void PlanCoagulation(const SurgeonAct& act, const simulation::Snapshot& seen);
   void Withdraw();
   void StopBleeding(int rounds = 4);
   void Take(instrument::ToolKind kind);
@@ -193,56 +189,57 @@ class CholecystectomySurgeon final : public Surgeon {
   void Remove();
 
   // knowledge
-  std::vector<std::uint32_t> CoveringStrands(const Snapshot& seen) const;
+  std::vector<std::uint32_t> CoveringStrands(const simulation::Snapshot& seen) const;
   std::vector<std::uint32_t> BedStrands(double share) const;
-  double EndDistance(const Snapshot& seen, const collision::Segment& segment) const;
-  double CalcAzimuth(std::span<const Vec3> positions, const Vec3& eye) const;
-  bool AreTubesBare(const Snapshot& seen) const;
-  bool IsTriangleClear(const Snapshot& seen) const;
+  double EndDistance(const simulation::Snapshot& seen, const collision::Segment& segment) const;
+  double CalcAzimuth(std::span<const math::Vec3> positions, const math::Vec3& eye) const;
+  bool AreTubesBare(const simulation::Snapshot& seen) const;
+  bool IsTriangleClear(const simulation::Snapshot& seen) const;
   bool MayHold(const HoldFilter& may, std::uint32_t node) const;
-  Vec3 BedAxis() const;  // from the infundibulum to the fundus, at rest
-  std::vector<std::uint32_t> PeelStrands(const Snapshot& seen, const std::vector<std::uint32_t>& bed,
+  math::Vec3 BedAxis() const;  // from the infundibulum to the fundus, at rest
+  std::vector<std::uint32_t> PeelStrands(const simulation::Snapshot& seen,
+                                         const std::vector<std::uint32_t>& bed,
                                          bool is_from_fundus = false) const;
   std::vector<double> BedOrder(const std::vector<std::uint32_t>& bed, bool is_from_fundus = false) const;
   Place MiddleOf(std::vector<std::uint32_t> strands) const;
-  bool HangsFree(const Snapshot& seen) const;
-  double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
-  TubeLine LineOf(const Snapshot& seen, std::size_t tube) const;
-  std::vector<TubeLine> LinesOf(const Snapshot& seen) const;
-  std::vector<double> ClipsOn(const Snapshot& seen, std::size_t tube) const;
-  bool IsDivided(const Snapshot& seen, std::size_t tube) const;
-  DivisionField FieldOf(const Snapshot& seen, std::size_t tube, const std::vector<TubeLine>& lines,
-                        double care);
-  double Clearance(const Snapshot& seen, const collision::Segment& segment);
-  std::uint32_t FindHold(const Snapshot& seen, const Vec3& near, const std::vector<std::uint32_t>& avoid,
-                         const HoldFilter& may);
-  void FollowWithCamera(const Snapshot& seen);
-  void AimCamera(const Vec3& p, const Vec3& facing, double distance);
-  Vec3 TubePoint(const Snapshot& seen, std::size_t tube, double share) const;
-  Vec3 TubeDirection(const Snapshot& seen, std::size_t tube, double share) const;
-  std::uint32_t FindNode(std::int32_t organ, const Vec3& p) const;
-  std::size_t FindTube(TubeRole role) const;
-  Vec3 HookTip(const Vec3& at) const;
-  Vec3 HookToe(const Vec3& at, double spin) const;
+  bool HangsFree(const simulation::Snapshot& seen) const;
+  double ShareLeft(const simulation::Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
+  TubeLine LineOf(const simulation::Snapshot& seen, std::size_t tube) const;
+  std::vector<TubeLine> LinesOf(const simulation::Snapshot& seen) const;
+  std::vector<double> ClipsOn(const simulation::Snapshot& seen, std::size_t tube) const;
+  bool IsDivided(const simulation::Snapshot& seen, std::size_t tube) const;
+  DivisionField FieldOf(const simulation::Snapshot& seen, std::size_t tube,
+                        const std::vector<TubeLine>& lines, double care);
+  double Clearance(const simulation::Snapshot& seen, const collision::Segment& segment);
+  std::uint32_t FindHold(const simulation::Snapshot& seen, const math::Vec3& near,
+                         const std::vector<std::uint32_t>& avoid, const HoldFilter& may);
+  void FollowWithCamera(const simulation::Snapshot& seen);
+  void AimCamera(const math::Vec3& p, const math::Vec3& facing, double distance);
+  math::Vec3 TubePoint(const simulation::Snapshot& seen, std::size_t tube, double share) const;
+  math::Vec3 TubeDirection(const simulation::Snapshot& seen, std::size_t tube, double share) const;
+  std::uint32_t FindNode(std::int32_t organ, const math::Vec3& p) const;
+  std::size_t FindTube(roles::TubeRole role) const;
+  math::Vec3 HookTip(const math::Vec3& at) const;
+  math::Vec3 HookToe(const math::Vec3& at, double spin) const;
   struct HookWay {
     double spin = 0;   ///< of the hook [rad]
     double clear = 0;  ///< that the shaft passes by organs [m]
   };
-  HookWay FindHookWay(const Snapshot& seen, const Vec3& at);
-  Vec3 HookPoint(const Snapshot& seen) const;
-  collision::Segment HookWire(const Snapshot& seen) const;
-  Vec3 HookedPoint(const Snapshot& seen, std::uint32_t strand) const;
+  HookWay FindHookWay(const simulation::Snapshot& seen, const math::Vec3& at);
+  math::Vec3 HookPoint(const simulation::Snapshot& seen) const;
+  collision::Segment HookWire(const simulation::Snapshot& seen) const;
+  math::Vec3 HookedPoint(const simulation::Snapshot& seen, std::uint32_t strand) const;
   /// Nearest points of the hook's wire and of a fibre.
-  collision::SegmentSegmentPoints HookGap(const Snapshot& seen, std::uint32_t strand) const;
+  collision::SegmentSegmentPoints HookGap(const simulation::Snapshot& seen, std::uint32_t strand) const;
   /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.
-  Vec3 Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const;
-  Vec3 WallBesideHold(const Snapshot& seen) const;
+  math::Vec3 Aim(const simulation::Snapshot& seen, std::size_t tube, double share, double ahead) const;
+  math::Vec3 WallBesideHold(const simulation::Snapshot& seen) const;
   HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
 
-  std::shared_ptr<const Scene> scene_;
-  std::array<HandMotion, kHandCount> hands_;
-  std::array<HandControls, kHandCount> controls_;
-  AssistantCommand assistant_ = AssistantCommand::kWait;
+  std::shared_ptr<const scene::Scene> scene_;
+  std::array<HandMotion, instrument::kHandCount> hands_;
+  std::array<scene::HandControls, instrument::kHandCount> controls_;
+  scene::AssistantCommand assistant_ = scene::AssistantCommand::kWait;
   /// Camera work of this operator: the laparoscope's joints now and to come, and the part of the field that it shows.
   struct Picture {
     instrument::TrocarJoints camera, to;
@@ -255,10 +252,10 @@ class CholecystectomySurgeon final : public Surgeon {
 
   /// Knowledge of the patient before the first cut; constant.
   struct Knowledge {
-    std::vector<StrandInfo> strands;
-    std::vector<SurfaceInfo> surfaces;
+    std::vector<scene::StrandInfo> strands;
+    std::vector<scene::SurfaceInfo> surfaces;
     std::int32_t gallbladder = -1, liver = -1;  // of surfaces
-    std::vector<Vec3> rest;
+    std::vector<math::Vec3> rest;
     std::vector<std::vector<std::uint32_t>>
         tube_nodes;                             // (tubes) from the gallbladder's end, where one enters it
     std::vector<std::uint32_t> neck_nodes;      // around the infundibulum
@@ -270,7 +267,7 @@ class CholecystectomySurgeon final : public Surgeon {
     std::vector<double> exposable;              // (tubes) what may be asked to lie bare [m]
     std::vector<std::uint32_t> careful_nodes;   // of those arteries, and of small ducts of the bed
     std::uint32_t neck = 0, hold = 0, fundus = 0, liver_node = 0;
-    Vec3 bed_normal;  // from the liver towards the gallbladder, at rest
+    math::Vec3 bed_normal;  // from the liver towards the gallbladder, at rest
   };
   Knowledge known_;
 
@@ -300,11 +297,11 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::uint32_t> missed_holds_;
   HeatMemory heat_;
   double beyond_ = 0.5;  // share of the jaws that goes past the vessel [-]
-  Vec3 offset_;          // by which the right hand aims beside what it wants to meet [m]
+  math::Vec3 offset_;    // by which the right hand aims beside what it wants to meet [m]
   std::string doing_;
 };
 
 /// Whether a scene is one that they can operate on.
-bool IsCholecystectomy(const Scene& scene);
+bool IsCholecystectomy(const scene::Scene& scene);
 
 }  // namespace trocar::agent

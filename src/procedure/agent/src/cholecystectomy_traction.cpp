@@ -7,6 +7,10 @@
 #include "cholecystectomy_surgeon.h"
 
 namespace trocar::agent {
+
+using instrument::kLeft;
+using math::Vec3;
+
 namespace {
 
 constexpr double kPeelRate = 0.0012;  // of the hand that draws the gallbladder off its bed [m/s]
@@ -44,7 +48,8 @@ Traction CholecystectomySurgeon::PlanTraction(const DissectionGoal& goal) const 
 /// Draws on as the fibres part, as far as no strong pull is felt.
 /// \param parted  share of the fibres [-]
 /// \return whether the hand is on its way, or sets out to draw farther
-bool CholecystectomySurgeon::TakeUpSlack(Traction& traction, const Snapshot& seen, double parted) {
+bool CholecystectomySurgeon::TakeUpSlack(Traction& traction, const simulation::Snapshot& seen,
+                                         double parted) {
   HandMotion& hand = HandOf(kLeft);
   if (traction.ways.empty() || !seen.instruments[kLeft].is_grasping) return false;
   if (hand.IsMoving()) return true;
@@ -78,7 +83,7 @@ void CholecystectomySurgeon::Swing(Dissection& work) {
   BackOff();
 }
 
-void CholecystectomySurgeon::GoOnSwinging(Traction& traction, const Snapshot& seen) {
+void CholecystectomySurgeon::GoOnSwinging(Traction& traction, const simulation::Snapshot& seen) {
   const bool pulls = math::Norm(seen.instruments[kLeft].force) > kMostSwingPull * traction.most_pull;
   if (pulls) HandOf(kLeft).MoveTo(HandOf(kLeft).Tip());
   traction.is_swinging = HandOf(kLeft).IsMoving() && !pulls;

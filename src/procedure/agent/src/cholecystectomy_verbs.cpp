@@ -7,7 +7,10 @@
 
 namespace trocar::agent {
 
-using simulation::IsInView;
+using instrument::IsInView;
+using instrument::kRight;
+using math::Vec3;
+
 namespace {
 
 /// Open jaws wait so far before a hold, and close so far past it [m].
@@ -136,12 +139,12 @@ void CholecystectomySurgeon::LookAt(const Place& target, double turn, double dis
   act.distance = distance;
 }
 
-Vec3 CholecystectomySurgeon::Find(const Place& place, const Snapshot& seen) const {
+Vec3 CholecystectomySurgeon::Find(const Place& place, const simulation::Snapshot& seen) const {
   const Vec3 p = FindUnhooked(place, seen);
   return place.is_for_hook ? HookTip(p) : p;
 }
 
-Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const Snapshot& seen) const {
+Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const simulation::Snapshot& seen) const {
   const HandMotion& hand = hands_[static_cast<std::size_t>(place.hand)];
   const HandMotion& right = hands_[kRight];
   switch (place.kind) {
@@ -154,7 +157,7 @@ Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const Snapshot& se
     }
     case Place::Kind::kAboveNode: {
       const Vec3& p = seen.positions[place.node];
-      return p + place.back * math::Normalized(0.5 * (hands_[kLeft].Port() + right.Port()) - p);
+      return p + place.back * math::Normalized(0.5 * (hands_[instrument::kLeft].Port() + right.Port()) - p);
     }
     case Place::Kind::kTube:
       return TubePoint(seen, place.tube, place.share);
@@ -170,7 +173,7 @@ Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const Snapshot& se
       return sum / static_cast<double>(place.strands.size());
     }
     case Place::Kind::kGallbladder: {
-      const SurfaceInfo& surface = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
+      const scene::SurfaceInfo& surface = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
       Vec3 centre;
       for (std::uint32_t i = 0; i < surface.node_count; ++i)
         centre += seen.positions[surface.first_node + i] / static_cast<double>(surface.node_count);

@@ -10,13 +10,18 @@
 
 namespace trocar::agent {
 
+using instrument::IsInView;
+using instrument::kLeft;
 using instrument::TrocarJoints;
 using math::Pose;
+using math::Vec3;
+using roles::TubeRole;
 using scene::CalcLaparoscopePose;
 using scene::FindView;
 using scene::LaparoscopeSetup;
 using scene::ViewRequest;
-using simulation::IsInView;
+using simulation::Snapshot;
+
 namespace {
 
 constexpr double kTurnStep = 0.2;  // of the lens about the duct, to either side in turn [rad]
@@ -140,7 +145,7 @@ void CholecystectomySurgeon::GoRoundDuct(const Snapshot& seen, double angle) {
   const HandMotion& hand = HandOf(kLeft);
   const Vec3 arm = hand.Tip() - neck;
   if (seen.operation.assistant.is_holding)
-    Add(SurgeonAct::Kind::kAssist, "assistant: release", 4.0).command = AssistantCommand::kRelease;
+    Add(SurgeonAct::Kind::kAssist, "assistant: release", 4.0).command = scene::AssistantCommand::kRelease;
   Ease(kLeft);
   DrawGently(kLeft, out + math::Rotate(math::RotationAbout(axis, angle), arm) - arm,
              FindRoll(hand.Port(), hand.Tip(), axis, angle));
@@ -157,7 +162,7 @@ void CholecystectomySurgeon::LookPastShaft(std::size_t which, double arc) {
 
 void CholecystectomySurgeon::PlanLookPastShaft(const SurgeonAct& act, const Snapshot& seen) {
   const Vec3 p = LineOf(seen, division_.tubes[act.tube]).At(act.share);
-  const Vec3 shaft = HandOf(kRight).Port() - p;
+  const Vec3 shaft = HandOf(instrument::kRight).Port() - p;
   const auto angle_past_shaft = [&](const Pose& X_world_lens) {
     return math::AngleBetween(X_world_lens.translation - p, shaft);
   };

@@ -12,6 +12,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::agent {
+
+using math::Vec3;
+
 namespace {
 
 using collision::Segment;

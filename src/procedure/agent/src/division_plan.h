@@ -12,24 +12,22 @@
 
 namespace trocar::agent {
 
-using math::Vec3;
-
 /// A duct or artery as it lies now, from the gallbladder on.
 struct TubeLine {
-  std::vector<Vec3> points;   ///< at least 2 [m]
-  std::vector<double> radii;  ///< (points) [m]
+  std::vector<math::Vec3> points;  ///< at least 2 [m]
+  std::vector<double> radii;       ///< (points) [m]
 
   double Length() const;
   /// \param arc  from the first point [m]; outside is taken at the end
-  Vec3 At(double arc) const;
+  math::Vec3 At(double arc) const;
   double RadiusAt(double arc) const;
   /// Unit, away from the gallbladder, over a few millimetres.
-  Vec3 DirectionAt(double arc) const;
+  math::Vec3 DirectionAt(double arc) const;
   /// Arc of the nearest point, and how far it is [m].
   struct Near {
     double arc = 0, distance = 0;
   };
-  Near FindNearest(const Vec3& p) const;
+  Near FindNearest(const math::Vec3& p) const;
   Near FindNearest(const collision::Segment& segment) const;
 };
 
@@ -37,7 +35,7 @@ struct TubeLine {
 struct DivisionField {
   const TubeLine* tube = nullptr;
   std::vector<const TubeLine*> others;  ///< that must not come between legs or blades
-  Vec3 port;                            ///< of the hand that does it [m]
+  math::Vec3 port;                      ///< of the hand that does it [m]
   const instrument::Tool* applier = nullptr;
   const instrument::Tool* scissors = nullptr;
   /// Distance from a segment to the nearest organ [m].

@@ -9,6 +9,9 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::agent {
+
+using math::Vec3;
+
 namespace {
 
 using math::Atan2;

@@ -17,9 +17,6 @@
 
 namespace trocar::agent {
 
-using scene::AssistantCommand;
-using scene::kRight;
-
 /// Where something is, to be found in a snapshot when it is needed.
 struct Place {
   enum class Kind : std::uint8_t {
@@ -40,7 +37,7 @@ struct Place {
     kOverField,    ///< over what the picture is about, in the picture
     kPool          ///< where liquid gathers, `back` towards the trocar
   } kind = Kind::kNone;
-  std::int32_t hand = kRight;
+  std::int32_t hand = instrument::kRight;
   bool is_for_hook = false;  ///< where the tip stands when the middle of the hook's toe is there
   std::uint32_t node = 0;
   std::size_t tube = 0;
@@ -130,7 +127,7 @@ struct SurgeonAct {
   } kind = Kind::kWait;
   std::string doing;
   double time_limit = 0;  ///< after which it is left [s]
-  std::int32_t hand = kRight;
+  std::int32_t hand = instrument::kRight;
   Place place;
   double hurry = 1;                ///< times the skill's speed
   double seconds = 0;              ///< [s]
@@ -148,7 +145,7 @@ struct SurgeonAct {
   bool is_on = false;
   std::uint8_t tool = 0;  ///< of the hand's tray
   instrument::ToolKind tool_kind = instrument::ToolKind::kGrasper;
-  AssistantCommand command = AssistantCommand::kWait;
+  scene::AssistantCommand command = scene::AssistantCommand::kWait;
   instrument::TrocarJoints camera;
 
   bool IsDecision() const { return kind >= Kind::kChooseHold && kind <= Kind::kFundusFirst; }

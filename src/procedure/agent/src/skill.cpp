@@ -13,6 +13,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::agent {
+
+using scene::Scene;
+
 namespace {
 
 struct WeaknessText {
@@ -71,14 +74,14 @@ SurgeonSkill Expert() noexcept {
 bool NeedsBothHands(const Scene& scene) noexcept {
   if (!scene.task) return false;
   using scene::ConditionKind;
-  bool needs[scene::kHandCount] = {};
+  bool needs[instrument::kHandCount] = {};
   for (const scene::Goal& goal : scene.task->goals) {
     for (const scene::Condition& step : goal.steps) {
       if (step.kind == ConditionKind::kHandedOver) return true;
-      if (step.hand >= 0 && step.hand < scene::kHandCount) needs[step.hand] = true;
+      if (step.hand >= 0 && step.hand < instrument::kHandCount) needs[step.hand] = true;
     }
   }
-  return needs[scene::kLeft] && needs[scene::kRight];
+  return needs[instrument::kLeft] && needs[instrument::kRight];
 }
 
 bool HasElectrode(const Scene& scene) noexcept {

@@ -30,8 +30,8 @@ SkilledSurgeon::SkilledSurgeon(std::unique_ptr<Surgeon> hands, const SurgeonSkil
   waiting_.resize(static_cast<std::size_t>(std::lround(skill.delay / tick_seconds)));
 }
 
-Input SkilledSurgeon::Act(const Snapshot& seen) {
-  Input input = hands_->Act(seen);
+scene::Input SkilledSurgeon::Act(const simulation::Snapshot& seen) {
+  scene::Input input = hands_->Act(seen);
   if (drift_ > 0) {
     const double time = static_cast<double>(acted_) * tick_seconds_;
     const auto drift = [&](std::size_t axis) {

@@ -18,7 +18,7 @@ class SkilledSurgeon final : public Surgeon {
   SkilledSurgeon(std::unique_ptr<Surgeon> hands, const SurgeonSkill& skill, double tick_seconds,
                  std::uint64_t seed);
 
-  Input Act(const Snapshot& seen) override;
+  scene::Input Act(const simulation::Snapshot& seen) override;
   bool HasFinished() const override { return hands_->HasFinished(); }
   std::string_view Doing() const override { return hands_->Doing(); }
   std::string_view BailOutReason() const override { return hands_->BailOutReason(); }
@@ -34,8 +34,8 @@ class SkilledSurgeon final : public Surgeon {
   std::array<std::array<double, kSines>, 2> frequency_{}, phase_{};  // of pan and tilt [Hz], [rad]
   /// Part of an input that changes from tick to tick.
   struct Waiting {
-    std::array<instrument::TrocarJoints, scene::kHandCount> hands;
-    std::array<scene::HandControls, scene::kHandCount> controls;
+    std::array<instrument::TrocarJoints, instrument::kHandCount> hands;
+    std::array<scene::HandControls, instrument::kHandCount> controls;
     scene::AssistantCommand assistant = scene::AssistantCommand::kWait;
     instrument::TrocarJoints laparoscope;
     void VisitState(base::StateArchive& archive);

@@ -10,6 +10,9 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::agent {
+
+using math::Vec3;
+
 namespace {
 
 using math::Atan2;

@@ -13,19 +13,17 @@
 
 namespace trocar::agent {
 
-using math::Vec3;
-
 /// Field before the jaws: fibres to be parted, and the tubes and organs beside them.
 struct SpreadField {
   std::vector<collision::Segment> fibres;  ///< that are to be parted [m]
   std::vector<double> weights;             ///< (fibres) what parting one is worth
   struct Round {
-    Vec3 p;             ///< [m]
+    math::Vec3 p;       ///< [m]
     double radius = 0;  ///< [m]
   };
   std::vector<Round> tubes;  ///< points of ducts and arteries that the jaws go beside
-  Vec3 port;                 ///< [m]
-  Vec3 tip;                  ///< where the hand is now [m]
+  math::Vec3 port;           ///< [m]
+  math::Vec3 tip;            ///< where the hand is now [m]
   double spin = 0;           ///< of the hand now [rad]
   const instrument::Tool* tool = nullptr;
   /// Distance from a segment to the nearest organ [m].
@@ -33,7 +31,7 @@ struct SpreadField {
 };
 
 struct SpreadPose {
-  Vec3 tip;             ///< [m]
+  math::Vec3 tip;       ///< [m]
   double spin = 0;      ///< [rad]
   double opening = 1;   ///< of the jaws, as a share: less where a duct is near [-]
   double worth = 0;     ///< of what parts

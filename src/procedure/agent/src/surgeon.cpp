@@ -11,6 +11,8 @@
 namespace trocar::agent {
 
 using scene::ErrorRule;
+using scene::Scene;
+
 namespace {
 
 bool HasGoals(const Scene& scene) {

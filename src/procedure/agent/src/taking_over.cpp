@@ -5,10 +5,11 @@
 
 namespace trocar::agent {
 
-base::Result<std::unique_ptr<Surgeon>> MakeSurgeonTakingOver(std::string_view name, const Scene& scene,
-                                                             const Snapshot& seen, std::uint64_t seed) {
-  auto begun = std::make_shared<Scene>(scene);
-  for (std::size_t hand = 0; hand < scene::kHandCount; ++hand)
+base::Result<std::unique_ptr<Surgeon>> MakeSurgeonTakingOver(std::string_view name, const scene::Scene& scene,
+                                                             const simulation::Snapshot& seen,
+                                                             std::uint64_t seed) {
+  auto begun = std::make_shared<scene::Scene>(scene);
+  for (std::size_t hand = 0; hand < instrument::kHandCount; ++hand)
     begun->instruments[hand].home = seen.instruments[hand].joints;
   begun->laparoscope.home = seen.laparoscope;
   auto surgeon = MakeSurgeon(name, std::move(begun), seed);

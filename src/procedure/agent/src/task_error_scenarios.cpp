@@ -4,8 +4,11 @@
 
 namespace trocar::agent {
 
-using scene::kRight;
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
 using scene::RegionMark;
+
 namespace {
 
 constexpr double kHighEnough = 0.035;  // above where a thing lay, that it falls when it is dropped [m]
@@ -19,7 +22,7 @@ constexpr double kApart = 0.030;       // of hands that pull at one thing [m]
 
 /// While something is carried. \return whether the plan now is to err
 /// \param on_path  the thing is led along something and cannot be lifted away
-bool TaskSurgeon::AddErrorScenario(const Snapshot& seen, int hand, int object, bool on_path) {
+bool TaskSurgeon::AddErrorScenario(const simulation::Snapshot& seen, int hand, int object, bool on_path) {
   const Vec3 here = seen.objects[static_cast<std::size_t>(object)].X_world_object.translation;
   const auto rise = [&] {
     if (seen.instruments[static_cast<std::size_t>(1 - hand)].object >= 0) WithDraw(hand);
@@ -59,7 +62,7 @@ bool TaskSurgeon::AddErrorScenario(const Snapshot& seen, int hand, int object, b
 }
 
 /// Before a step. \return whether the plan now is to err
-bool TaskSurgeon::AddIdleErrorScenario(const Snapshot& seen) {
+bool TaskSurgeon::AddIdleErrorScenario(const simulation::Snapshot& seen) {
   switch (error_scenario_) {
     case ErrorScenario::kPressesBoard: {
       double top = seen.instruments[kLeft].X_world_tool.translation.z;
@@ -89,7 +92,7 @@ bool TaskSurgeon::AddIdleErrorScenario(const Snapshot& seen) {
       break;
     }
     case ErrorScenario::kSmearsLens: {
-      for (const Region& region : scene_->task->regions) {
+      for (const scene::Region& region : scene_->task->regions) {
         if (region.mark == RegionMark::kNone) continue;
         Look(region, 0.010);
         break;

@@ -7,11 +7,15 @@
 
 namespace trocar::agent {
 
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
 using scene::ConditionKind;
 using scene::GoalSnapshot;
 using scene::kAnyHand;
-using scene::kRight;
 using scene::Task;
+using simulation::Snapshot;
+
 namespace {
 
 /// Beside and above what it will take, a hand that has gone ahead waits [m].
@@ -37,7 +41,7 @@ std::optional<Vec3> TaskSurgeon::FindNextWork(const Snapshot& seen, int hand) co
     const GoalSnapshot& now = seen.task.goals[g];
     if (now.is_done || now.steps_done > 0 || task.goals[g].steps.empty()) continue;
     if (task.goals[g].name == goal_name_ || IsLost(seen, task.goals[g])) continue;
-    const Condition& first = task.goals[g].steps.front();
+    const scene::Condition& first = task.goals[g].steps.front();
     if (first.kind == ConditionKind::kTipInRegion) {
       const Vec3& p = task.regions[static_cast<std::size_t>(first.regions.front())].centre;
       const int wanted = first.hand != kAnyHand ? first.hand : p.x < 0 ? kLeft : kRight;
@@ -87,7 +91,7 @@ bool TaskSurgeon::BeginAtTheWrongPlace(const Snapshot& seen, std::size_t goal) {
   for (std::size_t n = 0; n < task.goals.size(); ++n) {
     const std::size_t g = (first + n) % task.goals.size();
     if (g == goal || task.goals[g].steps.empty()) continue;
-    const Condition& step = task.goals[g].steps.front();
+    const scene::Condition& step = task.goals[g].steps.front();
     Vec3 p;
     if (step.object >= 0) {
       p = seen.objects[static_cast<std::size_t>(step.object)].X_world_object.translation;

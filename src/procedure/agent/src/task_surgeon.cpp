@@ -10,15 +10,20 @@
 
 namespace trocar::agent {
 
+using instrument::IsInView;
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
 using scene::ConditionKind;
 using scene::GoalSnapshot;
 using scene::kAnyHand;
-using scene::kRight;
 using scene::ObjectSnapshot;
+using scene::Region;
 using scene::Task;
 using scene::TaskPhase;
-using simulation::IsInView;
-using simulation::TubePiece;
+using simulation::Snapshot;
+using surgery::TubePiece;
+
 namespace {
 
 /// A plan that has led nowhere so often is given up.
@@ -30,11 +35,11 @@ constexpr double kAbovePlace = 0.028, kLetGoHeight = 0.0025;
 
 }  // namespace
 
-bool IsDoneByGoals(const Scene& scene) noexcept {
+bool IsDoneByGoals(const scene::Scene& scene) noexcept {
   return scene.task.has_value() && !(scene.HasPatient() && scene.operation);
 }
 
-TaskSurgeon::TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
+TaskSurgeon::TaskSurgeon(std::shared_ptr<const scene::Scene> scene, const SurgeonSkill& skill,
                          ErrorScenario error_scenario, std::uint64_t seed)
     : scene_(std::move(scene)),
       skill_(skill),
@@ -48,7 +53,7 @@ TaskSurgeon::TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill&
       camera_from_(camera_),
       camera_to_(camera_) {}
 
-Input TaskSurgeon::Act(const Snapshot& seen) {
+scene::Input TaskSurgeon::Act(const Snapshot& seen) {
   const double dt = scene_->tick_seconds;
   if (seen.task.IsOver()) has_finished_ = true;
   if (start_.empty()) {
@@ -76,14 +81,14 @@ Input TaskSurgeon::Act(const Snapshot& seen) {
     } else if (act_seconds_ > act.time_limit) {
       acts_.clear();
       has_begun_ = false;
-      for (HandControls& controls : controls_) controls.cut = controls.coagulate = false;
+      for (scene::HandControls& controls : controls_) controls.cut = controls.coagulate = false;
     } else {
       break;
     }
   }
-  Input input;
+  scene::Input input;
   input.settings = scene_->settings;
-  for (std::size_t hand = 0; hand < kHandCount; ++hand) input.hands[hand] = hands_[hand].Step(dt);
+  for (std::size_t hand = 0; hand < instrument::kHandCount; ++hand) input.hands[hand] = hands_[hand].Step(dt);
   input.controls = controls_;
   StepCamera(dt);
   input.laparoscope = camera_;
@@ -143,12 +148,12 @@ void TaskSurgeon::Plan(const Snapshot& seen) {
 }
 
 /// What has left the picture and lies there is not fetched.
-bool TaskSurgeon::IsLost(const Snapshot& seen, const Goal& goal) const {
+bool TaskSurgeon::IsLost(const Snapshot& seen, const scene::Goal& goal) const {
   // who lets the picture wander knows that a thing is there all the same
   const math::Pose X = skill_.camera_drift > 0
                            ? scene::CalcLaparoscopePose(scene_->laparoscope, scene_->laparoscope.home)
                            : seen.X_world_laparoscope;
-  return std::any_of(goal.steps.begin(), goal.steps.end(), [&](const Condition& step) {
+  return std::any_of(goal.steps.begin(), goal.steps.end(), [&](const scene::Condition& step) {
     if (step.object < 0) return false;
     const ObjectSnapshot& thing = seen.objects[static_cast<std::size_t>(step.object)];
     return thing.held_by == 0 &&
@@ -170,8 +175,8 @@ int TaskSurgeon::ChooseHand(const Snapshot& seen, int object, int wanted) const 
   return distance(kLeft) < distance(kRight) ? kLeft : kRight;
 }
 
-void TaskSurgeon::PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t step) {
-  const Condition& c = goal.steps[step];
+void TaskSurgeon::PlanStep(const Snapshot& seen, const scene::Goal& goal, std::uint32_t step) {
+  const scene::Condition& c = goal.steps[step];
   const Task& task = *scene_->task;
   const auto region = [&]() -> const Region& {
     return task.regions[static_cast<std::size_t>(c.regions.front())];

@@ -19,13 +19,6 @@
 
 namespace trocar::agent {
 
-using scene::Condition;
-using scene::Goal;
-using scene::HandControls;
-using scene::kHandCount;
-using scene::kLeft;
-using scene::Region;
-
 /// The one thing that a careless surgeon does wrong, once.
 enum class ErrorScenario : std::uint8_t {
   kNone,
@@ -55,8 +48,12 @@ struct TissueSpot {
   std::uint32_t a = 0, b = 0;
   double t = 0;
 
-  Vec3 At(const Snapshot& seen) const { return math::Lerp(seen.positions[a], seen.positions[b], t); }
-  Vec3 Along(const Snapshot& seen) const { return math::Normalized(seen.positions[b] - seen.positions[a]); }
+  math::Vec3 At(const simulation::Snapshot& seen) const {
+    return math::Lerp(seen.positions[a], seen.positions[b], t);
+  }
+  math::Vec3 Along(const simulation::Snapshot& seen) const {
+    return math::Normalized(seen.positions[b] - seen.positions[a]);
+  }
   void VisitState(base::StateArchive& archive);
 };
 
@@ -87,11 +84,11 @@ struct TaskAct {
   } kind = Kind::kPass;
   std::string doing;
   double time_limit = 6.0;  ///< then the whole plan is made anew [s]
-  std::int32_t hand = kLeft;
+  std::int32_t hand = instrument::kLeft;
   std::int32_t object = -1;  ///< Scene::objects, or a band
   std::int32_t grip = 0;     ///< of SceneObject::grips
   std::uint8_t tool = 0;     ///< of the hand's tray
-  Vec3 p, q;                 ///< [m]
+  math::Vec3 p, q;           ///< [m]
   TissueSpot spot;
   double hurry = 1;    ///< times the skill's speed
   double amount = 0;   ///< [m] or [rad]
@@ -102,84 +99,85 @@ struct TaskAct {
 };
 
 /// A training task, with a patient or without one. An operation has plans of its own, also where a task asks for a part of it.
-bool IsDoneByGoals(const Scene& scene) noexcept;
+bool IsDoneByGoals(const scene::Scene& scene) noexcept;
 
 class TaskSurgeon final : public Surgeon {
  public:
-  TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill, ErrorScenario error_scenario,
-              std::uint64_t seed);
+  TaskSurgeon(std::shared_ptr<const scene::Scene> scene, const SurgeonSkill& skill,
+              ErrorScenario error_scenario, std::uint64_t seed);
 
-  Input Act(const Snapshot& seen) override;
+  scene::Input Act(const simulation::Snapshot& seen) override;
   bool HasFinished() const override { return has_finished_; }
   std::string_view Doing() const override { return doing_; }
   void VisitState(base::StateArchive& archive) override;
 
  private:
   // plans: task_surgeon.cpp
-  void Plan(const Snapshot& seen);
-  void PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t step);
-  void PlanPlace(const Snapshot& seen, int object, const std::vector<int>& regions);
-  void PlanHandOver(const Snapshot& seen, int object, int from, int to, bool in_place);
-  bool IsLost(const Snapshot& seen, const Goal& goal) const;
-  int ChooseHand(const Snapshot& seen, int object, int wanted) const;
+  void Plan(const simulation::Snapshot& seen);
+  void PlanStep(const simulation::Snapshot& seen, const scene::Goal& goal, std::uint32_t step);
+  void PlanPlace(const simulation::Snapshot& seen, int object, const std::vector<int>& regions);
+  void PlanHandOver(const simulation::Snapshot& seen, int object, int from, int to, bool in_place);
+  bool IsLost(const simulation::Snapshot& seen, const scene::Goal& goal) const;
+  int ChooseHand(const simulation::Snapshot& seen, int object, int wanted) const;
   // verbs: task_verbs.cpp
-  void Begin(const TaskAct& act, const Snapshot& seen);
-  bool IsDone(const TaskAct& act, const Snapshot& seen);
-  void BeginReachFor(const TaskAct& act, const Snapshot& seen);
-  void BeginLineUp(const TaskAct& act, const Snapshot& seen);
+  void Begin(const TaskAct& act, const simulation::Snapshot& seen);
+  bool IsDone(const TaskAct& act, const simulation::Snapshot& seen);
+  void BeginReachFor(const TaskAct& act, const simulation::Snapshot& seen);
+  void BeginLineUp(const TaskAct& act, const simulation::Snapshot& seen);
   void BeginFollowSheet(const TaskAct& act);
   void BeginReachBand(const TaskAct& act);
   void Add(TaskAct act) { acts_.push_back(std::move(act)); }
   /// Adds one of the kinds that move a tip. \return it, for what else it needs
   TaskAct& Reach(TaskAct::Kind kind, int hand, double hurry = 1);
-  void MoveBy(int hand, const Vec3& by);
+  void MoveBy(int hand, const math::Vec3& by);
   void SetJaw(std::string doing, int hand, double jaw, double seconds);
-  void ReachPoint(int hand, const Vec3& p_world_tip, double hurry = 1);
+  void ReachPoint(int hand, const math::Vec3& p_world_tip, double hurry = 1);
   void PickUp(int hand, int object, int grip);
-  void Carry(int hand, int object, const Vec3& p_world_object, double hurry = 1);
+  void Carry(int hand, int object, const math::Vec3& p_world_object, double hurry = 1);
   void Rise(int hand, double height);
   void LetGo(int hand);
   void WithDraw(int hand);
-  void Look(const Region& region, double distance);
+  void Look(const scene::Region& region, double distance);
   void Wait(double seconds);
   // verbs and plans for tissue: task_tissue_verbs.cpp
-  TissueSpot FindOnTube(const Vec3& p_rest) const;
-  void PlanTissue(const Snapshot& seen, const Condition& wanted);
-  int TakeTool(const Snapshot& seen, instrument::ToolKind kind);
+  TissueSpot FindOnTube(const math::Vec3& p_rest) const;
+  void PlanTissue(const simulation::Snapshot& seen, const scene::Condition& wanted);
+  int TakeTool(const simulation::Snapshot& seen, instrument::ToolKind kind);
   void LineUp(int hand, const TissueSpot& spot, double jaw);
   void Advance(int hand, const TissueSpot& spot, double ahead);
-  void CloseClip(const Snapshot& seen, const Vec3& p_rest, double depth_share);
-  void CutTube(const Snapshot& seen, const Vec3& p_rest);
-  double FindClearPlace(const Snapshot& seen, int band) const;
-  void BurnBand(const Snapshot& seen, int band);
+  void CloseClip(const simulation::Snapshot& seen, const math::Vec3& p_rest, double depth_share);
+  void CutTube(const simulation::Snapshot& seen, const math::Vec3& p_rest);
+  double FindClearPlace(const simulation::Snapshot& seen, int band) const;
+  void BurnBand(const simulation::Snapshot& seen, int band);
   void PressPedal(int hand, double seconds);
-  void GraspTissue(const Snapshot& seen, int hand, const Vec3& p_before);
-  void CutCircle(const Snapshot& seen, int sheet, double aside, double turns);
-  void FollowSheet(int hand, const Vec3& p_sheet, double hurry);
-  Vec3 FindTip(const Snapshot& seen, int hand, int object, const Vec3& p_world_object) const;
-  Vec3 GripTip(const Snapshot& seen, int hand, int object, int grip, double back) const;
+  void GraspTissue(const simulation::Snapshot& seen, int hand, const math::Vec3& p_before);
+  void CutCircle(const simulation::Snapshot& seen, int sheet, double aside, double turns);
+  void FollowSheet(int hand, const math::Vec3& p_sheet, double hurry);
+  math::Vec3 FindTip(const simulation::Snapshot& seen, int hand, int object,
+                     const math::Vec3& p_world_object) const;
+  math::Vec3 GripTip(const simulation::Snapshot& seen, int hand, int object, int grip, double back) const;
   // what skill adds: task_skill.cpp
-  void Anticipate(const TaskAct& act, const Snapshot& seen);
-  std::optional<Vec3> FindNextWork(const Snapshot& seen, int hand) const;
-  bool BeginAtTheWrongPlace(const Snapshot& seen, std::size_t goal);
+  void Anticipate(const TaskAct& act, const simulation::Snapshot& seen);
+  std::optional<math::Vec3> FindNextWork(const simulation::Snapshot& seen, int hand) const;
+  bool BeginAtTheWrongPlace(const simulation::Snapshot& seen, std::size_t goal);
   // errors: task_error_scenarios.cpp
-  bool AddErrorScenario(const Snapshot& seen, int hand, int object, bool on_path = false);
-  bool AddIdleErrorScenario(const Snapshot& seen);
-  bool AddTissueErrorScenario(const Snapshot& seen,
-                              const Condition& wanted);  // task_tissue_error_scenarios.cpp
-  Vec3 FindAstray(const Vec3& p_rest) const;
+  bool AddErrorScenario(const simulation::Snapshot& seen, int hand, int object, bool on_path = false);
+  bool AddIdleErrorScenario(const simulation::Snapshot& seen);
+  bool AddTissueErrorScenario(const simulation::Snapshot& seen,
+                              const scene::Condition& wanted);  // task_tissue_error_scenarios.cpp
+  math::Vec3 FindAstray(const math::Vec3& p_rest) const;
 
   void MoveCamera(const instrument::TrocarJoints& to);
   void StepCamera(double dt);
   HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
 
-  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const scene::Scene> scene_;
   SurgeonSkill skill_;
   ErrorScenario error_scenario_;
   math::Random random_;
-  std::array<HandMotion, kHandCount> hands_;
-  std::array<HandControls, kHandCount> controls_;
-  std::vector<Vec3> start_;                                 // Snapshot::positions when it began
+  std::array<HandMotion, instrument::kHandCount> hands_;
+  std::array<scene::HandControls, instrument::kHandCount> controls_;
+  std::vector<math::Vec3> start_;                           // Snapshot::positions when it began
   std::vector<std::array<std::uint32_t, 2>> start_pieces_;  // and the rows of each piece of its ducts
   instrument::TrocarJoints camera_, camera_from_, camera_to_;
   double camera_time_ = 0, camera_duration_ = 0;

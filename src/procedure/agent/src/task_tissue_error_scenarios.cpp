@@ -6,8 +6,11 @@
 
 namespace trocar::agent {
 
+using math::Vec3;
+using scene::Condition;
 using scene::ConditionKind;
 using scene::Task;
+
 namespace {
 
 constexpr double kStep = 0.001, kFarthest = 0.05;  // along a duct, in search of a wrong place [m]
@@ -29,7 +32,7 @@ Vec3 TaskSurgeon::FindAstray(const Vec3& p_rest) const {
       const Vec3 p = p_rest + side * way * along;
       const auto& regions = scene_->task->regions;
       // clear of the next mark's edge, too
-      const bool is_meant = std::any_of(regions.begin(), regions.end(), [&](const Region& region) {
+      const bool is_meant = std::any_of(regions.begin(), regions.end(), [&](const scene::Region& region) {
         return region.Contains(p) || region.Contains(p + kStep * along) || region.Contains(p - kStep * along);
       });
       if (!is_meant) return p;
@@ -39,13 +42,13 @@ Vec3 TaskSurgeon::FindAstray(const Vec3& p_rest) const {
 }
 
 /// Before a step. \return whether the plan now is to err
-bool TaskSurgeon::AddTissueErrorScenario(const Snapshot& seen, const Condition& wanted) {
+bool TaskSurgeon::AddTissueErrorScenario(const simulation::Snapshot& seen, const Condition& wanted) {
   const Task& task = *scene_->task;
   const auto centre_of = [&](const Condition& c) {
     return task.regions[static_cast<std::size_t>(c.regions.front())].centre;
   };
   const auto cut = [&](bool is_astray) {
-    for (const Goal& goal : task.goals) {
+    for (const scene::Goal& goal : task.goals) {
       for (const Condition& step : goal.steps) {
         if (step.kind != ConditionKind::kDivided) continue;
         return CutTube(seen, is_astray ? FindAstray(centre_of(step)) : centre_of(step));
@@ -80,7 +83,7 @@ bool TaskSurgeon::AddTissueErrorScenario(const Snapshot& seen, const Condition& 
     case ErrorScenario::kBurnsSpared: {
       const auto& bands = scene_->model->bands;
       const auto is_wanted = [&](std::size_t band) {
-        return std::any_of(task.goals.begin(), task.goals.end(), [&](const Goal& goal) {
+        return std::any_of(task.goals.begin(), task.goals.end(), [&](const scene::Goal& goal) {
           return std::any_of(goal.steps.begin(), goal.steps.end(),
                              [&](const Condition& step) { return step.band == static_cast<int>(band); });
         });
@@ -104,7 +107,7 @@ bool TaskSurgeon::AddTissueErrorScenario(const Snapshot& seen, const Condition& 
     case ErrorScenario::kBurnsUnseen: {
       const int hand = TakeTool(seen, instrument::ToolKind::kHook);
       const Vec3 tip = HandOf(hand).Tip();
-      ReachPoint(hand, tip + Vec3{hand == kLeft ? -kOutOfPicture : kOutOfPicture, 0, 0});
+      ReachPoint(hand, tip + Vec3{hand == instrument::kLeft ? -kOutOfPicture : kOutOfPicture, 0, 0});
       PressPedal(hand, 0.5);
       ReachPoint(hand, tip);
       break;

@@ -9,11 +9,14 @@
 
 namespace trocar::agent {
 
+using instrument::kRight;
 using math::Pose;
+using math::Vec3;
 using scene::ConditionKind;
-using scene::kRight;
 using scene::ModelBand;
 using scene::ModelSheet;
+using simulation::Snapshot;
+
 namespace {
 
 constexpr double kStandOff = 0.014;    // of a tip from what is lined up [m]
@@ -54,7 +57,7 @@ TissueSpot TaskSurgeon::FindOnTube(const Vec3& p_rest) const {
   return best;
 }
 
-void TaskSurgeon::PlanTissue(const Snapshot& seen, const Condition& wanted) {
+void TaskSurgeon::PlanTissue(const Snapshot& seen, const scene::Condition& wanted) {
   if (AddTissueErrorScenario(seen, wanted)) return;
   const auto place = [&] {
     return scene_->task->regions[static_cast<std::size_t>(wanted.regions.front())].centre;
@@ -93,7 +96,7 @@ void TaskSurgeon::GraspTissue(const Snapshot& seen, int hand, const Vec3& p_befo
 
 /// Has a hand take up a tool, out of the way of the tissue.
 int TaskSurgeon::TakeTool(const Snapshot& seen, instrument::ToolKind kind) {
-  for (int hand = kRight; hand >= kLeft; --hand) {
+  for (int hand = kRight; hand >= instrument::kLeft; --hand) {
     const auto h = static_cast<std::size_t>(hand);
     const auto& tray = scene_->instruments[h].tray;
     const auto found =

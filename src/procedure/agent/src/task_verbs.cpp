@@ -10,9 +10,12 @@
 
 namespace trocar::agent {
 
+using math::Vec3;
 using scene::CalcLaparoscopePose;
 using scene::FindView;
 using scene::ObjectGrip;
+using simulation::Snapshot;
+
 namespace {
 
 /// Before a thing the open jaws wait this far back along the shaft [m]; behind the grip they close [m].
@@ -134,7 +137,7 @@ void TaskSurgeon::WithDraw(int hand) {
   Reach(TaskAct::Kind::kGoBack, hand).amount = kWithdrawal;
 }
 
-void TaskSurgeon::Look(const Region& region, double distance) {
+void TaskSurgeon::Look(const scene::Region& region, double distance) {
   const auto joints = FindView(scene_->laparoscope, {region.centre, distance, region.facing});
   if (!joints) return Wait(0.5);
   TaskAct act{TaskAct::Kind::kLook, "look at " + region.name, 20.0};
@@ -174,7 +177,7 @@ void TaskSurgeon::StepCamera(double dt) {
 void TaskSurgeon::Begin(const TaskAct& act, const Snapshot& seen) {
   using Kind = TaskAct::Kind;
   HandMotion& hand = HandOf(act.hand);
-  HandControls& controls = controls_[static_cast<std::size_t>(act.hand)];
+  scene::HandControls& controls = controls_[static_cast<std::size_t>(act.hand)];
   if (skill_.anticipation > 0) Anticipate(act, seen);
   switch (act.kind) {
     case Kind::kReachPoint:

@@ -47,7 +47,7 @@ std::vector<Vec3> FindClosings() {
   std::vector<Vec3> closings;
   bool is_closing = false;
   for (int tick = 0; tick < kTicks && !(*surgeon)->HasFinished(); ++tick) {
-    const Input input = (*surgeon)->Act(seen);
+    const scene::Input input = (*surgeon)->Act(seen);
     for (std::size_t h = 0; h < input.hands.size(); ++h) {
       seen.instruments[h].X_world_tool =
           instrument::CalcToolPose(scene->instruments[h].p_world_port, input.hands[h]);

@@ -59,14 +59,14 @@ inline std::string NameOf(const testing::TestParamInfo<Course>& info) {
 
 inline constexpr int kGoesOn = 240;  // ticks after a point
 
-inline std::shared_ptr<const Scene> ReadCourse(const Course& course) {
+inline std::shared_ptr<const scene::Scene> ReadCourse(const Course& course) {
   const auto file = std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes" / (course.name + ".json");
   auto read = std::filesystem::exists(file) ? files::ReadScene(file)
-                                            : base::Result<Scene>(*ReadDelivered(course.name));
+                                            : base::Result<scene::Scene>(*ReadDelivered(course.name));
   EXPECT_TRUE(read.ok()) << read.error().Text();
   if (course.has_equal_trays) {
-    auto& left = read->instruments[scene::kLeft];
-    const auto& right = read->instruments[scene::kRight];
+    auto& left = read->instruments[instrument::kLeft];
+    const auto& right = read->instruments[instrument::kRight];
     left.tool = right.tool, left.tray = right.tray;
   }
   if (course.is_dissected) {
@@ -75,7 +75,7 @@ inline std::shared_ptr<const Scene> ReadCourse(const Course& course) {
       if (std::isfinite(material.failure_strain)) material.failure_strain = -1;
     }
   }
-  return std::make_shared<const Scene>(std::move(*read));
+  return std::make_shared<const scene::Scene>(std::move(*read));
 }
 
 /// One tick of it goes wrong, and the guard takes the tick back.
@@ -92,12 +92,13 @@ class Fumbler {
  public:
   explicit Fumbler(std::uint64_t seed) : random_(seed) {}
 
-  Input Act(const Scene& scene, const Snapshot& seen) {
+  scene::Input Act(const scene::Scene& scene, const simulation::Snapshot& seen) {
     if (tick_ == 0) {
-      for (int hand = 0; hand < scene::kHandCount; ++hand) input_.hands[hand] = scene.instruments[hand].home;
+      for (int hand = 0; hand < instrument::kHandCount; ++hand)
+        input_.hands[hand] = scene.instruments[hand].home;
       input_.laparoscope = scene.laparoscope.home;
     }
-    for (int hand = 0; hand < scene::kHandCount; ++hand) {
+    for (int hand = 0; hand < instrument::kHandCount; ++hand) {
       if (tick_ % kReachTicks == static_cast<std::size_t>(hand)) Reach(scene, seen, hand);
     }
     if (tick_ % kSettingsTicks == kSettingsTicks - 1) ChangeSettings();
@@ -115,7 +116,7 @@ class Fumbler {
 
   bool Chance(double share) { return random_.Uniform() < share; }
 
-  void Reach(const Scene& scene, const Snapshot& seen, int hand) {
+  void Reach(const scene::Scene& scene, const simulation::Snapshot& seen, int hand) {
     const scene::InstrumentSetup& setup = scene.instruments[hand];
     math::Vec3 place = setup.p_world_port;
     if (!seen.positions.empty()) {
@@ -148,23 +149,23 @@ class Fumbler {
   }
 
   math::Random random_;
-  Input input_;
+  scene::Input input_;
   std::size_t tick_ = 0;
 };
 
 /// Cuts, clips, stones, things taken: where a state is the least like the one of before.
-inline std::uint64_t CountEvents(const Snapshot& snapshot) {
+inline std::uint64_t CountEvents(const simulation::Snapshot& snapshot) {
   const simulation::OperationSnapshot& operation = snapshot.operation;
   std::uint64_t count =
       operation.topology.version + operation.clip_count + operation.errors + snapshot.task.error_count;
-  for (const simulation::StoneSnapshot& stone : operation.stones)
-    count += stone.place != simulation::StonePlace::kInside ? 1 : 0;
+  for (const surgery::StoneSnapshot& stone : operation.stones)
+    count += stone.place != surgery::StonePlace::kInside ? 1 : 0;
   for (const simulation::InstrumentSnapshot& tool : snapshot.instruments) count += tool.is_grasping ? 1 : 0;
   return count;
 }
 
 /// Finer: also what jaws take and let go, and every fibre that parts.
-inline std::uint64_t CountMoments(const Snapshot& snapshot) {
+inline std::uint64_t CountMoments(const simulation::Snapshot& snapshot) {
   std::uint64_t count = CountEvents(snapshot) + snapshot.event_count;
   for (const std::uint8_t is_intact : snapshot.operation.strand_is_intact) count += is_intact == 0 ? 1 : 0;
   return count;
@@ -188,29 +189,29 @@ struct Point {
 };
 
 /// \param in_own_trocars  what is done there
-inline Input SwapHands(Input in_own_trocars) {
-  std::swap(in_own_trocars.hands[scene::kLeft], in_own_trocars.hands[scene::kRight]);
-  std::swap(in_own_trocars.controls[scene::kLeft], in_own_trocars.controls[scene::kRight]);
+inline scene::Input SwapHands(scene::Input in_own_trocars) {
+  std::swap(in_own_trocars.hands[instrument::kLeft], in_own_trocars.hands[instrument::kRight]);
+  std::swap(in_own_trocars.controls[instrument::kLeft], in_own_trocars.controls[instrument::kRight]);
   return in_own_trocars;
 }
 
 /// The same scene with everything of one hand in the other.
-inline std::shared_ptr<const Scene> SwapHands(const Scene& scene) {
-  auto swapped = std::make_shared<Scene>(scene);
-  std::swap(swapped->instruments[scene::kLeft], swapped->instruments[scene::kRight]);
+inline std::shared_ptr<const scene::Scene> SwapHands(const scene::Scene& scene) {
+  auto swapped = std::make_shared<scene::Scene>(scene);
+  std::swap(swapped->instruments[instrument::kLeft], swapped->instruments[instrument::kRight]);
   return swapped;
 }
 
 /// Whoever acts in a course.
 class Actor {
  public:
-  Actor(const Course& course, std::shared_ptr<const Scene> scene, std::uint64_t seed)
+  Actor(const Course& course, std::shared_ptr<const scene::Scene> scene, std::uint64_t seed)
       : scene_(scene), fumbler_(seed), script_(MakeScriptedHands(course.surgeon, scene)), course_(course) {
     if (course.surgeon.empty() || course.surgeon == "fumbler" || script_) return;
     surgeon_ = std::move(*MakeSurgeon(course.surgeon, scene, 1));
   }
 
-  Input Act(const Snapshot& seen) {
+  scene::Input Act(const simulation::Snapshot& seen) {
     if (surgeon_ != nullptr) return surgeon_->Act(seen);
     if (script_) return (*script_)(seen);
     if (course_.surgeon == "fumbler") return fumbler_.Act(*scene_, seen);
@@ -219,7 +220,7 @@ class Actor {
   bool HasFinished() const { return surgeon_ != nullptr && surgeon_->HasFinished(); }
 
  private:
-  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const scene::Scene> scene_;
   Fumbler fumbler_;
   std::optional<ScriptedHands> script_;
   std::unique_ptr<Surgeon> surgeon_;
@@ -227,10 +228,12 @@ class Actor {
 };
 
 /// What is done in a course, tick by tick.
-inline std::vector<Input> RecordInputs(const Course& course, std::shared_ptr<const Scene> scene) {
-  Simulation simulation = std::move(*Simulation::Make(std::move(*simulation::MakeSimulationModel(scene))));
+inline std::vector<scene::Input> RecordInputs(const Course& course,
+                                              std::shared_ptr<const scene::Scene> scene) {
+  simulation::Simulation simulation =
+      std::move(*simulation::Simulation::Make(std::move(*simulation::MakeSimulationModel(scene))));
   Actor actor(course, std::move(scene), std::hash<std::string>()(course.name));
-  std::vector<Input> inputs;
+  std::vector<scene::Input> inputs;
   for (int tick = 0; tick < course.ticks + kGoesOn && !actor.HasFinished(); ++tick) {
     inputs.push_back(actor.Act(simulation.GetSnapshot()));
     simulation.Step(inputs.back());
@@ -241,18 +244,18 @@ inline std::vector<Input> RecordInputs(const Course& course, std::shared_ptr<con
 /// One course with its inputs, and the states on its way.
 struct Recording {
   std::shared_ptr<const simulation::SimulationModel> model;
-  std::vector<Input> inputs;
+  std::vector<scene::Input> inputs;
   std::vector<Point> points;
 };
 
-inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene) {
+inline Recording Record(const Course& course, std::shared_ptr<const scene::Scene> scene) {
   Recording recording;
-  std::vector<Input> swapped;  // what the hands would do unswapped
+  std::vector<scene::Input> swapped;  // what the hands would do unswapped
   if (course.swaps_hands) swapped = RecordInputs(course, scene), scene = SwapHands(*scene);
   auto model = simulation::MakeSimulationModel(scene);
   EXPECT_TRUE(model.ok()) << model.error().Text();
   recording.model = *model;
-  Simulation simulation = std::move(*Simulation::Make(recording.model));
+  simulation::Simulation simulation = std::move(*simulation::Simulation::Make(recording.model));
   const std::uint64_t seed = std::hash<std::string>()(course.name);
   Actor actor(course, scene, seed);
   math::Random random(seed);
@@ -264,10 +267,10 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
   int events_saved = 0;
   std::map<std::size_t, std::size_t> ends;  // tick to point
   Point before;                             // of the tick before
-  std::optional<Simulation> altered;
-  Simulation::AlterField alter;
+  std::optional<simulation::Simulation> altered;
+  simulation::Simulation::AlterField alter;
   if (course.alteration[0] != 0) {
-    altered = std::move(*Simulation::Make(recording.model));
+    altered = std::move(*simulation::Simulation::Make(recording.model));
     alter = FindAlteration(course.alteration);
   }
   const auto take = [&](Point& point, std::size_t tick) {
@@ -278,7 +281,7 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
     } else {
       simulation.Save(point.bytes);
     }
-    Simulation& saved = altered ? *altered : simulation;
+    simulation::Simulation& saved = altered ? *altered : simulation;
     point.hash = saved.Hash();
     point.published = CalcPublishedHash(saved);
     point.patches = CalcPatchHash(saved);
@@ -292,7 +295,7 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
       recording.points[end->second].hash_after = simulation.Hash();
       recording.points[end->second].published_after = CalcPublishedHash(simulation);
     }
-    const Snapshot& seen = simulation.GetSnapshot();
+    const simulation::Snapshot& seen = simulation.GetSnapshot();
     const std::uint64_t now = course.looks_before ? CountMoments(seen) : CountEvents(seen);
     const bool is_event =
         now != events && events_saved < course.events && tick >= static_cast<std::size_t>(course.from);
@@ -304,7 +307,7 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
     if (is_event && course.looks_before && has_time && tick > 0) add(std::move(before));
     if ((chosen.count(tick) != 0 || is_event) && has_time) take(before, tick), add(before);
     if (course.looks_before && has_time) take(before, tick);
-    Input input =
+    scene::Input input =
         course.swaps_hands ? SwapHands(swapped[std::min(tick, swapped.size() - 1)]) : actor.Act(seen);
     if (course.changes_settings) ChangeSettings(tick, input.settings);
     recording.inputs.push_back(input);

@@ -18,7 +18,9 @@
 namespace trocar::agent {
 
 using files::ReadScene;
-using scene::kRight;
+using instrument::kRight;
+using math::Vec3;
+
 namespace {
 
 using Kind = DivisionStep::Kind;

@@ -15,18 +15,20 @@
 namespace trocar::agent {
 
 using files::ReadScene;
+using instrument::kHandCount;
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
 using scene::CalcScriptInput;
 using scene::EventKind;
 using scene::EventName;
 using scene::Input;
-using scene::kHandCount;
-using scene::kLeft;
-using scene::kRight;
 using scene::Scene;
 using scene::SurfaceInfo;
 using simulation::OrganSnapshot;
 using simulation::Simulation;
 using simulation::Snapshot;
+
 namespace {
 
 class EmptiedGallbladder : public testing::Test {

@@ -8,6 +8,9 @@
 #include "trocar/instrument/trocar_kinematics.h"
 
 namespace trocar::agent {
+
+using math::Vec3;
+
 namespace {
 
 const Vec3 kPort{-0.09, 0.045, -0.015}, kTip{-0.029, 0.107, -0.147};

@@ -29,6 +29,9 @@
 namespace trocar::agent {
 
 using files::ReadScene;
+using instrument::kHandCount;
+using instrument::kLeft;
+using instrument::kRight;
 using math::Vec3;
 using scene::CalcScriptInput;
 using scene::ConnectiveTissue;
@@ -36,14 +39,14 @@ using scene::Event;
 using scene::EventKind;
 using scene::Fibre;
 using scene::FibreEnd;
-using scene::kHandCount;
-using scene::kLeft;
-using scene::kRight;
+using scene::Input;
 using scene::MakeConnectiveTissue;
 using simulation::Operation;
 using simulation::OperationResult;
 using simulation::OperationScene;
 using simulation::Simulation;
+using simulation::Snapshot;
+
 namespace {
 
 Simulation MakeOperation() {
@@ -263,7 +266,7 @@ TEST(OperationWhole, AnExpertGoesFromTheFirstLookToTheBag) {
     if (seen.operation.clip_count == clips) continue;
     const Vec3 clip = seen.operation.clips[clips++].X_world_clip.translation;
     EXPECT_TRUE(
-        simulation::IsInView(seen.X_world_laparoscope, OperationScene()->laparoscope.field_of_view, clip));
+        instrument::IsInView(seen.X_world_laparoscope, OperationScene()->laparoscope.field_of_view, clip));
     const Vec3 shaft = OperationScene()->instruments[kRight].p_world_port - clip;
     EXPECT_GT(math::AngleBetween(seen.X_world_laparoscope.translation - clip, shaft), kLeastPastShaft)
         << "the applier hides clip " << clips;
@@ -327,7 +330,7 @@ TEST(OperationWhole, AnExpertOperatesOnGeneratedPatients) {
     ASSERT_TRUE(files::WritePatient(folder, *patient).ok());
     auto read = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json", folder);
     ASSERT_TRUE(read.ok()) << read.error().Text();
-    const auto scene = std::make_shared<const Scene>(std::move(*read));
+    const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
     auto simulation = Simulation::Make(scene);
     ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
     auto surgeon = MakeSurgeon("expert", scene, 1);

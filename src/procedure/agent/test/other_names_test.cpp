@@ -21,8 +21,10 @@
 namespace trocar::agent {
 
 using files::ReadScene;
+using scene::Scene;
 using simulation::OperationResult;
 using simulation::Simulation;
+
 namespace {
 
 namespace fs = std::filesystem;

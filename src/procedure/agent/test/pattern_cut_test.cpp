@@ -91,12 +91,12 @@ TEST_F(Sheet, ASquareCutOutDiffersFromTheCircleAsTheFormulaSays) {
 
 TEST(PatternCut, TheExpertsPieceIsFreeRoundAndLeftWhereItWas) {
   const auto scene = ReadDelivered("pattern_cut");
-  auto simulation = Simulation::Make(scene);
+  auto simulation = simulation::Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok());
   auto surgeon = MakeSurgeon("expert", scene, 1);
   while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < 200)
     simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
-  const Snapshot& now = simulation->GetSnapshot();
+  const simulation::Snapshot& now = simulation->GetSnapshot();
   ASSERT_EQ(now.operation.sheets.size(), 1u);
   const PatternCut& sheet = now.operation.sheets[0];
   EXPECT_TRUE(sheet.is_free);
@@ -119,14 +119,14 @@ struct SheetAround {
 
 /// The expert's cut of a sheet under this strain.
 SheetAround CutSheetUnder(double prestrain) {
-  auto scene = std::make_shared<Scene>(*ReadDelivered("pattern_cut"));
+  auto scene = std::make_shared<scene::Scene>(*ReadDelivered("pattern_cut"));
   ModelSheet& sheet = scene->model->sheets[0];
   sheet.prestrain = prestrain;
-  auto simulation = Simulation::Make(scene);
+  auto simulation = simulation::Simulation::Make(scene);
   EXPECT_TRUE(simulation.ok());
   std::vector<Vec3> rest = simulation->GetSnapshot().positions;
   rest.resize(simulation->Surfaces()[0].node_count);
-  const Snapshot& now = simulation->GetSnapshot();
+  const simulation::Snapshot& now = simulation->GetSnapshot();
   SheetAround found;
   auto surgeon = MakeSurgeon("expert", scene, 1);
   while (!(*surgeon)->HasFinished() && now.time < 200) {

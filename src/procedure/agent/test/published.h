@@ -115,7 +115,7 @@ inline void AddPatch(PublishedHash& hash, const tissue::LocalPatch& patch) {
 inline std::uint64_t CalcPatchHash(simulation::Simulation& simulation) {
   PublishedHash hash;
   const auto patch = std::make_unique<tissue::LocalPatch>();
-  for (const scene::Hand hand : {scene::kLeft, scene::kRight}) {
+  for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight}) {
     simulation.CutPatch(hand, *patch);
     AddPatch(hash, *patch);
   }

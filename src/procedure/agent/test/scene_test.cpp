@@ -16,10 +16,10 @@
 namespace trocar::agent {
 
 using host::FindDataFolder;
+using instrument::kLeft;
 using math::Vec3;
 using scene::CalcScriptInput;
 using scene::ClampSettings;
-using scene::kLeft;
 using scene::LiveSettings;
 using scene::SmallScene;
 namespace {
@@ -124,7 +124,7 @@ TEST_F(SceneFile, IsNoCholecystectomyWithoutItsDuctsAndTools) {
   auto scene = Read();
   ASSERT_TRUE(scene.ok()) << scene.error().Text();
   for (const SurgeonEntry& entry : ListSurgeons()) EXPECT_FALSE(entry.suits(*scene)) << entry.name;
-  EXPECT_FALSE(MakeSurgeon("expert", std::make_shared<const Scene>(std::move(*scene)), 1).ok());
+  EXPECT_FALSE(MakeSurgeon("expert", std::make_shared<const scene::Scene>(std::move(*scene)), 1).ok());
 }
 
 TEST_F(SceneFile, RefusesBadScripts) {

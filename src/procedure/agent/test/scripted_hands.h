@@ -23,26 +23,28 @@ namespace trocar::agent {
 class ScriptedHands {
  public:
   /// One tick of a step. \param tick  of the step \return whether it goes on
-  using Act = std::function<bool(const Snapshot& seen, int tick, Input& input)>;
+  using Act = std::function<bool(const simulation::Snapshot& seen, int tick, scene::Input& input)>;
 
-  explicit ScriptedHands(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
-    for (std::size_t hand = 0; hand < scene::kHandCount; ++hand)
+  explicit ScriptedHands(std::shared_ptr<const scene::Scene> scene) : scene_(std::move(scene)) {
+    for (std::size_t hand = 0; hand < instrument::kHandCount; ++hand)
       input_.hands[hand] = scene_->instruments[hand].home;
     input_.laparoscope = scene_->laparoscope.home;
   }
 
-  Input operator()(const Snapshot& seen) {
+  scene::Input operator()(const simulation::Snapshot& seen) {
     while (at_ < steps_.size() && !steps_[at_](seen, tick_++, input_)) ++at_, tick_ = 0;
     return input_;
   }
 
   void Add(Act act) { steps_.push_back(std::move(act)); }
   void Wait(int ticks) {
-    Add([=](const Snapshot&, int tick, Input&) { return tick < ticks; });
+    Add([=](const simulation::Snapshot&, int tick, scene::Input&) { return tick < ticks; });
   }
   /// For so many ticks, the tip on its way to a place that is looked up in each.
-  void Reach(int hand, int ticks, std::function<math::Vec3(const Snapshot&)> place, double spin = 0) {
-    Add([=, scene = scene_, place = std::move(place)](const Snapshot& seen, int tick, Input& input) {
+  void Reach(int hand, int ticks, std::function<math::Vec3(const simulation::Snapshot&)> place,
+             double spin = 0) {
+    Add([=, scene = scene_, place = std::move(place)](const simulation::Snapshot& seen, int tick,
+                                                      scene::Input& input) {
       const auto h = static_cast<std::size_t>(hand);
       const math::Vec3 from = seen.instruments[h].X_world_device.translation;
       const double share = 1.0 / std::max(1, ticks - tick);
@@ -53,7 +55,7 @@ class ScriptedHands {
   }
   /// \param share  of the tool's opening
   void Jaw(int hand, int ticks, double share) {
-    Add([=, scene = scene_](const Snapshot& seen, int tick, Input& input) {
+    Add([=, scene = scene_](const simulation::Snapshot& seen, int tick, scene::Input& input) {
       const auto h = static_cast<std::size_t>(hand);
       const auto& tray = scene->instruments[h].tray;
       const instrument::Tool& tool =
@@ -68,39 +70,40 @@ class ScriptedHands {
     const auto& tray = scene_->instruments[static_cast<std::size_t>(hand)].tray;
     const auto found =
         std::find_if(tray.begin(), tray.end(), [&](const auto& tool) { return tool.name == name; });
-    Add([=, tool = static_cast<std::uint8_t>(found - tray.begin())](const Snapshot&, int tick, Input& input) {
+    Add([=, tool = static_cast<std::uint8_t>(found - tray.begin())](const simulation::Snapshot&, int tick,
+                                                                    scene::Input& input) {
       input.controls[hand].tool = tool;
       return tick < ticks;
     });
   }
   /// Lets a surgeon of the library do it until something has come of it.
-  void LeaveTo(const std::string& name, std::function<bool(const Snapshot&)> until) {
+  void LeaveTo(const std::string& name, std::function<bool(const simulation::Snapshot&)> until) {
     auto made = MakeSurgeon(name, scene_, 1);
     std::shared_ptr<Surgeon> surgeon = made.ok() ? std::move(*made) : nullptr;
-    Add([=, until = std::move(until)](const Snapshot& seen, int, Input& input) {
+    Add([=, until = std::move(until)](const simulation::Snapshot& seen, int, scene::Input& input) {
       if (surgeon == nullptr || surgeon->HasFinished() || until(seen)) return false;
       input = surgeon->Act(seen);
       return true;
     });
   }
 
-  const Scene& GetScene() const { return *scene_; }
-  const std::shared_ptr<const Scene>& SharedScene() const { return scene_; }
+  const scene::Scene& GetScene() const { return *scene_; }
+  const std::shared_ptr<const scene::Scene>& SharedScene() const { return scene_; }
 
  private:
-  std::shared_ptr<const Scene> scene_;
-  Input input_;
+  std::shared_ptr<const scene::Scene> scene_;
+  scene::Input input_;
   std::vector<Act> steps_;
   std::size_t at_ = 0;
   int tick_ = 0;
 };
 
 /// The spilled stone nearest to a hand's tool.
-inline std::optional<math::Vec3> FindSpilledStone(const Snapshot& seen, int hand) {
+inline std::optional<math::Vec3> FindSpilledStone(const simulation::Snapshot& seen, int hand) {
   std::optional<math::Vec3> found;
   const math::Vec3& tip = seen.instruments[static_cast<std::size_t>(hand)].X_world_tool.translation;
-  for (const simulation::StoneSnapshot& stone : seen.operation.stones) {
-    if (stone.place != simulation::StonePlace::kSpilled) continue;
+  for (const surgery::StoneSnapshot& stone : seen.operation.stones) {
+    if (stone.place != surgery::StonePlace::kSpilled) continue;
     if (!found || math::Distance(stone.position, tip) < math::Distance(*found, tip)) found = stone.position;
   }
   return found;
@@ -109,23 +112,24 @@ inline std::optional<math::Vec3> FindSpilledStone(const Snapshot& seen, int hand
 /// Draws the hook with its current through the gallbladder's wall, from the fundus on.
 inline void OpenGallbladder(ScriptedHands& hands) {
   constexpr double kDeep = 0.005, kWay = 0.020;  // of the hook in the wall, and along it [m]
-  const Scene& scene = hands.GetScene();
-  const math::Vec3 port = scene.instruments[scene::kRight].p_world_port;
+  const scene::Scene& scene = hands.GetScene();
+  const math::Vec3 port = scene.instruments[instrument::kRight].p_world_port;
   const math::Vec3 fundus = scene.patient.LandmarkOf(roles::LandmarkRole::kFundus)->position;
   const math::Vec3 neck = scene.patient.LandmarkOf(roles::LandmarkRole::kInfundibulum)->position;
   const math::Vec3 in = math::Normalized(fundus - port), along = math::Normalized(neck - fundus);
   const auto press = [](bool is_down) {
-    return [=](const Snapshot&, int, Input& input) {
-      input.controls[scene::kRight].cut = is_down;
+    return [=](const simulation::Snapshot&, int, scene::Input& input) {
+      input.controls[instrument::kRight].cut = is_down;
       return false;
     };
   };
-  hands.Reach(scene::kRight, 100, [=](const Snapshot&) { return fundus - 0.01 * in; });
+  hands.Reach(instrument::kRight, 100, [=](const simulation::Snapshot&) { return fundus - 0.01 * in; });
   hands.Add(press(true));
-  hands.Reach(scene::kRight, 40, [=](const Snapshot&) { return fundus + kDeep * in; });
-  hands.Reach(scene::kRight, 120, [=](const Snapshot&) { return fundus + kDeep * in + kWay * along; });
+  hands.Reach(instrument::kRight, 40, [=](const simulation::Snapshot&) { return fundus + kDeep * in; });
+  hands.Reach(instrument::kRight, 120,
+              [=](const simulation::Snapshot&) { return fundus + kDeep * in + kWay * along; });
   hands.Add(press(false));
-  hands.Reach(scene::kRight, 40, [=](const Snapshot&) { return fundus - 0.03 * in; });
+  hands.Reach(instrument::kRight, 40, [=](const simulation::Snapshot&) { return fundus - 0.03 * in; });
   hands.Wait(60);
 }
 
@@ -133,7 +137,7 @@ inline void OpenGallbladder(ScriptedHands& hands) {
 inline void TakeStone(int hand, ScriptedHands& hands) {
   const math::Vec3 port = hands.GetScene().instruments[static_cast<std::size_t>(hand)].p_world_port;
   const auto beyond = [=](double way) {
-    return [=](const Snapshot& seen) {
+    return [=](const simulation::Snapshot& seen) {
       const math::Vec3 at =
           FindSpilledStone(seen, hand)
               .value_or(seen.instruments[static_cast<std::size_t>(hand)].X_world_device.translation);
@@ -144,7 +148,7 @@ inline void TakeStone(int hand, ScriptedHands& hands) {
   hands.Jaw(hand, 30, 1.0);
   hands.Reach(hand, 60, beyond(0.006));
   hands.Jaw(hand, 50, 0.0);
-  hands.Reach(hand, 60, [=](const Snapshot& seen) {
+  hands.Reach(hand, 60, [=](const simulation::Snapshot& seen) {
     return seen.instruments[static_cast<std::size_t>(hand)].X_world_device.translation +
            math::Vec3{0, 0, 0.001};
   });
@@ -152,7 +156,7 @@ inline void TakeStone(int hand, ScriptedHands& hands) {
 
 /// Clips the scene's first duct or vessel and cuts it. The tray has to have both tools.
 inline void Divide(int hand, ScriptedHands& hands) {
-  const Scene& scene = hands.GetScene();
+  const scene::Scene& scene = hands.GetScene();
   const math::Vec3 port = scene.instruments[static_cast<std::size_t>(hand)].p_world_port;
   const auto& line = scene.patient.tubes.front().line.points;
   const std::size_t middle = line.size() / 2;
@@ -162,15 +166,15 @@ inline void Divide(int hand, ScriptedHands& hands) {
     const double deep = 0.4 * instrument::FindTool(name)->jaw_length;
     const double spin = FindSpin(port, p, math::Cross(in, along));
     hands.Reach(
-        hand, 70, [=](const Snapshot&) { return p - 0.03 * in; }, spin);
+        hand, 70, [=](const simulation::Snapshot&) { return p - 0.03 * in; }, spin);
     hands.Jaw(hand, 30, 1.0);
     hands.Reach(
-        hand, 50, [=](const Snapshot&) { return p + deep * in; }, spin);
+        hand, 50, [=](const simulation::Snapshot&) { return p + deep * in; }, spin);
     hands.Wait(10);
     hands.Jaw(hand, 40, 0.0);
     hands.Jaw(hand, 10, 0.5);
     hands.Reach(
-        hand, 50, [=](const Snapshot&) { return p - 0.03 * in; }, spin);
+        hand, 50, [=](const simulation::Snapshot&) { return p - 0.03 * in; }, spin);
   };
   hands.Exchange(hand, 75, "clip_applier");
   approach("clip_applier", middle);
@@ -180,7 +184,7 @@ inline void Divide(int hand, ScriptedHands& hands) {
 
 /// Opens the dissector's jaws in the fat beside the cystic duct, from the gallbladder on.
 inline void SpreadFat(int hand, ScriptedHands& hands) {
-  const Scene& scene = hands.GetScene();
+  const scene::Scene& scene = hands.GetScene();
   const math::Vec3 port = scene.instruments[static_cast<std::size_t>(hand)].p_world_port;
   const auto& tubes = scene.patient.tubes;
   const auto duct = std::find_if(tubes.begin(), tubes.end(), [](const patient::Tube& tube) {
@@ -189,8 +193,8 @@ inline void SpreadFat(int hand, ScriptedHands& hands) {
   hands.Exchange(hand, 75, "maryland");
   for (std::size_t i = 1; i + 1 < duct->line.points.size(); i += 2) {
     const math::Vec3 p = duct->line.points[i], in = math::Normalized(p - port);
-    hands.Reach(hand, i == 1 ? 120 : 40, [=](const Snapshot&) { return p - 0.004 * in; });
-    hands.Reach(hand, 20, [=](const Snapshot&) { return p + 0.002 * in; });
+    hands.Reach(hand, i == 1 ? 120 : 40, [=](const simulation::Snapshot&) { return p - 0.004 * in; });
+    hands.Reach(hand, 20, [=](const simulation::Snapshot&) { return p + 0.002 * in; });
     hands.Jaw(hand, 30, 1.0);
     hands.Jaw(hand, 20, 0.0);
   }
@@ -203,31 +207,32 @@ inline void HoldAndAsk(int hand, const math::Vec3& place, const std::string& oth
                        const math::Vec3& pull, ScriptedHands& hands) {
   const math::Vec3 port = hands.GetScene().instruments[static_cast<std::size_t>(hand)].p_world_port;
   const math::Vec3 in = math::Normalized(place - port);
-  hands.Reach(hand, 70, [=](const Snapshot&) { return place - 0.03 * in; });
+  hands.Reach(hand, 70, [=](const simulation::Snapshot&) { return place - 0.03 * in; });
   hands.Jaw(hand, 30, 1.0);
-  hands.Reach(hand, 30, [=](const Snapshot&) { return place + 0.006 * in; });
+  hands.Reach(hand, 30, [=](const simulation::Snapshot&) { return place + 0.006 * in; });
   hands.Jaw(hand, 40, jaw);
   hands.Exchange(hand, 20, other);
-  hands.Reach(hand, 80, [=](const Snapshot&) { return place + 0.006 * in + pull; });
+  hands.Reach(hand, 80, [=](const simulation::Snapshot&) { return place + 0.006 * in + pull; });
 }
 
 /// Cuts the circle out, lifts it, and pulls lightly held at the rest until it slips.
 inline void LiftPiece(ScriptedHands& hands) {
   const math::Vec3 middle = hands.GetScene().model->sheets.front().centre;
-  hands.LeaveTo("expert", [](const Snapshot& seen) { return seen.operation.sheets.front().is_free; });
+  hands.LeaveTo("expert",
+                [](const simulation::Snapshot& seen) { return seen.operation.sheets.front().is_free; });
   hands.Wait(10);
-  HoldAndAsk(scene::kLeft, middle, "suction_irrigator", 0.0, {0.005, 0, 0.03}, hands);
-  hands.Exchange(scene::kRight, 75, "grasper");
-  HoldAndAsk(scene::kRight, middle + math::Vec3{0.027, 0, 0}, "hook", 0.19, {0, 0, 0.06}, hands);
+  HoldAndAsk(instrument::kLeft, middle, "suction_irrigator", 0.0, {0.005, 0, 0.03}, hands);
+  hands.Exchange(instrument::kRight, 75, "grasper");
+  HoldAndAsk(instrument::kRight, middle + math::Vec3{0.027, 0, 0}, "hook", 0.19, {0, 0, 0.06}, hands);
 }
 
 /// Goes on cutting where the tissue stands still because it was bad too often in a row.
 inline void CutFrozen(ScriptedHands& hands) {
   constexpr int kBad = 6, kGoesOnCutting = 200;
-  const auto has_cut = [](const Snapshot& seen) { return seen.operation.topology.version > 20; };
+  const auto has_cut = [](const simulation::Snapshot& seen) { return seen.operation.topology.version > 20; };
   std::shared_ptr<Surgeon> surgeon = std::move(*MakeSurgeon("expert", hands.SharedScene(), 1));
   int bad = -1;
-  hands.Add([=](const Snapshot& seen, int, Input& input) mutable {
+  hands.Add([=](const simulation::Snapshot& seen, int, scene::Input& input) mutable {
     input = surgeon->Act(seen);
     if (bad < 0 && !has_cut(seen)) return true;
     if (++bad < kBad) {
@@ -240,17 +245,17 @@ inline void CutFrozen(ScriptedHands& hands) {
 
 /// \return nothing where nobody has that name
 inline std::optional<ScriptedHands> MakeScriptedHands(const std::string& name,
-                                                      std::shared_ptr<const Scene> scene) {
+                                                      std::shared_ptr<const scene::Scene> scene) {
   ScriptedHands hands(std::move(scene));
   if (name == "takes_stones") {
     OpenGallbladder(hands);
-    hands.Exchange(scene::kRight, 75, "grasper");
-    for (const int hand : {scene::kRight, scene::kLeft}) {
+    hands.Exchange(instrument::kRight, 75, "grasper");
+    for (const int hand : {instrument::kRight, instrument::kLeft}) {
       TakeStone(hand, hands);
       hands.Jaw(hand, 50, 1.0);
     }
-    TakeStone(scene::kRight, hands);
-    hands.Exchange(scene::kRight, 75, "suction_irrigator");
+    TakeStone(instrument::kRight, hands);
+    hands.Exchange(instrument::kRight, 75, "suction_irrigator");
     hands.Wait(60);
     return hands;
   }
@@ -258,13 +263,13 @@ inline std::optional<ScriptedHands> MakeScriptedHands(const std::string& name,
   if (name == "cuts_frozen") return CutFrozen(hands), hands;
   if (name == "lets_assistant_hold") {
     hands.Wait(60);
-    hands.Add([](const Snapshot&, int tick, Input& input) {
+    hands.Add([](const simulation::Snapshot&, int tick, scene::Input& input) {
       input.assistant = scene::AssistantCommand::kRetract;
       return tick < 400;
     });
     return hands;
   }
-  const int hand = name.ends_with("_left") ? scene::kLeft : scene::kRight;
+  const int hand = name.ends_with("_left") ? instrument::kLeft : instrument::kRight;
   if (name.starts_with("divides_")) return Divide(hand, hands), hands;
   if (name.starts_with("spreads_")) return SpreadFat(hand, hands), hands;
   return std::nullopt;

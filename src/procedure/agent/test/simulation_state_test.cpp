@@ -21,7 +21,9 @@
 namespace trocar::agent {
 
 using simulation::MakeSimulationModel;
+using simulation::Simulation;
 using simulation::StatePart;
+
 namespace {
 
 void GoOn(const Recording& recording, const Point& point, Simulation& simulation) {
@@ -116,10 +118,10 @@ TEST(SimulationStateGuard, TakesABadTickBackAfterRestoringAsBefore) {
   std::vector<std::byte> bytes;
   simulation.Save(bytes);
   ASSERT_TRUE(fresh.Restore(bytes).ok());
-  Input input = scene::CalcScriptInput(simulation.GetScene(), simulation.GetSnapshot().time);
+  scene::Input input = scene::CalcScriptInput(simulation.GetScene(), simulation.GetSnapshot().time);
   input.settings.solver = DivergingSolver();
   for (Simulation* each : {&simulation, &fresh}) each->Step(input);
-  const Snapshot& seen = simulation.GetSnapshot();
+  const simulation::Snapshot& seen = simulation.GetSnapshot();
   ASSERT_GT(seen.event_count, 0U);
   EXPECT_EQ(seen.events[(seen.event_count - 1) % seen.events.size()].kind, scene::EventKind::kStateRestored);
   EXPECT_EQ(fresh.Hash(), simulation.Hash());
@@ -130,7 +132,7 @@ TEST(SimulationStateGuard, TakesABadTickBackAfterRestoringAsBefore) {
   ASSERT_TRUE(fresh.Restore(bytes).ok());
   const auto patch = std::make_unique<tissue::LocalPatch>();
   for (Simulation* each : {&simulation, &fresh}) {
-    each->CutPatch(scene::kRight, *patch);
+    each->CutPatch(instrument::kRight, *patch);
     EXPECT_FALSE(patch->is_healthy) << (each == &fresh ? "restored" : "as it was");
   }
 }
@@ -143,7 +145,7 @@ TEST(SimulationWorld, IsTheSameWithoutThoseWhoLook) {
     const Recording recording = Record(course, ReadCourse(course));
     Simulation judged = std::move(*Simulation::Make(recording.model));
     Simulation alone = std::move(*Simulation::Make(recording.model));
-    for (const Input& input : recording.inputs) {
+    for (const scene::Input& input : recording.inputs) {
       judged.Step(input);
       alone.StepWorld(input);
     }

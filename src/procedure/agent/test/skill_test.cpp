@@ -14,8 +14,10 @@
 
 namespace trocar::agent {
 
+using instrument::IsInView;
+using math::Vec3;
 using scene::TaskPhase;
-using simulation::IsInView;
+
 namespace {
 
 constexpr double kTick = 1.0 / 120;
@@ -130,13 +132,13 @@ Shown Play(const std::string& task, const SurgeonSkill& skill, std::uint64_t see
   const auto scene = ReadDelivered(task, {"normal", seed, {}});
   auto surgeon = MakeSkilledSurgeon(scene, skill, seed);
   EXPECT_TRUE(surgeon.ok());
-  auto simulation = Simulation::Make(scene);
+  auto simulation = simulation::Simulation::Make(scene);
   EXPECT_TRUE(simulation.ok());
   Shown shown;
-  std::array<Vec3, scene::kHandCount> last;
+  std::array<Vec3, instrument::kHandCount> last;
   while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < kMostSeconds) {
     simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
-    const Snapshot& now = simulation->GetSnapshot();
+    const simulation::Snapshot& now = simulation->GetSnapshot();
     int moving = 0;
     for (std::size_t h = 0; h < last.size(); ++h) {
       const Vec3& tip = now.instruments[h].X_world_tool.translation;
@@ -149,7 +151,7 @@ Shown Play(const std::string& task, const SurgeonSkill& skill, std::uint64_t see
     }
     shown.both += moving == 2 ? 1 : 0;
   }
-  const Snapshot& end = simulation->GetSnapshot();
+  const simulation::Snapshot& end = simulation->GetSnapshot();
   shown.phase = end.task.phase;
   shown.seconds = end.task.time;
   shown.errors = static_cast<int>(end.task.error_count);
@@ -216,7 +218,7 @@ TEST(Weaknesses, AreListedWhereTheyCanShow) {
 /// Inputs that wait and a picture that drifts are memory, too.
 TEST(SkilledSurgeon, GoesOnAfterRestoring) {
   const auto scene = ReadDelivered("object_transport");
-  auto simulation = Simulation::Make(scene);
+  auto simulation = simulation::Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok());
   const auto make = [&] { return std::move(*MakeSkilledSurgeon(scene, LevelSkill(SkillLevel::kNovice), 3)); };
   const std::unique_ptr<Surgeon> surgeon = make();
@@ -231,7 +233,7 @@ TEST(SkilledSurgeon, GoesOnAfterRestoring) {
       follower->VisitState(restore);
       ASSERT_TRUE(restore.ok()) << restore.Failure();
     }
-    const Input input = surgeon->Act(simulation->GetSnapshot());
+    const scene::Input input = surgeon->Act(simulation->GetSnapshot());
     if (follower != nullptr) {
       ASSERT_EQ(follower->Act(simulation->GetSnapshot()), input) << tick;
     }

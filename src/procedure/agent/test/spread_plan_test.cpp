@@ -10,6 +10,9 @@
 #include "trocar/instrument/trocar_kinematics.h"
 
 namespace trocar::agent {
+
+using math::Vec3;
+
 namespace {
 
 /// Upright fibres, 2 mm apart, along a line; the port lies 15 cm along y.

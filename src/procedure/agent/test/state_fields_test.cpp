@@ -30,6 +30,9 @@
 #include "course.h"
 
 namespace trocar::agent {
+
+using simulation::Simulation;
+
 namespace {
 
 using Fields = std::set<std::string>;
@@ -138,7 +141,7 @@ constexpr std::array kLooks{1, 2, 12, 80};
 
 /// What the hands do from a point on, and what comes of it.
 struct Future {
-  std::vector<Input> inputs;
+  std::vector<scene::Input> inputs;
   std::array<Moment, kLooks.size()> moments;
 };
 

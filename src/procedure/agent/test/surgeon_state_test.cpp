@@ -78,9 +78,9 @@ struct Follower {
 /// Lets a copy of `fresh` operate. At each tick of `at` another copy is restored from its memory and sees the same from
 /// then on; with `fields`, so does one without each field.
 template <typename T>
-void PlayWithFollowers(const std::shared_ptr<const Scene>& scene, const T& fresh, const std::set<int>& at,
-                       int most_ticks, Fields* fields = nullptr) {
-  auto simulation = Simulation::Make(scene);
+void PlayWithFollowers(const std::shared_ptr<const scene::Scene>& scene, const T& fresh,
+                       const std::set<int>& at, int most_ticks, Fields* fields = nullptr) {
+  auto simulation = simulation::Simulation::Make(scene);
   ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
   T surgeon(fresh);
   std::vector<Follower<T>> followers;
@@ -105,8 +105,8 @@ void PlayWithFollowers(const std::shared_ptr<const Scene>& scene, const T& fresh
         if (!fields->decisive.contains(path)) follow(path, tick + kWatchedTicks);
       }
     }
-    const Snapshot& seen = simulation->GetSnapshot();
-    const Input input = surgeon.Act(seen);
+    const simulation::Snapshot& seen = simulation->GetSnapshot();
+    const scene::Input input = surgeon.Act(seen);
     std::erase_if(followers, [&](const Follower<T>& follower) {
       if (fields != nullptr && fields->decisive.contains(follower.omitted)) return true;
       const bool is_same = follower.surgeon->Act(seen) == input &&
@@ -222,7 +222,7 @@ TEST(OperatorMemory, WhoTakesOverCountsSidesFromTheStart) {
   ASSERT_TRUE(simulation.ok());
   auto surgeon = MakeSurgeon("expert", OperationScene(), 1);
   ASSERT_TRUE(surgeon.ok());
-  Snapshot seen = simulation->GetSnapshot();
+  simulation::Snapshot seen = simulation->GetSnapshot();
   seen.laparoscope.pan += 0.3;
   auto later = MakeSurgeonTakingOver("expert", *OperationScene(), seen, 1);
   ASSERT_TRUE(later.ok());

@@ -17,13 +17,16 @@ namespace trocar::agent {
 
 using files::ListTasks;
 using files::TaskEntry;
+using instrument::kLeft;
+using math::Vec3;
 using scene::CalcScriptInput;
 using scene::ErrorRule;
 using scene::Goal;
-using scene::kLeft;
 using scene::ObjectSnapshot;
 using scene::TaskPhase;
 using simulation::InstrumentSnapshot;
+using simulation::Simulation;
+
 namespace {
 
 std::vector<std::string> TasksWithoutPatient() {
@@ -31,7 +34,7 @@ std::vector<std::string> TasksWithoutPatient() {
   const auto tasks = ListTasks();
   if (!tasks.ok()) return keys;
   for (const TaskEntry& task : *tasks) {
-    const auto scene = ReadTask(task.path);
+    const auto scene = files::ReadTask(task.path);
     if (scene.ok() && !scene->HasPatient()) keys.push_back(task.key);
   }
   return keys;
@@ -64,7 +67,7 @@ TEST_P(EveryTask, CatchesEachCarelessSurgeonAndOnlyByItsRule) {
     ASSERT_TRUE(played.ok());
     EXPECT_GE(CountErrors(*scene, played->task, entry.error), 1u) << entry.name << " was not caught";
     // the same hands, judged without the rule
-    auto lenient = std::make_shared<Scene>(*scene);
+    auto lenient = std::make_shared<scene::Scene>(*scene);
     for (ErrorRule& rule : lenient->task->errors) {
       if (rule.name == entry.error) rule.when.clear();
     }
@@ -136,9 +139,9 @@ TEST(Docs, TheTaskThatIsShownInFullWorks) {
   const auto file = folder.Path() / "cube.json";
   ASSERT_TRUE(host::WriteFile(file, page->substr(begin + 8, end - begin - 8)).ok());
   for (const char* level : {"easy", "normal"}) {
-    auto scene = ReadTask(file, {level, 2, {}});
+    auto scene = files::ReadTask(file, {level, 2, {}});
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
-    const auto played = PlayTask(std::make_shared<Scene>(std::move(*scene)), "expert", 2);
+    const auto played = PlayTask(std::make_shared<scene::Scene>(std::move(*scene)), "expert", 2);
     ASSERT_TRUE(played.ok());
     EXPECT_EQ(played->task.phase, TaskPhase::kCompleted) << played->doing;
     EXPECT_EQ(played->task.error_count, 0u);
@@ -171,7 +174,7 @@ TEST(RigidThings, AreHeldFeltPublishedAndReset) {
   const std::uint64_t start = simulation.Hash();
   const math::Vec3 bar = simulation.GetSnapshot().objects[0].X_world_object.translation;
   const math::Vec3& port = scene->instruments[kLeft].p_world_port;
-  Input input = CalcScriptInput(*scene, 0);
+  scene::Input input = CalcScriptInput(*scene, 0);
   // a reach in small steps, as a hand makes it
   const auto reach = [&](const math::Vec3& to, double jaw, double seconds) {
     const math::Vec3 from = simulation.GetSnapshot().instruments[kLeft].X_world_device.translation;
@@ -210,7 +213,7 @@ TEST(RigidThings, ABoardPushesBackAndKeepsTheSeenToolOut) {
   const auto scene = ReadDelivered("instrument_navigation");
   auto made = Simulation::Make(scene);
   ASSERT_TRUE(made.ok());
-  Input input = CalcScriptInput(*scene, 0);
+  scene::Input input = CalcScriptInput(*scene, 0);
   const math::Vec3& port = scene->instruments[kLeft].p_world_port;
   for (int tick = 0; tick < 240; ++tick) {
     const double z = -0.095 - std::min(1.0, tick / 120.0) * 0.050;  // 5 mm below the board's top at -140 mm

@@ -20,19 +20,24 @@
 namespace trocar::agent {
 
 using cholecystectomy::PatternCut;
+using instrument::kRight;
+using math::Vec3;
 using scene::CalcScriptInput;
 using scene::Condition;
 using scene::ConditionKind;
 using scene::Event;
 using scene::EventKind;
-using scene::kRight;
+using scene::Input;
 using scene::ModelBand;
 using scene::RegionMark;
+using scene::Scene;
 using scene::Task;
 using scene::TaskPhase;
-using simulation::ClipSnapshot;
 using simulation::OperationSnapshot;
+using simulation::Simulation;
 using simulation::TaskMonitor;
+using surgery::ClipSnapshot;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +46,7 @@ namespace fs = std::filesystem;
 
 /// The delivered task with one piece of its text replaced.
 base::Result<Scene> ReadWith(const std::string& key, const std::string& what, const std::string& by) {
-  const auto path = FindTask(key);
+  const auto path = files::FindTask(key);
   auto text = host::ReadFile(*path);
   const std::size_t at = text->find(what);
   EXPECT_NE(at, std::string::npos) << what;
@@ -52,7 +57,7 @@ base::Result<Scene> ReadWith(const std::string& key, const std::string& what, co
   fs::create_directories(folder / "../../assets");
   fs::copy(path->parent_path() / "../../assets/materials", folder / "../../assets/materials");
   EXPECT_TRUE(host::WriteFile(folder / "task.json", *text).ok());
-  return ReadTask(folder / "task.json");
+  return files::ReadTask(folder / "task.json");
 }
 
 TEST(TissueModelFile, MakesDuctsAndBandsAndAnOperation) {
@@ -223,7 +228,7 @@ class TissueWords : public testing::Test {
   bool IsDone() const { return snapshot_.task.goals[0].is_done; }
 
   Scene scene_;
-  Snapshot snapshot_;
+  simulation::Snapshot snapshot_;
   TaskMonitor monitor_;
 };
 
@@ -422,7 +427,7 @@ int CountEvents(Simulation& simulation, const Input& input, double seconds, Even
   for (int tick = 0; tick < static_cast<int>(seconds * 120); ++tick) {
     const std::uint64_t before = simulation.GetSnapshot().event_count;
     simulation.Step(input);
-    const Snapshot& now = simulation.GetSnapshot();
+    const simulation::Snapshot& now = simulation.GetSnapshot();
     for (std::uint64_t n = before; n < now.event_count; ++n)
       count += now.events[n % now.events.size()].kind == kind;
   }
@@ -493,7 +498,7 @@ TEST(HookDissection, CurrentPartsWhatItTouchesAndNothingElse) {
 // The first steps of the operation, without its tray: whoever misses takes the tissue in another try.
 TEST(TaskOnPatient, ExpertTakesLiftsAndTurnsTheGallbladder) {
   const auto data = host::FindDataFolder();
-  auto scene = ReadTask(*data / "scenes/study/gallbladder_retraction.json");
+  auto scene = files::ReadTask(*data / "scenes/study/gallbladder_retraction.json");
   ASSERT_TRUE(scene.ok()) << scene.error().Text();
   ASSERT_TRUE(scene->HasPatient());
   const auto shared = std::make_shared<const Scene>(std::move(*scene));

@@ -26,7 +26,7 @@ class HandDriver {
         scene_(&scene),
         X_world_view_(
             presenter::LevelHorizon(scene::CalcLaparoscopePose(scene.laparoscope, scene.laparoscope.home))) {
-    for (const int hand : {scene::kLeft, scene::kRight})
+    for (const int hand : {instrument::kLeft, instrument::kRight})
       joints_[static_cast<std::size_t>(hand)] = scene.instruments[static_cast<std::size_t>(hand)].home;
   }
 
@@ -47,21 +47,21 @@ class HandDriver {
     pixels_ = render::kMaskDiameter * (bottom - top + 1);
     screen_->SwitchOffAcceleration();
     screen_->Click(static_cast<int>(picture.width) / 2, static_cast<int>(top + bottom) / 2);
-    std::this_thread::sleep_for(milliseconds(600));
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
     // each turn of the wheel is a step of its own, as this driver reckons
     screen_->Press(XK_8);
     return true;
   }
 
-  void Choose(scene::Hand hand) {
+  void Choose(instrument::Hand hand) {
     hand_ = hand;
-    screen_->Press(hand == scene::kLeft ? XK_1 : XK_2);
-    std::this_thread::sleep_for(milliseconds(300));
+    screen_->Press(hand == instrument::kLeft ? XK_1 : XK_2);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
   }
-  void OpenJaws() const { screen_->Hold(XK_b, milliseconds(1500)); }
-  void CloseJaws() const { screen_->Hold(XK_g, milliseconds(1800)); }
+  void OpenJaws() const { screen_->Hold(XK_b, std::chrono::milliseconds(1500)); }
+  void CloseJaws() const { screen_->Hold(XK_g, std::chrono::milliseconds(1800)); }
 
-  math::Pose Tool(scene::Hand hand) const {
+  math::Pose Tool(instrument::Hand hand) const {
     return instrument::CalcToolPose(scene_->instruments[hand].p_world_port, joints_[hand]);
   }
   math::Vec3 Tip() const { return Tool(hand_).translation; }
@@ -76,7 +76,7 @@ class HandDriver {
     const int steps = std::max(1, static_cast<int>(std::ceil(math::Distance(from, p_world) / kStep)));
     for (int step = 1; step <= steps; ++step)
       Approach(math::Lerp(from, p_world, static_cast<double>(step) / steps));
-    std::this_thread::sleep_for(milliseconds(700));
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
   }
 
   /// Tip that brings something held, in the tool's frame, to a place.
@@ -105,7 +105,7 @@ class HandDriver {
     for (int n = static_cast<int>(std::lround(away / kWheelStep)); n != 0; n += n > 0 ? -1 : 1) {
       screen_->Turn(n > 0 ? 1 : -1);
       Go(0, 0, n > 0 ? kWheelStep : -kWheelStep);
-      std::this_thread::sleep_for(milliseconds(60));
+      std::this_thread::sleep_for(std::chrono::milliseconds(60));
     }
     for (int round = 0; round < 60; ++round) {
       const math::Vec3 d = InView(p_world);
@@ -117,7 +117,7 @@ class HandDriver {
       if (dx == 0 && dy == 0) return;
       screen_->MoveBy(dx, dy);
       Go(metres * dx, -metres * dy, 0);
-      std::this_thread::sleep_for(milliseconds(30));
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
     }
   }
   /// What the window makes of it.
@@ -138,8 +138,8 @@ class HandDriver {
   const Screen* screen_;
   const scene::Scene* scene_;
   math::Pose X_world_view_;
-  std::array<instrument::TrocarJoints, scene::kHandCount> joints_;
-  scene::Hand hand_ = scene::kRight;
+  std::array<instrument::TrocarJoints, instrument::kHandCount> joints_;
+  instrument::Hand hand_ = instrument::kRight;
   double pixels_ = 700;
 };
 

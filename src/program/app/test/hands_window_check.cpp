@@ -9,10 +9,10 @@
 
 namespace {
 
+using trocar::instrument::kLeft;
+using trocar::instrument::kRight;
 using trocar::math::Pose;
 using trocar::math::Vec3;
-using trocar::scene::kLeft;
-using trocar::scene::kRight;
 using trocar::test::Fail;
 using trocar::test::HandDriver;
 using trocar::test::kLongest;
@@ -27,7 +27,7 @@ constexpr double kBack = 0.022, kBite = 0.001;  // before, and in a grip [m]
 constexpr double kBeyondDuct = 0.005;           // of a clip applier's tip [m]
 
 /// Where open jaws can close across a ring's rim, on one side of it.
-Vec3 FindRim(const HandDriver& driver, scene::Hand hand, const Pose& X_world_ring, const Vec3& side) {
+Vec3 FindRim(const HandDriver& driver, instrument::Hand hand, const Pose& X_world_ring, const Vec3& side) {
   const Vec3 axis = math::Rotate(X_world_ring.rotation, Vec3{0, 0, 1});
   const Vec3 opening = math::Rotate(driver.Tool(hand).rotation, Vec3{0, 1, 0});
   Vec3 out = math::Normalized(opening - math::Dot(opening, axis) * axis);
@@ -35,7 +35,7 @@ Vec3 FindRim(const HandDriver& driver, scene::Hand hand, const Pose& X_world_rin
   return X_world_ring.translation + kRim * out;
 }
 
-void Grasp(HandDriver& driver, scene::Hand hand, const Pose& X_world_ring, const Vec3& side) {
+void Grasp(HandDriver& driver, instrument::Hand hand, const Pose& X_world_ring, const Vec3& side) {
   driver.OpenJaws();
   // the direction in which jaws open turns a little with the shaft: twice
   driver.MoveTo(driver.Behind(FindRim(driver, hand, X_world_ring, side), kBack) + Vec3{0, 0, 0.008});

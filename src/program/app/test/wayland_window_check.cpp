@@ -61,7 +61,7 @@ int Judge(const char* file) {
   const auto recording = trocar::record::ReadRecording(file);
   if (!recording.ok()) return std::fprintf(stderr, "%s\n", recording.error().Text().c_str()), 1;
   if (recording->inputs.empty()) return std::fputs("nothing was recorded\n", stderr), 1;
-  const auto hand = [](const auto& input) { return input.hands[trocar::scene::kRight]; };
+  const auto hand = [](const auto& input) { return input.hands[trocar::instrument::kRight]; };
   const auto first = hand(recording->inputs.front()), last = hand(recording->inputs.back());
   double most = 0, side = 0;
   for (const auto& input : recording->inputs) {

@@ -23,11 +23,9 @@
 namespace trocar::test {
 
 using Clock = std::chrono::steady_clock;
-using std::chrono::milliseconds;
-using std::chrono::seconds;
 
-inline constexpr unsigned kLeastWidth = 600;  // of a window: a tip or a list is smaller [pixels]
-inline constexpr seconds kLongest{90};        // for what a busy computer does
+inline constexpr unsigned kLeastWidth = 600;         // of a window: a tip or a list is smaller [pixels]
+inline constexpr std::chrono::seconds kLongest{90};  // for what a busy computer does
 
 /// A colour of assets/looks/window.css.
 struct Colour {
@@ -70,7 +68,7 @@ template <typename Is>
 bool WaitFor(Clock::duration longest, Is is) {
   for (const auto end = Clock::now() + longest; Clock::now() < end;) {
     if (is()) return true;
-    std::this_thread::sleep_for(milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   return false;
 }
@@ -152,7 +150,7 @@ class Screen {
     XRaiseWindow(display_, window);
     XSetInputFocus(display_, window, RevertToPointerRoot, CurrentTime);
     XSync(display_, False);
-    std::this_thread::sleep_for(milliseconds(400));
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
   }
   void Click(int x, int y) const {
     XTestFakeMotionEvent(display_, -1, x, y, 0);
@@ -175,7 +173,7 @@ class Screen {
     XTestFakeKeyEvent(display_, code(key), False, 40);
     if (held != 0) XTestFakeKeyEvent(display_, code(held), False, 20);
     XSync(display_, False);
-    std::this_thread::sleep_for(milliseconds(150));
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
   }
   void PressTimes(KeySym key, int times) const {
     for (int i = 0; i < times; ++i) Press(key);
@@ -192,17 +190,17 @@ class Screen {
       XTestFakeKeyEvent(display_, code, False, 10);
       if (is_shifted) XTestFakeKeyEvent(display_, XKeysymToKeycode(display_, XK_Shift_L), False, 10);
       XSync(display_, False);
-      std::this_thread::sleep_for(milliseconds(20));
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   }
-  void Hold(KeySym key, milliseconds time) const {
+  void Hold(KeySym key, std::chrono::milliseconds time) const {
     const KeyCode code = XKeysymToKeycode(display_, key);
     XTestFakeKeyEvent(display_, code, True, 20);
     XSync(display_, False);
     std::this_thread::sleep_for(time);
     XTestFakeKeyEvent(display_, code, False, 0);
     XSync(display_, False);
-    std::this_thread::sleep_for(milliseconds(200));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
   /// The wheel. \param step  1: away from the person, -1: towards
   void Turn(int step) const {

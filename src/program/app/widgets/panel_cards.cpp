@@ -81,8 +81,8 @@ HandsCard::HandsCard() : gui::Card("Force on the instruments") {
     append(row.bar);
     if (&row != &rows_.back()) row.bar.set_margin_bottom(6);
   }
-  rows_[scene::kLeft].name.set_text(host::Translate("1  Left hand"));
-  rows_[scene::kRight].name.set_text(host::Translate("2  Right hand"));
+  rows_[instrument::kLeft].name.set_text(host::Translate("1  Left hand"));
+  rows_[instrument::kRight].name.set_text(host::Translate("2  Right hand"));
 }
 
 void HandsCard::Show(const presenter::HandPages& page) {
@@ -104,7 +104,7 @@ void HandsCard::ShowNames(const presenter::OperationPage& page) {
 // the operation
 
 OperationCard::OperationCard(presenter::PanelPresenter& presenter) : gui::Card("Operation") {
-  for (const scene::Hand hand : {scene::kLeft, scene::kRight}) AddTray(presenter, hand);
+  for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight}) AddTray(presenter, hand);
   clips_ = &AddLine("Clips left", "In the clip applier that is in use");
   blood_ = &AddLine("Blood", "Lost so far, and what of it lies in the abdomen [mL]");
   bile_ = &AddLine("Bile", "Lost so far, and what of it lies in the abdomen [mL]");
@@ -121,7 +121,7 @@ OperationCard::OperationCard(presenter::PanelPresenter& presenter) : gui::Card("
   append(assistant_);
 }
 
-void OperationCard::AddTray(presenter::PanelPresenter& presenter, scene::Hand hand) {
+void OperationCard::AddTray(presenter::PanelPresenter& presenter, instrument::Hand hand) {
   Gtk::DropDown& tray = trays_[static_cast<std::size_t>(hand)];
   tray.set_hexpand(true);
   tray.set_tooltip_text(
@@ -130,7 +130,7 @@ void OperationCard::AddTray(presenter::PanelPresenter& presenter, scene::Hand ha
     if (!is_showing_) presenter.ChooseTool(hand, tray.get_selected());
   });
   append(gui::MakeRow(
-      0, {MakeName(hand == scene::kLeft ? host::Translate("Left tool") : host::Translate("Right tool"),
+      0, {MakeName(hand == instrument::kLeft ? host::Translate("Left tool") : host::Translate("Right tool"),
                    kNameWidth),
           &tray}));
 }

@@ -40,7 +40,7 @@ class HandsCard : public gui::Card {
     Gtk::Label name, force, contact;
     ForceBar bar;
   };
-  std::array<Row, scene::kHandCount> rows_;
+  std::array<Row, instrument::kHandCount> rows_;
 };
 
 /// Tools, liquids and the assistant; hidden where there is one tool a hand, and nothing else to do.
@@ -51,9 +51,9 @@ class OperationCard : public gui::Card {
   void Show(const presenter::OperationPage& page);
 
  private:
-  void AddTray(presenter::PanelPresenter& presenter, scene::Hand hand);
+  void AddTray(presenter::PanelPresenter& presenter, instrument::Hand hand);
 
-  std::array<Gtk::DropDown, scene::kHandCount> trays_;
+  std::array<Gtk::DropDown, instrument::kHandCount> trays_;
   Gtk::Label *clips_, *blood_, *bile_, *stones_, *assistant_does_;
   Gtk::DropDown assistant_;
   bool is_showing_ = false;  // lists are being set by us

@@ -23,8 +23,8 @@
 namespace trocar::bench {
 namespace {
 
+using instrument::Hand;
 using math::Vec3;
-using scene::Hand;
 
 constexpr double kSecondsPerRepeat = 4;
 constexpr double kPressDepth = 0.008;  // beyond where a tool would touch [m]
@@ -134,7 +134,7 @@ class NoWork : public device::ForceDriver {
 struct Person {
   session::HapticLoop& loop;
   device::SimulatedForceDevice& device;
-  std::array<Lead, scene::kHandCount>& leads;
+  std::array<Lead, instrument::kHandCount>& leads;
 
   bool WaitFor(double seconds, bool (*condition)(const session::HapticStatus&)) {
     const host::Stopwatch watch;
@@ -148,7 +148,7 @@ struct Person {
     for (int attempt = 0; attempt < 5; ++attempt) {
       loop.BeginCheckPose();
       Sleep(0.1);
-      for (int hand = 0; hand < scene::kHandCount; ++hand) {
+      for (int hand = 0; hand < instrument::kHandCount; ++hand) {
         device.SetButtons(hand, 1);
         Sleep(0.5);
         device.SetButtons(hand, 0);
@@ -166,12 +166,12 @@ struct Person {
     const host::Stopwatch watch;
     while (watch.Seconds() < kArmingTime) {
       for (Lead& lead : leads) lead.is_pressing.store(false);
-      for (int hand = 0; hand < scene::kHandCount; ++hand) device.SetButtons(hand, kSwitchAndJaws);
+      for (int hand = 0; hand < instrument::kHandCount; ++hand) device.SetButtons(hand, kSwitchAndJaws);
       Sleep(2.6);
       loop.RequestArm();
       const bool is_armed = WaitFor(3.0, [](const session::HapticStatus& status) {
-        return status.hands[scene::kLeft].state == haptics::ArmState::kArmed &&
-               status.hands[scene::kRight].state == haptics::ArmState::kArmed;
+        return status.hands[instrument::kLeft].state == haptics::ArmState::kArmed &&
+               status.hands[instrument::kRight].state == haptics::ArmState::kArmed;
       });
       if (!is_armed) continue;
       for (Lead& lead : leads) lead.is_pressing.store(true);
@@ -215,8 +215,8 @@ base::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   session::HapticLoopSettings settings;
   settings.supervisor = session::SupervisorLink::FindProgram();
   settings.count_allocations = CountThreadAllocations;
-  std::array<Lead, scene::kHandCount> leads;
-  for (const Hand hand : {scene::kLeft, scene::kRight}) {
+  std::array<Lead, instrument::kHandCount> leads;
+  for (const Hand hand : {instrument::kLeft, instrument::kRight}) {
     settings.hands.push_back(session::MakeHapticHand(
         simulation->GetScene(), simulation->GetSnapshot().X_world_laparoscope, hand, 0.5));
     const haptics::DeviceMap& map = settings.hands.back().map;
@@ -232,7 +232,7 @@ base::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   if (!control_p999) return control_p999.error();
 
   device::SimulatedForceSettings simulated;
-  simulated.channel_count = scene::kHandCount;
+  simulated.channel_count = instrument::kHandCount;
   simulated.path = [&leads](int channel, double time) {
     return leads[static_cast<std::size_t>(channel)].At(time);
   };
@@ -253,8 +253,8 @@ base::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   while (watch.Seconds() < seconds) {
     Sleep(0.05);
     const session::HapticStatus& status = (*loop)->Latest();
-    const auto& left = status.hands[scene::kLeft];
-    const auto& right = status.hands[scene::kRight];
+    const auto& left = status.hands[instrument::kLeft];
+    const auto& right = status.hands[instrument::kRight];
     looks += 1;
     touched += onlooker.SeesContact() ? 1 : 0;
     const bool are_armed =

@@ -13,6 +13,9 @@
 #include "trocar/anatomy/patient_lint.h"
 
 namespace trocar::cli {
+
+using host::PrintLine;
+
 namespace {
 
 void PrintForProgram(const anatomy::LintReport& report) {
@@ -43,23 +46,24 @@ void PrintForPerson(const anatomy::LintReport& report) {
   std::vector<std::vector<std::string>> rows = {
       {"organ", "triangles", "closed", "manifold", "self-intersections", "volume [mL]"}};
   for (const anatomy::MeshSummary& mesh : report.meshes) {
-    rows.push_back({TranslateComposed(mesh.name), std::to_string(mesh.triangles),
-                    Translate(mesh.closed ? "yes" : "no"), Translate(mesh.manifold ? "yes" : "no"),
-                    std::to_string(mesh.self_intersections), ShownNumber(mesh.volume_ml)});
+    rows.push_back({host::TranslateComposed(mesh.name), std::to_string(mesh.triangles),
+                    host::Translate(mesh.closed ? "yes" : "no"),
+                    host::Translate(mesh.manifold ? "yes" : "no"), std::to_string(mesh.self_intersections),
+                    host::ShownNumber(mesh.volume_ml)});
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
   PrintLine();
   PrintLabels(report.labels);
   for (const anatomy::LintFinding& finding : report.findings) {
     PrintLine(finding.code + "  " + finding.where);
-    PrintLine("    " + TranslateComposed(finding.text));
+    PrintLine("    " + host::TranslateComposed(finding.text));
   }
   if (report.findings.empty()) {
-    Say("No findings.\n");
+    host::Say("No findings.\n");
   } else {
     PrintLine();
-    Print(TranslateCount("{1} finding", "{1} findings", report.findings.size()));
-    Say("; docs/patient-check.md explains each code.\n");
+    host::Print(host::TranslateCount("{1} finding", "{1} findings", report.findings.size()));
+    host::Say("; docs/patient-check.md explains each code.\n");
   }
 }
 

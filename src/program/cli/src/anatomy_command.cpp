@@ -14,6 +14,12 @@
 #include "trocar/anatomy/patient_from_labels.h"
 
 namespace trocar::cli {
+
+using host::PrintLine;
+using host::Say;
+using host::ShownNumber;
+using host::Translate;
+
 namespace {
 
 struct BuildArguments {
@@ -40,11 +46,11 @@ base::Status Build(const BuildArguments& arguments) {
   if (!arguments.without_overlays) {
     options.overlays = arguments.overlays.empty() ? arguments.output + "-overlays" : arguments.overlays;
   }
-  ProgressBar bar("building", 1.0);
+  host::ProgressBar bar("building", 1.0);
   const base::Result<anatomy::BuildReport> report = anatomy::BuildPatient(options, bar.Follow());
   bar.Finish();
   if (!report) return report.error();
-  PrintLines(anatomy::FormatReport(*report) + "\n" + anatomy::FormatSurroundings(*report));
+  host::PrintLines(anatomy::FormatReport(*report) + "\n" + anatomy::FormatSurroundings(*report));
   Say("\nWrote {1}\n", arguments.output);
   if (report->overlays > 0) {
     Say("Wrote {1} pictures to check by eye into {2}\n", report->overlays, options.overlays->c_str());
@@ -53,7 +59,7 @@ base::Status Build(const BuildArguments& arguments) {
 }
 
 base::Status BuildFromLabels(const anatomy::LabelOptions& options) {
-  ProgressBar bar("building", 1.0);
+  host::ProgressBar bar("building", 1.0);
   const base::Result<anatomy::BuildReport> report = anatomy::BuildPatientFromLabels(options, bar.Follow());
   bar.Finish();
   if (!report) return report.error();
@@ -68,14 +74,14 @@ base::Status BuildFromLabels(const anatomy::LabelOptions& options) {
                     ShownNumber(100 * organ.volume_change, 2), ShownNumber(organ.hausdorff_mm, 3),
                     ShownNumber(organ.mean_distance_mm, 3)});
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
   Say("Distance: of mesh and label surface from each other, the largest both ways, and the mesh's mean.\n");
-  PrintLines("\n" + anatomy::FormatSurroundings(*report));
+  host::PrintLines("\n" + anatomy::FormatSurroundings(*report));
   PrintLine();
   PrintLabels(report->patient.labels);
-  for (const std::string& note : report->notes) PrintLine(TranslateComposed(note));
+  for (const std::string& note : report->notes) PrintLine(host::TranslateComposed(note));
   PrintLine();
-  PrintLine(TranslateComposed(report->patient.provenance) + ".");
+  PrintLine(host::TranslateComposed(report->patient.provenance) + ".");
   Say("Wrote {1}\n", options.output);
   return {};
 }

@@ -21,6 +21,11 @@
 #include "trocar/patient/patient.h"
 
 namespace trocar::cli {
+
+using host::PrintLine;
+using host::Say;
+using host::ShownNumber;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,21 +131,22 @@ void PrintForPerson(const std::vector<Completion>& all, bool keeps_tubes) {
       for (const anatomy::VariationShare& share : one.variant.shares) rows.back().push_back(share.value);
     }
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
   PrintLine();
   double sum = 0;
   for (const Completion& one : all) {
     sum += one.variant.probability;
     for (const anatomy::LintFinding& finding : one.findings) {
       PrintLine(one.folder.string() + ": " + finding.code + "  " + finding.where);
-      PrintLine("    " + TranslateComposed(finding.text));
+      PrintLine("    " + host::TranslateComposed(finding.text));
     }
   }
   if (keeps_tubes) {
     Say("Ducts and arteries are seen in the images and stay as they are: only the rest was set.\n");
   } else {
     Say("{1} people in a hundred are like {2}, by the series named and as if they were independent.\n",
-        ShownNumber(100 * sum, 3), all.size() == 1 ? Translate("this one") : Translate("one of these"));
+        ShownNumber(100 * sum, 3),
+        all.size() == 1 ? host::Translate("this one") : host::Translate("one of these"));
   }
   Say("Nobody knows it of this patient: rehearse more than one.\n");
   std::string folders;

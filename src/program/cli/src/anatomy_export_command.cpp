@@ -29,7 +29,7 @@ base::Status Export(const ExportArguments& arguments) {
   if (!patient) return patient.error();
   const auto paths = anatomy::ExportPatient(*patient, arguments.output, {*format, arguments.is_ascii});
   if (!paths) return paths.error();
-  for (const auto& path : *paths) Say("Wrote {1}\n", path);
+  for (const auto& path : *paths) host::Say("Wrote {1}\n", path);
   return {};
 }
 

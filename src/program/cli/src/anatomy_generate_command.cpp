@@ -19,6 +19,12 @@
 #include "trocar/patient/patient.h"
 
 namespace trocar::cli {
+
+using host::PrintTable;
+using host::Say;
+using host::ShownNumber;
+using host::TranslateWith;
+
 namespace {
 
 /// A chi-square that chance alone exceeds less often than this is called a deviation.
@@ -69,8 +75,8 @@ std::string FormatRule(const anatomy::ParameterRule& rule) {
 void PrintRules() {
   std::vector<std::vector<std::string>> rows = {{"name", "unit", "drawn from", "what it is", "source"}};
   for (const anatomy::ParameterRule& rule : anatomy::ParameterRules()) {
-    rows.push_back({std::string(rule.name), std::string(rule.unit), FormatRule(rule), Translate(rule.about),
-                    std::string(rule.source)});
+    rows.push_back({std::string(rule.name), std::string(rule.unit), FormatRule(rule),
+                    host::Translate(rule.about), std::string(rule.source)});
   }
   PrintTable(rows);
 }
@@ -97,7 +103,7 @@ void PrintVariations(const std::vector<anatomy::VariationCount>& variations) {
           anatomy::CalcBinomialDeviation(value.configured, value.observed, variation.patients);
       rows.push_back({i == 0 ? variation.parameter : "", value.value, ShownNumber(100 * value.configured, 3),
                       ShownNumber(100 * share, 3), std::to_string(value.observed),
-                      std::to_string(variation.patients), ShownFixed(deviation, 2, true)});
+                      std::to_string(variation.patients), host::ShownFixed(deviation, 2, true)});
       if (i == 0) {
         rows.back().push_back(ShownNumber(variation.chi_square, 3));
         rows.back().push_back(ShownNumber(variation.p_value, 3));
@@ -119,24 +125,24 @@ void PrintVariations(const std::vector<anatomy::VariationCount>& variations) {
 
 void PrintPopulation(const anatomy::PopulationReport& report, double seconds) {
   constexpr std::size_t kNamed = 10;  // seeds listed at most
-  Say("{1} patients in {2} s, {3} seeds failed\n", report.patients, ShownFixed(seconds, 0),
+  Say("{1} patients in {2} s, {3} seeds failed\n", report.patients, host::ShownFixed(seconds, 0),
       report.failures.size());
   Say("meshes: {1}, closed {2}, manifold {3}, self-intersections {4}, smallest angle {5} degrees\n",
       report.meshes, report.closed_meshes, report.manifold_meshes, report.self_intersections,
       ShownNumber(report.smallest_angle_deg, 3));
   std::string findings;
   for (const auto& [code, count] : report.findings) findings += code + " " + std::to_string(count) + "  ";
-  Say("linter: {1}\n", findings.empty() ? Translate("silent for every patient") : findings);
+  Say("linter: {1}\n", findings.empty() ? host::Translate("silent for every patient") : findings);
   if (!report.seeds_with_findings.empty()) {
     Say("seeds with findings:");
     for (std::size_t i = 0; i < report.seeds_with_findings.size() && i < kNamed; ++i)
-      Print(" " + std::to_string(report.seeds_with_findings[i]));
-    PrintLine(report.seeds_with_findings.size() > kNamed ? " ..." : "");
+      host::Print(" " + std::to_string(report.seeds_with_findings[i]));
+    host::PrintLine(report.seeds_with_findings.size() > kNamed ? " ..." : "");
   }
   for (std::size_t i = 0; i < report.failures.size() && i < kNamed; ++i) {
     Say("seed {1}: {2}\n", report.failures[i].first, host::ShownText(report.failures[i].second));
   }
-  PrintLine();
+  host::PrintLine();
   if (!report.variations.empty()) PrintVariations(report.variations);
 }
 
@@ -153,8 +159,8 @@ base::Status GenerateMany(const GenerateArguments& arguments,
                                  patient);
     };
   }
-  ProgressBar bar("generating " + std::to_string(arguments.count) + " patients",
-                  static_cast<double>(arguments.count));
+  host::ProgressBar bar("generating " + std::to_string(arguments.count) + " patients",
+                        static_cast<double>(arguments.count));
   const host::Stopwatch stopwatch;
   const auto report = anatomy::GeneratePopulation(
       population, sink, [&](std::size_t done) { bar.Show(static_cast<double>(done)); });

@@ -23,7 +23,7 @@ struct GrowArguments {
 };
 
 base::Status Grow(const GrowArguments& arguments) {
-  ProgressBar bar("opening", 1.0);
+  host::ProgressBar bar("opening", 1.0);
   auto workspace = contours::ContourWorkspace::Open(arguments.options, bar.Follow());
   if (!workspace) return workspace.error();
   auto& document = workspace->Document();
@@ -43,9 +43,9 @@ base::Status Grow(const GrowArguments& arguments) {
   if (!grown) return grown.error();
   if (auto status = contours::ApplyGrowth(document, *grown); !status) return status;
   if (auto status = workspace->Save(arguments.output); !status) return status;
-  Say("{1}: {2} mL, {3} points on {4} slices, {5} to {6}\nWrote {7}\n", Translate(grown->name),
-      ShownFixed(grown->volume_ml, 0), grown->points, grown->slices.size(), grown->slices.front().slice,
-      grown->slices.back().slice, arguments.output);
+  host::Say("{1}: {2} mL, {3} points on {4} slices, {5} to {6}\nWrote {7}\n", host::Translate(grown->name),
+            host::ShownFixed(grown->volume_ml, 0), grown->points, grown->slices.size(),
+            grown->slices.front().slice, grown->slices.back().slice, arguments.output);
   return {};
 }
 

@@ -19,6 +19,11 @@
 #include "trocar/images/png_file.h"
 
 namespace trocar::cli {
+
+using host::Mark;
+using host::Translate;
+using host::TranslateWith;
+
 namespace {
 
 struct ImagesArguments {
@@ -39,7 +44,7 @@ std::string FormatSlices(const images::ImageSeriesInfo& info) {
 }
 
 void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
-  const auto number = [](double value) { return ShownNumber(value); };
+  const auto number = [](double value) { return host::ShownNumber(value); };
   std::vector<std::vector<std::string>> rows = {{"what", "found"}};
   const auto add = [&rows](const std::string& what, const std::string& found) {
     rows.push_back({what, found});
@@ -58,7 +63,7 @@ void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWi
   add(Translate("slice numbers grow to"), Translate(info.axes[2]));
   add(Translate("frame in the file"), info.file_frame.empty() ? Translate("not said") : info.file_frame);
   if (info.tilt_deg > 0.05)
-    add(Translate("oblique by"), TranslateWith("{1} degrees", {ShownNumber(info.tilt_deg, 3)}));
+    add(Translate("oblique by"), TranslateWith("{1} degrees", {host::ShownNumber(info.tilt_deg, 3)}));
   add(Translate("samples"), TranslateWith(info.is_color ? Mark("colour, {1} bits") : Mark("grey, {1} bits"),
                                           {std::to_string(info.bits)}));
   if (!info.is_color) {
@@ -70,7 +75,7 @@ void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWi
   }
   if (info.ignored_files > 0) add(Translate("other files, ignored"), std::to_string(info.ignored_files));
   for (const std::string& note : info.notes) add(Translate("note"), host::TranslateComposed(note));
-  PrintTable(rows);
+  host::PrintTable(rows);
 }
 
 void PrintForProgram(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
@@ -114,7 +119,7 @@ base::Status Show(ImagesArguments arguments) {
     window = *parsed;
   }
   arguments.options.memory_bytes = static_cast<std::size_t>(arguments.memory_mb) << 20;
-  ProgressBar bar("opening", 1.0);
+  host::ProgressBar bar("opening", 1.0);
   const images::Progress progress = bar.Follow();
   const auto series = images::ImageSeries::Open(arguments.path, arguments.options, progress);
   if (!series) {
@@ -131,7 +136,7 @@ base::Status Show(ImagesArguments arguments) {
   }
   bar.Finish();
   arguments.is_json ? PrintForProgram(info, shown) : PrintForPerson(info, shown);
-  if (!arguments.preview.empty() && !arguments.is_json) Say("\nWrote {1}\n", arguments.preview);
+  if (!arguments.preview.empty() && !arguments.is_json) host::Say("\nWrote {1}\n", arguments.preview);
   return {};
 }
 

@@ -10,6 +10,9 @@
 #include "trocar/contours/label_edges.h"
 
 namespace trocar::cli {
+
+using host::ShownFixed;
+
 namespace {
 
 struct Arguments {
@@ -23,18 +26,18 @@ base::Status Measure(const Arguments& arguments) {
   options.control_points = arguments.control_points;
   options.images = arguments.images;
   options.reference = arguments.reference;
-  ProgressBar bar("measuring", 1.0);
+  host::ProgressBar bar("measuring", 1.0);
   const auto edges = contours::MeasureLabelEdges(options, bar.Follow());
   bar.Finish();
   if (!edges) return edges.error();
   if (arguments.is_json) {
-    PrintLines(contours::FormatJson(*edges));
+    host::PrintLines(contours::FormatJson(*edges));
     return {};
   }
-  PrintTable(contours::Tabulate(*edges));
-  Say("\nShifted by {1} mm along columns, {2} mm along rows, {3} mm along slices.\n",
-      ShownFixed(edges->shift_mm[0], 2, true), ShownFixed(edges->shift_mm[1], 2, true),
-      ShownFixed(edges->shift_mm[2], 2, true));
+  host::PrintTable(contours::Tabulate(*edges));
+  host::Say("\nShifted by {1} mm along columns, {2} mm along rows, {3} mm along slices.\n",
+            ShownFixed(edges->shift_mm[0], 2, true), ShownFixed(edges->shift_mm[1], 2, true),
+            ShownFixed(edges->shift_mm[2], 2, true));
   return {};
 }
 

@@ -14,6 +14,9 @@
 #include "trocar/files/patient_file.h"
 
 namespace trocar::cli {
+
+using host::ShownNumber;
+
 namespace {
 
 using anatomy::ShapeMeasure;
@@ -63,18 +66,18 @@ void PrintForPerson(const std::vector<Measured>& all) {
     const std::filesystem::path folder = one.folder;
     rows.front().push_back((folder.has_filename() ? folder : folder.parent_path()).filename().string());
   }
-  rows.front().insert(rows.front().end(), {Mark("literature"), Mark("how")});
+  rows.front().insert(rows.front().end(), {host::Mark("literature"), host::Mark("how")});
   for (const ShapeMeasure& measure : all.front().measures) {
     rows.push_back({std::string(measure.name), std::string(measure.unit)});
     for (const Measured& one : all) rows.back().push_back(FormatCell(one, measure.name));
     const anatomy::ShapeRange* range = FindRange(measure.name);
-    rows.back().push_back(
-        range == nullptr ? ""
-                         : TranslateWith("{1} to {2}", {ShownNumber(range->low), ShownNumber(range->high)}));
-    rows.back().push_back(Translate(measure.about));
+    rows.back().push_back(range == nullptr ? ""
+                                           : host::TranslateWith("{1} to {2}", {ShownNumber(range->low),
+                                                                                ShownNumber(range->high)}));
+    rows.back().push_back(host::Translate(measure.about));
   }
-  PrintTable(rows);
-  Say("\n*: hangs on a duct that was placed by landmarks, not seen.\n");
+  host::PrintTable(rows);
+  host::Say("\n*: hangs on a duct that was placed by landmarks, not seen.\n");
 }
 
 base::Status Measure(const std::vector<std::string>& folders, bool is_json) {

@@ -27,7 +27,7 @@ struct PhantomArguments {
 base::Status MakeCt(const PhantomArguments& arguments, const base::Result<patient::Patient>& patient) {
   const auto phase = images::FindCtPhase(arguments.phase);
   if (!phase) return base::Error{base::ErrorCode::kUsage, "--ct none, arterial or portal"};
-  ProgressBar bar("drawing", 1.0);
+  host::ProgressBar bar("drawing", 1.0);
   const auto labels = arguments.labels.empty() ? anatomy::DrawLabels(*patient, bar.Follow())
                                                : images::ReadLabelVolume(arguments.labels);
   if (!labels) return labels.error();
@@ -38,7 +38,8 @@ base::Status MakeCt(const PhantomArguments& arguments, const base::Result<patien
   if (!phantom) return phantom.error();
   if (auto status = anatomy::WriteCtPhantom(arguments.output, *phantom, bar.Follow()); !status) return status;
   bar.Finish();
-  Say("Wrote {1}: slices/ (a CT series), labels.nrrd (the truth)\nNext: trocar anatomy contours {1}/slices\n",
+  host::Say(
+      "Wrote {1}: slices/ (a CT series), labels.nrrd (the truth)\nNext: trocar anatomy contours {1}/slices\n",
       arguments.output);
   return {};
 }
@@ -54,12 +55,13 @@ base::Status MakePhantom(const PhantomArguments& arguments) {
   if (!patient) return patient.error();
   if (!arguments.phase.empty()) return MakeCt(arguments, patient);
   if (!arguments.labels.empty()) return base::Error{base::ErrorCode::kUsage, "--labels belongs to --ct"};
-  ProgressBar bar("drawing", 1.0);
+  host::ProgressBar bar("drawing", 1.0);
   const auto status = anatomy::WritePhantom(arguments.output, *patient, arguments.options, bar.Follow());
   bar.Finish();
   if (!status) return status;
   const std::string& o = arguments.output;
-  Say("Wrote {1}: slices/ (the pictures), labels.nrrd (the truth), control_points.json, patient/ (the truth "
+  host::Say(
+      "Wrote {1}: slices/ (the pictures), labels.nrrd (the truth), control_points.json, patient/ (the truth "
       "as "
       "meshes)\n"
       "Next: trocar anatomy build {1}/control_points.json --images {1}/slices --reference {1}/labels.nrrd -o "

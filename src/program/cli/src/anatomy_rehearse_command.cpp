@@ -27,14 +27,14 @@ base::Status Rehearse(const Arguments& arguments) {
   options.reference = arguments.reference;
   options.clicks.points = {arguments.points.front(), arguments.points.back()};
   if (!arguments.overlays.empty()) options.overlays = arguments.overlays;
-  ProgressBar bar("rehearsing", 1.0);
+  host::ProgressBar bar("rehearsing", 1.0);
   const auto organs = contours::RehearseContours(options, bar.Follow());
   bar.Finish();
   if (!organs) return organs.error();
   if (arguments.is_json) {
-    PrintLines(contours::FormatJson(*organs));
+    host::PrintLines(contours::FormatJson(*organs));
   } else {
-    PrintTable(contours::Tabulate(*organs));
+    host::PrintTable(contours::Tabulate(*organs));
   }
   return {};
 }

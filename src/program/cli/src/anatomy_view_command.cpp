@@ -58,7 +58,7 @@ void PrintLegend(const patient::Patient& patient, const view::PatientFigureOptio
   }
   for (const patient::Tube& tube : patient.tubes)
     rows.push_back(row(ShownName(tube.name), options.colours.Of(tube)));
-  PrintTable(rows);
+  host::PrintTable(rows);
 }
 
 base::Status View(const ViewArguments& arguments) {
@@ -101,7 +101,7 @@ base::Status View(const ViewArguments& arguments) {
   if (auto status = render::WritePng(arguments.picture, render::TilePictures(*pictures, kColumns)); !status)
     return status;
   PrintLegend(*patient, options);
-  Say("\nWrote {1}\n", arguments.picture);
+  host::Say("\nWrote {1}\n", arguments.picture);
   return {};
 }
 

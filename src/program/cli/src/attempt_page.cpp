@@ -20,6 +20,9 @@
 #include "validity_note.h"
 
 namespace trocar::cli {
+
+using host::TranslateWith;
+
 namespace {
 
 constexpr int kPictureWidth = 800, kPictureHeight = 450;  // of the critical view [px]
@@ -107,7 +110,7 @@ base::Result<ReportKind> FindReportKind(const std::string& path) {
   if (ending == ".pdf") return ReportKind::kPdf;
   if (ending == ".csv") return ReportKind::kCsv;
   if (ending == ".json") return ReportKind::kJson;
-  return WrongEnding(path, Mark(".html, .pdf, .csv or .json"));
+  return WrongEnding(path, host::Mark(".html, .pdf, .csv or .json"));
 }
 
 base::Status WriteReport(const report::AttemptReport& report, const std::string& path) {
@@ -131,7 +134,8 @@ base::Status WriteReport(const report::TraineeReport& report, const std::string&
   if (!kind.ok()) return kind.error();
   if (*kind == ReportKind::kHtml) return host::WriteFile(path, report::FormatHtml(MakeDocument(report)));
   if (*kind == ReportKind::kPdf) return host::WriteFile(path, report::FormatPdf(MakeDocument(report)));
-  return WrongEnding(path, Mark(".html or .pdf where it is of several attempts; CSV and JSON are of one"));
+  return WrongEnding(path,
+                     host::Mark(".html or .pdf where it is of several attempts; CSV and JSON are of one"));
 }
 
 base::Result<report::AttemptReport> ReportTrace(const training::AttemptTrace& trace,
@@ -155,7 +159,7 @@ void ReportWatch::Start(const simulation::Simulation& simulation) {
 }
 
 void ReportWatch::AfterStep(const simulation::Simulation& simulation,
-                            const std::array<scene::HandControls, scene::kHandCount>& controls) {
+                            const std::array<scene::HandControls, instrument::kHandCount>& controls) {
   const simulation::Snapshot& now = simulation.GetSnapshot();
   trace_->Add(now, controls);
   if (!critical_view_.IsAchieved()) last_score_ = now.operation.critical_view;
@@ -195,7 +199,7 @@ base::Result<report::AttemptReport> ReportRecording(const std::string& path, con
   const record::Recording& played = replay.GetRecording();
   ReportWatch watch;
   watch.Start(replay.GetSimulation());
-  ProgressBar progress("replaying", 1.0);
+  host::ProgressBar progress("replaying", 1.0);
   while (!replay.IsAtEnd()) {
     const std::uint64_t done = replay.Tick() - played.FirstTick();
     replay.Step();
@@ -246,7 +250,7 @@ base::Status RunReport::Write(const std::vector<view::DemoPicture>& pictures) co
     auto png = host::ReadFile(picture.path);
     if (!png.ok()) return png.error();
     report->pictures.push_back(
-        {std::move(*png), TranslateWith("after {1} s", {ShownNumber(picture.time, 3)})});
+        {std::move(*png), TranslateWith("after {1} s", {host::ShownNumber(picture.time, 3)})});
   }
   return WriteReport(*report, path_);
 }

@@ -51,7 +51,7 @@ class ReportWatch {
   void Start(const simulation::Simulation& simulation);
   /// After each step. \param controls  that were given to it
   void AfterStep(const simulation::Simulation& simulation,
-                 const std::array<scene::HandControls, scene::kHandCount>& controls);
+                 const std::array<scene::HandControls, instrument::kHandCount>& controls);
   /// The critical view of safety is drawn from both sides, each as it was when that view came to count.
   base::Result<report::AttemptReport> MakeReport(report::AttemptFacts facts) const;
 
@@ -82,7 +82,7 @@ class RunReport {
   std::string path_;
   report::AttemptFacts facts_;
   ReportWatch watch_;
-  std::array<scene::HandControls, scene::kHandCount> controls_{};
+  std::array<scene::HandControls, instrument::kHandCount> controls_{};
 };
 
 }  // namespace trocar::cli

@@ -23,7 +23,7 @@ struct BenchArguments {
 std::string ListSuites() {
   std::vector<std::vector<std::string>> rows;
   for (const bench::BenchmarkSuite& suite : bench::BenchmarkSuites()) {
-    rows.push_back({std::string(suite.name), Translate(suite.description)});
+    rows.push_back({std::string(suite.name), host::Translate(suite.description)});
   }
   return host::FormatTable(rows);
 }
@@ -44,20 +44,20 @@ void PrintForProgram(const std::string& suite, const bench::BenchmarkResult& res
 }
 
 void PrintForPerson(const std::string& suite, const bench::BenchmarkResult& result) {
-  Say("{1} on {2}\n\n", suite, result.machine.empty() ? bench::DescribeMachine() : result.machine);
-  for (const std::string& note : result.notes) PrintLine(note);
+  host::Say("{1} on {2}\n\n", suite, result.machine.empty() ? bench::DescribeMachine() : result.machine);
+  for (const std::string& note : result.notes) host::PrintLine(note);
   std::vector<std::vector<std::string>> rows = {{"case", "value", "unit"}};
   for (const bench::BenchmarkCase& entry : result.cases) {
-    rows.push_back({entry.name, ShownNumber(entry.value), entry.unit == "1" ? "" : entry.unit});
+    rows.push_back({entry.name, host::ShownNumber(entry.value), entry.unit == "1" ? "" : entry.unit});
   }
   for (const bench::BenchmarkRatio& ratio : result.ratios)
-    rows.push_back({ratio.name, ShownNumber(ratio.value), Translate("times")});
-  PrintTable(rows);
+    rows.push_back({ratio.name, host::ShownNumber(ratio.value), host::Translate("times")});
+  host::PrintTable(rows);
 }
 
 base::Status Run(const BenchArguments& arguments) {
   if (arguments.is_list) {
-    PrintLines(ListSuites());
+    host::PrintLines(ListSuites());
     return {};
   }
   for (const bench::BenchmarkSuite& suite : bench::BenchmarkSuites()) {

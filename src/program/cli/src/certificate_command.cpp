@@ -17,6 +17,10 @@
 #include "trocar/host/safe_file.h"
 
 namespace trocar::cli {
+
+using host::ProgressBar;
+using host::Say;
+
 namespace {
 
 struct CertificateArguments {
@@ -37,11 +41,11 @@ base::Status MakeKeys(const std::string& name) {
   if (const auto made = assessment::MakeKeys(name, *passphrase); !made.ok()) return made;
   Say("{1}.key: keep it secret, and a copy in a safe place\n{1}.pub: publish it\n", name);
   if (passphrase->empty()) {
-    const std::string warning = TranslateWith(
+    const std::string warning = host::TranslateWith(
         "warning: {1}.key is not encrypted; whoever reads it can sign in your name. For an encrypted "
         "one delete both files, set TROCAR_KEY_PASSPHRASE or begin at a terminal, and make them again",
         {name});
-    PrintErrorLine(warning);
+    host::PrintErrorLine(warning);
   }
   return {};
 }
@@ -77,11 +81,11 @@ base::Status Verify(const CertificateArguments& arguments) {
   if (!verified.ok()) return verified.error();
   const auto& exam = verified->exam;
   Say("VERIFIED: signature, recording and outcome are as they were issued\n");
-  const auto yes = [](bool is_so) { return Translate(is_so ? "yes" : "no"); };
-  PrintLines(FormatFields(
-      {{"exam",
-        exam.name + ": " +
-            (exam.IsOperation() ? exam.operation : TranslateWith("{1}, level {2}", {exam.task, exam.level}))},
+  const auto yes = [](bool is_so) { return host::Translate(is_so ? "yes" : "no"); };
+  host::PrintLines(host::FormatFields(
+      {{"exam", exam.name + ": " +
+                    (exam.IsOperation() ? exam.operation
+                                        : host::TranslateWith("{1}, level {2}", {exam.task, exam.level}))},
        {"seed", std::to_string(exam.seed)},
        {"commitment", exam.commitment},
        {"examinee", verified->examinee},
@@ -93,7 +97,7 @@ base::Status Verify(const CertificateArguments& arguments) {
   if (signer.empty())
     Say("Whose key that is, only its owner can tell: compare it with the one that the centre publishes "
         "(--key).\n");
-  PrintLines(WrapText(Translate(assessment::CertificateStatement()), 100, ""));
+  host::PrintLines(host::WrapText(host::Translate(assessment::CertificateStatement()), 100, ""));
   return {};
 }
 

@@ -19,6 +19,10 @@
 #include "validity_note.h"
 
 namespace trocar::cli {
+
+using host::Say;
+using host::TranslateComposed;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -51,7 +55,7 @@ ordered_json ToJson(const training::Advice& advice) {
                        {"deviation", advice.numbers.deviation},
                        {"threshold", advice.numbers.threshold},
                        {"cost", advice.numbers.cost}};
-  if (advice.hand >= 0) json["hand"] = advice.hand == scene::kLeft ? "left" : "right";
+  if (advice.hand >= 0) json["hand"] = advice.hand == instrument::kLeft ? "left" : "right";
   return json;
 }
 
@@ -63,7 +67,7 @@ base::Status Coach(const CoachArguments& arguments) {
   auto recording = record::ReadRecording(arguments.file);
   if (!recording.ok()) return recording.error();
   const std::string task = TaskKey(recording->description.name);
-  ProgressBar progress("replaying", 1.0);
+  host::ProgressBar progress("replaying", 1.0);
   const auto trace = record::TraceRecording(std::move(*recording), arguments.threads,
                                             [&](double share) { progress.Show(share); });
   progress.Finish();
@@ -85,14 +89,14 @@ base::Status Coach(const CoachArguments& arguments) {
   if (advice.empty()) Say("Nothing stands out against what the coach knows of this task.\n");
   for (std::size_t i = 0; i < advice.size(); ++i) {
     const training::Advice& one = advice[i];
-    PrintLine(std::to_string(i + 1) + ". " + TranslateComposed(one.sentence) +
-              (one.look.empty() ? "" : " " + TranslateComposed(one.look)));
+    host::PrintLine(std::to_string(i + 1) + ". " + TranslateComposed(one.sentence) +
+                    (one.look.empty() ? "" : " " + TranslateComposed(one.look)));
     Say("   Why: {1}\n   Practise: {2} (trocar play expert --task {3} shows it)\n",
         TranslateComposed(one.why), TranslateComposed(one.practise), one.exercise);
-    Say("   Rule {1}: {2} {3}, threshold {4}.\n", one.rule, ShownNumber(one.numbers.deviation, 3),
-        one.numbers.expert_mean ? Translate("standard deviations beyond scripted experts")
-                                : Translate("times what is let pass"),
-        ShownNumber(one.numbers.threshold, 3));
+    Say("   Rule {1}: {2} {3}, threshold {4}.\n", one.rule, host::ShownNumber(one.numbers.deviation, 3),
+        one.numbers.expert_mean ? host::Translate("standard deviations beyond scripted experts")
+                                : host::Translate("times what is let pass"),
+        host::ShownNumber(one.numbers.threshold, 3));
   }
   if (reference == nullptr)
     Say("No expert set is known for \"{1}\": only absolute rules were asked.\n", task);

@@ -28,22 +28,4 @@ void PrintJson(const Json& json) {
   host::PrintJsonText(host::FormatJson(json, 2));
 }
 
-using host::FormatFields;
-using host::FormatShownTable;
-using host::Mark;
-using host::Print;
-using host::PrintErrorLine;
-using host::PrintLine;
-using host::PrintLines;
-using host::PrintTable;
-using host::ProgressBar;
-using host::Say;
-using host::ShownFixed;
-using host::ShownNumber;
-using host::Translate;
-using host::TranslateComposed;
-using host::TranslateCount;
-using host::TranslateWith;
-using host::WrapText;
-
 }  // namespace trocar::cli

@@ -19,6 +19,14 @@
 #include "trocar/assessment/preparation.h"
 
 namespace trocar::cli {
+
+using host::Mark;
+using host::PrintLine;
+using host::Say;
+using host::ShownNumber;
+using host::Translate;
+using host::TranslateWith;
+
 namespace {
 
 using assessment::Attempt;
@@ -29,7 +37,7 @@ using nlohmann::ordered_json;
 constexpr std::size_t kWidth = 100;  // of printed words [columns]
 
 void PrintParagraph(const std::string& text, const std::string& indent) {
-  PrintLines(WrapText(Translate(text), kWidth, indent));
+  host::PrintLines(host::WrapText(Translate(text), kWidth, indent));
 }
 
 std::string WhatOf(const Step& step) {
@@ -42,8 +50,8 @@ std::string WhatOf(const Step& step) {
 }
 
 std::string PassesOf(const Step& step) {
-  std::string text =
-      TranslateCount("{1} pass", "{1} passes in a row", static_cast<std::size_t>(step.consecutive_passes));
+  std::string text = host::TranslateCount("{1} pass", "{1} passes in a row",
+                                          static_cast<std::size_t>(step.consecutive_passes));
   if (step.passes > step.consecutive_passes)
     text += TranslateWith(", {1} in all", {std::to_string(step.passes)});
   return text;
@@ -55,7 +63,7 @@ base::Status List() {
   std::vector<std::vector<std::string>> rows = {{"course", "steps", "name"}};
   for (const Course& course : *courses)
     rows.push_back({course.key, std::to_string(course.steps.size()), Translate(course.name)});
-  PrintTable(rows);
+  host::PrintTable(rows);
   return {};
 }
 
@@ -105,7 +113,7 @@ base::Status Start(const std::string& name, const std::string& step_key, const s
   assessment::PreparationSettings settings;
   settings.cache = cache;
   settings.threads = threads;
-  ProgressBar bar("the expert operates up to this step", 600.0);
+  host::ProgressBar bar("the expert operates up to this step", 600.0);
   settings.progress = [&](double seconds, const std::string& doing) {
     bar.SetLabel(ShownNumber(seconds, 3) + " s, " + Translate(doing));
     bar.Show(seconds);
@@ -160,7 +168,7 @@ base::Status Judge(const JudgeArguments& arguments, Outcome& outcome) {
   }
   auto recording = record::ReadRecording(arguments.recording);
   if (!recording.ok()) return recording.error();
-  ProgressBar bar("replaying", 1.0);
+  host::ProgressBar bar("replaying", 1.0);
   assessment::ReplaySettings settings;
   settings.threads = arguments.threads;
   settings.progress = [&](double share) { return bar.Show(share), true; };
@@ -216,7 +224,7 @@ std::vector<std::string> DescribeLearning(const Course& course, const Step& step
                              ShownNumber(curve->rate, 3), ShownNumber(curve->rms, 2)}) +
                   (curve->is_rate_at_bound ? Translate("; too few attempts to tell where it leads") : ""));
   } else {
-    lines.push_back(TranslateWith("time: {1}", {TranslateComposed(curve.error().message)}));
+    lines.push_back(TranslateWith("time: {1}", {host::TranslateComposed(curve.error().message)}));
   }
   if (const auto trend = assessment::CalcTrend(times, assessment::Better::kLower); trend.ok()) {
     const char* const words[] = {Mark("no trend"), Mark("getting faster"), Mark("getting slower")};
@@ -303,7 +311,7 @@ base::Status Progress(const ProgressArguments& arguments) {
          of(now.passes, step.passes), of(now.longest_run, step.consecutive_passes),
          now.due ? assessment::FormatDay(*now.due) + (now.is_overdue ? Translate(", overdue") : "") : "-"});
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
   for (const Step& step : course->steps) {
     const auto lines = DescribeLearning(*course, step, *attempts);
     if (lines.empty()) continue;

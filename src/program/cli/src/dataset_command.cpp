@@ -65,17 +65,17 @@ base::Status Make(const DatasetArguments& arguments) {
   plan.recordings.assign(arguments.recordings.begin(), arguments.recordings.end());
   plan.has_variation = !arguments.has_no_variation;
   plan.has_pictures = !arguments.has_no_pictures;
-  ProgressBar progress("videos", 1.0);
+  host::ProgressBar progress("videos", 1.0);
   const auto made = dataset::WriteDataset(plan, arguments.output, [&](double share, std::string_view doing) {
     progress.SetLabel(doing);
     progress.Show(share);
   });
   progress.Finish();
   if (!made) return made.error();
-  Say("{1} holds {2} videos, {3} labelled frames, {4} files; {5} frames a second\n", arguments.output,
-      made->videos, made->frames, made->files,
-      ShownNumber(static_cast<double>(made->frames) / made->seconds, 3));
-  Say("SHA-256 of SHA256SUMS: {1}\n", made->hash);
+  host::Say("{1} holds {2} videos, {3} labelled frames, {4} files; {5} frames a second\n", arguments.output,
+            made->videos, made->frames, made->files,
+            host::ShownNumber(static_cast<double>(made->frames) / made->seconds, 3));
+  host::Say("SHA-256 of SHA256SUMS: {1}\n", made->hash);
   return {};
 }
 

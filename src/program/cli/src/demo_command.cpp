@@ -36,6 +36,13 @@
 #include "trocar/view/demo.h"
 
 namespace trocar::cli {
+
+using host::Say;
+using host::ShownNumber;
+using host::Translate;
+using host::TranslateComposed;
+using host::TranslateWith;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,7 +144,7 @@ base::Status Play(const DemoArguments& arguments) {
   options.threads = arguments.threads;
   options.output_folder = part.Path();
   std::optional<record::TraceBuilder> trace;
-  std::array<scene::HandControls, scene::kHandCount> controls{};
+  std::array<scene::HandControls, instrument::kHandCount> controls{};
   std::unique_ptr<net::IgtlServer> server;
   std::unique_ptr<HapticInput> haptics;
   options.on_start = [&](const simulation::Simulation& simulation) -> base::Status {
@@ -173,7 +180,7 @@ base::Status Play(const DemoArguments& arguments) {
     if (haptics != nullptr) haptics->Apply(time, input);
     controls = input.controls;
   };
-  ProgressBar progress("playing", 1.0);
+  host::ProgressBar progress("playing", 1.0);
   options.on_progress = [&](double done) { progress.Show(done); };
   const base::Result<view::DemoReport> played = view::PlayDemonstration(*scene, options);
   progress.Finish();

@@ -91,7 +91,8 @@ base::Result<WatchReport> WatchDevice(device::Driver& driver, double seconds,
 }
 
 void PrintHeldBack(const WatchReport& report) {
-  for (const std::string& sentence : report.held_back) Say("Not used: {1}\n", TranslateComposed(sentence));
+  for (const std::string& sentence : report.held_back)
+    host::Say("Not used: {1}\n", host::TranslateComposed(sentence));
 }
 
 namespace {
@@ -113,13 +114,13 @@ std::string FormatHands(const HandSamples& samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const device::HandSample& hand = samples[i];
     const auto number = [](double value, std::size_t width) {
-      const std::string shown = ShownFixed(value, 1);
+      const std::string shown = host::ShownFixed(value, 1);
       return std::string(width - std::min(width, shown.size()), ' ') + shown;
     };
-    std::string name = Translate(kNames[i]);
+    std::string name = host::Translate(kNames[i]);
     name.resize(std::max<std::size_t>(name.size(), 11), ' ');
     if (!hand.is_valid) {
-      text += name + " " + Translate("not seen") + "\n";
+      text += name + " " + host::Translate("not seen") + "\n";
       continue;
     }
     text += host::TranslateWith("{1} pan {2}  tilt {3}  spin {4}  depth {5}  jaw {6}  buttons {7}",
@@ -140,7 +141,7 @@ void HandPlot::Show(const HandSamples& samples, double time) {
   if (!is_terminal_) {
     if (time < next_) return;
     next_ = time + kPrintPeriod;
-    PrintLines(ShownFixed(time, 1) + " s\n" + FormatHands(samples));
+    host::PrintLines(host::ShownFixed(time, 1) + " s\n" + FormatHands(samples));
     std::fflush(stdout);
     return;
   }
@@ -149,9 +150,9 @@ void HandPlot::Show(const HandSamples& samples, double time) {
   is_drawn_ = true;
   const std::string text = FormatHands(samples);
   for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
-    Print(text.substr(at, end - at));
+    host::Print(text.substr(at, end - at));
     host::WriteControl(stdout, "\033[K");
-    PrintLine();
+    host::PrintLine();
   }
   std::fflush(stdout);
 }

@@ -14,10 +14,16 @@
 #include "trocar/device/device_spec.h"
 
 namespace trocar::cli {
+
+using host::Mark;
+using host::Say;
+using host::Translate;
+using host::TranslateWith;
+
 namespace {
 
 using device::HandCalibration;
-using device::Pose;
+using math::Pose;
 
 struct CalibrateOptions {
   std::string spec, hand = "left";
@@ -30,7 +36,7 @@ int FindHand(const std::string& name) {
 }
 
 void Announce(const std::string& text, double wait) {
-  PrintLine(text);
+  host::PrintLine(text);
   for (int left = static_cast<int>(wait); left > 0; --left) {
     Say("  starting in {1} s\n", left);
     std::fflush(stdout);
@@ -41,7 +47,7 @@ void Announce(const std::string& text, double wait) {
 /// Poses of one hand's sensor while the person moves it.
 base::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int hand, double seconds) {
   std::vector<Pose> poses;
-  ProgressBar progress("measuring", seconds);
+  host::ProgressBar progress("measuring", seconds);
   const auto report = WatchDevice(driver, seconds, [&](const HandSamples& samples, double time) {
     progress.Show(time);
     const Pose* pose = driver.GetSensorPose(hand);
@@ -63,7 +69,7 @@ base::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int han
 }
 
 void PrintQuality(const char* what, const device::FitQuality& quality, std::size_t poses) {
-  PrintLine("  " + Translate(what) + " " + device::FormatQuality(quality, poses));
+  host::PrintLine("  " + Translate(what) + " " + device::FormatQuality(quality, poses));
 }
 
 base::Status Keep(const device::DeviceStore& store) {

@@ -18,6 +18,11 @@
 #include "trocar/host/safe_file.h"
 
 namespace trocar::cli {
+
+using host::PrintLines;
+using host::Say;
+using host::Translate;
+
 namespace {
 
 constexpr const char* kSpecHelp =
@@ -58,7 +63,7 @@ void PrintButtons(const device::DeviceStore& store) {
     }
   }
   for (const auto& [key, act] : store.keys)
-    rows.push_back({"  " + TranslateWith("keyboard key {1}", {key}), Translate("chosen"),
+    rows.push_back({"  " + host::TranslateWith("keyboard key {1}", {key}), Translate("chosen"),
                     std::string(device::ActName(act))});
   PrintLines(host::FormatTable(rows));
 }
@@ -80,7 +85,7 @@ void List(bool is_json) {
   }
   Say("Found:\n");
   for (const device::FoundDevice& one : found)
-    PrintLine("  " + one.spec + "   " + TranslateComposed(one.description));
+    host::PrintLine("  " + one.spec + "   " + host::TranslateComposed(one.description));
   if (found.empty()) Say("  nothing but mouse and keyboard\n");
   Say("\nKinds of device (write KIND:ADDRESS):\n");
   std::vector<std::vector<std::string>> rows;
@@ -100,10 +105,10 @@ void PrintReport(const WatchReport& report) {
   std::vector<std::vector<std::string>> rows = {{"hand", "samples", "a second", "out of sight"}};
   for (std::size_t i = 0; i < report.fresh.size(); ++i) {
     rows.push_back({Translate(kChannels[i]), std::to_string(report.fresh[i]),
-                    ShownNumber(report.seconds > 0 ? report.fresh[i] / report.seconds : 0, 3),
+                    host::ShownNumber(report.seconds > 0 ? report.fresh[i] / report.seconds : 0, 3),
                     std::to_string(report.unseen[i])});
   }
-  PrintLines("\n" + FormatShownTable(rows));
+  PrintLines("\n" + host::FormatShownTable(rows));
   if (!report.received.empty()) Say("Received: {1}\n", report.received);
   PrintHeldBack(report);
 }

@@ -12,6 +12,9 @@
 #include "trocar/host/text_table.h"
 
 namespace trocar::cli {
+
+using host::TranslateComposed;
+
 namespace {
 
 using doctor::Finding;
@@ -45,13 +48,13 @@ void PrintForPerson(const std::vector<Finding>& findings) {
                     ShownFound(finding.found)});
     rows.push_back({"", "", TranslateComposed(finding.meaning)});
     if (!finding.remedy.empty())
-      rows.push_back({"", "", TranslateWith("to mend: {1}", {TranslateComposed(finding.remedy)})});
+      rows.push_back({"", "", host::TranslateWith("to mend: {1}", {TranslateComposed(finding.remedy)})});
   }
-  PrintLines(host::FormatTable(rows));
+  host::PrintLines(host::FormatTable(rows));
   const auto missing = std::count_if(findings.begin(), findings.end(), [](const Finding& finding) {
     return finding.health == Health::kMissing;
   });
-  Say(missing == 0 ? "\nTrocar runs here.\n" : "\nSomething is missing: mend what is named above.\n");
+  host::Say(missing == 0 ? "\nTrocar runs here.\n" : "\nSomething is missing: mend what is named above.\n");
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ void PrintForPerson() {
   std::vector<std::vector<std::string>> rows = {{"code", "meaning"}};
   for (const base::ErrorEntry& entry : base::ErrorTable()) {
     if (entry.code != base::ErrorCode::kNone)
-      rows.push_back({std::string(entry.text), Translate(entry.meaning)});
+      rows.push_back({std::string(entry.text), host::Translate(entry.meaning)});
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
 }
 
 void PrintMarkdown() {
@@ -37,7 +37,7 @@ void PrintMarkdown() {
       stdout);
   for (const base::ErrorEntry& entry : base::ErrorTable()) {
     if (entry.code == base::ErrorCode::kNone) continue;
-    PrintLine("| `" + std::string(entry.text) + "` | " + std::string(entry.meaning) + " |");
+    host::PrintLine("| `" + std::string(entry.text) + "` | " + std::string(entry.meaning) + " |");
   }
 }
 

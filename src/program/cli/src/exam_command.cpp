@@ -17,6 +17,9 @@
 #include "trocar/record/recording.h"
 
 namespace trocar::cli {
+
+using host::Say;
+
 namespace {
 
 using assessment::ExamSettings;
@@ -78,7 +81,7 @@ base::Status RunExam(const RunArguments& arguments) {
   if (!simulation.ok()) return simulation.error();
   auto recording = AttemptRecording::Start(arguments.record, *description, *simulation);
   if (!recording.ok()) return recording.error();
-  ProgressBar bar("exam", arguments.most_seconds);
+  host::ProgressBar bar("exam", arguments.most_seconds);
   while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < arguments.most_seconds) {
     const scene::Input input = (*surgeon)->Act(simulation->GetSnapshot());
     simulation->Step(input);
@@ -91,7 +94,7 @@ base::Status RunExam(const RunArguments& arguments) {
       "--key "
       "FILE -o "
       "CERTIFICATE\n",
-      arguments.record, ShownNumber(simulation->GetSnapshot().time, 4), exam->name, arguments.file);
+      arguments.record, host::ShownNumber(simulation->GetSnapshot().time, 4), exam->name, arguments.file);
   return {};
 }
 

@@ -32,7 +32,7 @@ std::string NextStep(const session::HapticStatus& status) {
     case haptics::CheckPoseState::kAsking:
       break;
   }
-  return status.asked == scene::kLeft
+  return status.asked == instrument::kLeft
              ? host::Translate("bring the left device to the middle of its reach and hold its first button")
              : host::Translate("bring the right device to the middle of its reach and hold its first button");
 }
@@ -81,7 +81,7 @@ void HapticInput::Apply(double time, scene::Input& input) {
 }
 
 void HapticInput::AfterStep(simulation::Simulation& simulation) {
-  for (const scene::Hand hand : {scene::kLeft, scene::kRight}) {
+  for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight}) {
     simulation.CutPatch(hand, link_.patches[hand].Back());
     link_.patches[hand].Publish();
   }

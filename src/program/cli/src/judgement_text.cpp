@@ -9,6 +9,11 @@
 #include "trocar/training/metric_definition.h"
 
 namespace trocar::cli {
+
+using host::Mark;
+using host::ShownNumber;
+using host::Translate;
+
 namespace {
 
 using assessment::Better;
@@ -22,8 +27,8 @@ std::string FormatMetric(const std::string& metric, double value) {
 }
 
 std::string FormatBound(const assessment::Threshold& threshold) {
-  return TranslateWith(threshold.better == Better::kLower ? Mark("at most {1}") : Mark("at least {1}"),
-                       {FormatMetric(threshold.of.metric, threshold.value)});
+  return host::TranslateWith(threshold.better == Better::kLower ? Mark("at most {1}") : Mark("at least {1}"),
+                             {FormatMetric(threshold.of.metric, threshold.value)});
 }
 
 /// As assessment::TextOf, for a person: the metric's own name and the hand.
@@ -34,7 +39,7 @@ std::string ShownKey(const assessment::MetricKey& key) {
     text += ", " + (key.hand == "camera" ? Translate("camera")
                     : key.hand == "left" ? Translate("left hand")
                                          : Translate("right hand"));
-  return key.phase.empty() ? text : TranslateWith("{1}, in {2}", {text, Translate(key.phase)});
+  return key.phase.empty() ? text : host::TranslateWith("{1}, in {2}", {text, Translate(key.phase)});
 }
 
 }  // namespace
@@ -45,7 +50,7 @@ std::string DescribeThreshold(const assessment::Threshold& threshold) {
 }
 
 void PrintVerdict(const assessment::Verdict& verdict) {
-  if (!verdict.is_completed) Say("  not completed\n");
+  if (!verdict.is_completed) host::Say("  not completed\n");
   std::vector<std::vector<std::string>> rows = {{"", "metric", "reached", "needed", "for"}};
   for (const auto& one : verdict.metrics) {
     const auto& threshold = one.threshold;
@@ -53,12 +58,12 @@ void PrintVerdict(const assessment::Verdict& verdict) {
                     one.value ? FormatMetric(threshold.of.metric, *one.value) : Translate("not defined"),
                     FormatBound(threshold), Translate(NameOf(threshold.purpose))});
   }
-  if (rows.size() > 1) PrintTable(rows);
+  if (rows.size() > 1) host::PrintTable(rows);
   if (verdict.composite) {
-    if (!verdict.grade.empty()) Print(verdict.grade + ": ");
-    Say(*verdict.composite < 0 ? "{1} deviations below the mean of the expert set\n"
-                               : "{1} deviations above the mean of the expert set\n",
-        ShownNumber(std::abs(*verdict.composite), 3));
+    if (!verdict.grade.empty()) host::Print(verdict.grade + ": ");
+    host::Say(*verdict.composite < 0 ? "{1} deviations below the mean of the expert set\n"
+                                     : "{1} deviations above the mean of the expert set\n",
+              ShownNumber(std::abs(*verdict.composite), 3));
   }
 }
 

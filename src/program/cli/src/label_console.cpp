@@ -9,6 +9,9 @@
 
 namespace trocar::cli {
 
+using host::Say;
+using host::TranslateComposed;
+
 void PrintLabels(const std::vector<patient::SourceLabel>& labels) {
   // in the order of the first of each
   std::vector<std::pair<std::string, std::string>> others;
@@ -29,7 +32,7 @@ void PrintLabels(const std::vector<patient::SourceLabel>& labels) {
   }
   for (const auto& [reason, names] : others)
     Say("Neighbours: {1}. Why: {2}.\n", names, TranslateComposed(reason));
-  if (!labels.empty()) PrintLine();
+  if (!labels.empty()) host::PrintLine();
 }
 
 }  // namespace trocar::cli

@@ -18,6 +18,11 @@
 #include "trocar/training/metric_definition.h"
 
 namespace trocar::cli {
+
+using host::PrintLine;
+using host::PrintLines;
+using host::WrapText;
+
 namespace {
 
 using assessment::Attempt;
@@ -76,7 +81,7 @@ base::Result<Threshold> ParseMetric(const std::string& text) {
 }
 
 base::Result<std::vector<Attempt>> Replay(const std::vector<std::string>& files, int threads,
-                                          ProgressBar& bar, double& done) {
+                                          host::ProgressBar& bar, double& done) {
   std::vector<Attempt> attempts;
   for (const std::string& file : files) {
     auto recording = record::ReadRecording(file);
@@ -105,7 +110,8 @@ std::vector<assessment::AttemptResult> ResultsOf(const std::vector<Attempt>& att
 }
 
 base::Status Make(const LevelsArguments& arguments) {
-  ProgressBar bar("replaying", static_cast<double>(arguments.experts.size() + arguments.novices.size()));
+  host::ProgressBar bar("replaying",
+                        static_cast<double>(arguments.experts.size() + arguments.novices.size()));
   double done = 0;
   const auto experts = Replay(arguments.experts, arguments.threads, bar, done);
   if (!experts.ok()) return experts.error();
@@ -136,7 +142,7 @@ base::Status Make(const LevelsArguments& arguments) {
   if (const auto written = host::WriteFile(arguments.output, FormatProficiency(*made)); !written.ok())
     return written;
   for (const Threshold& threshold : made->thresholds) PrintLine(DescribeThreshold(threshold));
-  Say("{1} holds them; edit it, and name it in a course\n", arguments.output);
+  host::Say("{1} holds them; edit it, and name it in a course\n", arguments.output);
   return {};
 }
 
@@ -148,24 +154,26 @@ base::Status List() {
     const std::string source = one.source.size() > 60 ? one.source.substr(0, 57) + "..." : one.source;
     rows.push_back({one.key, one.task, one.level.empty() ? "-" : one.level, source});
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
   return {};
 }
 
 base::Status Show(const std::string& name) {
   const auto one = assessment::FindProficiency(name);
   if (!one.ok()) return one.error();
-  PrintLine((one->level.empty() ? one->task : TranslateWith("{1}, level {2}", {one->task, one->level})));
+  PrintLine(
+      (one->level.empty() ? one->task : host::TranslateWith("{1}, level {2}", {one->task, one->level})));
   if (!one->about.empty()) PrintLines(WrapText(one->about, 100, ""));
-  PrintLines(WrapText(TranslateWith("Source: {1}", {one->source}), 100, ""));
+  PrintLines(WrapText(host::TranslateWith("Source: {1}", {one->source}), 100, ""));
   for (const Threshold& threshold : one->thresholds) {
     PrintLine();
     PrintLine(DescribeThreshold(threshold));
     PrintLines(WrapText(threshold.source, 100, "  "));
   }
   for (const auto& grade : one->grades)
-    Say(&grade == one->grades.data() ? "\n{1} from {2} deviations on\n" : "{1} from {2} deviations on\n",
-        Translate(grade.name), ShownNumber(grade.at_least, 3));
+    host::Say(
+        &grade == one->grades.data() ? "\n{1} from {2} deviations on\n" : "{1} from {2} deviations on\n",
+        host::Translate(grade.name), host::ShownNumber(grade.at_least, 3));
   return {};
 }
 

@@ -7,6 +7,9 @@
 #include "console.h"
 
 namespace trocar::cli {
+
+using host::Translate;
+
 namespace {
 
 using training::AttemptMetrics;
@@ -14,7 +17,7 @@ using training::MetricDefinition;
 using training::MetricValue;
 
 std::string ShownValue(const MetricDefinition& definition, const double* value) {
-  return value == nullptr ? std::string() : ShownNumber(*value * definition.shown_scale, 4);
+  return value == nullptr ? std::string() : host::ShownNumber(*value * definition.shown_scale, 4);
 }
 
 std::string BetterText(const MetricDefinition& definition) {
@@ -33,8 +36,8 @@ std::string FormatTables(const std::vector<MetricRow>& rows) {
                        row.right.empty() ? "-" : row.right, d.shown_unit, BetterText(d)});
   }
   std::string text;
-  if (attempt.size() > 1) text += FormatShownTable(attempt);
-  if (hands.size() > 1) text += (text.empty() ? "" : "\n") + FormatShownTable(hands);
+  if (attempt.size() > 1) text += host::FormatShownTable(attempt);
+  if (hands.size() > 1) text += (text.empty() ? "" : "\n") + host::FormatShownTable(hands);
   return text;
 }
 
@@ -73,8 +76,8 @@ std::string FormatMetricsText(const AttemptMetrics& metrics, bool has_parts) {
   }
   for (const auto& [phase, tool] : parts) {
     text += "\n" +
-            host::PrintableLine(tool.empty() ? TranslateWith("Phase: {1}", {ShownName(phase)})
-                                             : TranslateWith("While using: {1}", {ShownName(tool)})) +
+            host::PrintableLine(tool.empty() ? host::TranslateWith("Phase: {1}", {ShownName(phase)})
+                                             : host::TranslateWith("While using: {1}", {ShownName(tool)})) +
             "\n\n" + FormatTables(MakeMetricRows(metrics, phase, tool));
   }
   return text;

@@ -23,6 +23,9 @@
 #include "validity_note.h"
 
 namespace trocar::cli {
+
+using host::Translate;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -66,7 +69,7 @@ base::Result<TracedFile> TraceAttempt(const MetricsArguments& arguments) {
                {"started", d.started},
                {"seconds", recording->Seconds()},
                {"finished", recording->ending.has_value()}};
-  ProgressBar progress("replaying", 1.0);
+  host::ProgressBar progress("replaying", 1.0);
   auto trace = record::TraceRecording(std::move(*recording), arguments.threads,
                                       [&](double share) { progress.Show(share); });
   progress.Finish();
@@ -89,10 +92,10 @@ std::string FormatWords(const TracedFile& traced, const AttemptMetrics& metrics,
                         const training::Validity& validity) {
   std::string text, note;
   if (traced.of.contains("of")) {
-    text += host::PrintableLine(TranslateWith("{1}, played by {2}, {3} s",
-                                              {traced.of["of"].get<std::string>(),
-                                               TranslateComposed(traced.of["player"].get<std::string>()),
-                                               ShownNumber(traced.trace.Seconds())})) +
+    text += host::PrintableLine(host::TranslateWith(
+                "{1}, played by {2}, {3} s", {traced.of["of"].get<std::string>(),
+                                              host::TranslateComposed(traced.of["player"].get<std::string>()),
+                                              host::ShownNumber(traced.trace.Seconds())})) +
             (traced.of["finished"] == true ? "" : Translate(" (the recording was not finished)")) + "\n\n";
     const std::string task = TaskKey(traced.of["of"].get<std::string>());
     note = FormatValidityNote(metrics, task, validity.FindTask(task)) + "\n";
@@ -104,7 +107,7 @@ std::string FormatWords(const TracedFile& traced, const AttemptMetrics& metrics,
 
 base::Status PutOut(const std::string& text, const std::string& output) {
   if (!output.empty()) return host::WriteFile(output, text);
-  PrintLines(text);
+  host::PrintLines(text);
   return {};
 }
 
@@ -117,7 +120,7 @@ base::Status List(const MetricsArguments& arguments) {
                     d.better == training::BetterWhen::kNeither ? "" : Translate(NameOf(d.better)),
                     Translate(d.about)});
   }
-  return PutOut(FormatShownTable(rows), arguments.output);
+  return PutOut(host::FormatShownTable(rows), arguments.output);
 }
 
 base::Status Measure(const MetricsArguments& arguments) {

@@ -25,9 +25,9 @@ base::Status PrintPictures() {
   std::vector<std::vector<std::string>> rows = {{"picture", "task", "surgeon", "what"}};
   for (const view::SeriesSitting& sitting : view::ListPictureSeries()) {
     for (const view::SeriesShot& shot : sitting.shots)
-      rows.push_back({shot.name, sitting.task, sitting.surgeon, Translate(shot.about)});
+      rows.push_back({shot.name, sitting.task, sitting.surgeon, host::Translate(shot.about)});
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
   return {};
 }
 
@@ -45,7 +45,7 @@ base::Status MakePictures(const PicturesArguments& arguments, Outcome& outcome) 
   if (arguments.is_plain) options.view.quality = render::Quality::kLow;
   PartFolder part(arguments.output);
   options.output = part.Path();
-  ProgressBar progress("pictures", 1.0);
+  host::ProgressBar progress("pictures", 1.0);
   options.on_progress = [&](double share, std::string_view doing) {
     progress.SetLabel(doing);
     progress.Show(share);
@@ -58,11 +58,11 @@ base::Status MakePictures(const PicturesArguments& arguments, Outcome& outcome) 
   std::size_t missing = 0;
   for (const view::SeriesPicture& picture : *pictures) {
     missing += picture.has_come ? 0 : 1;
-    rows.push_back({picture.name, ShownNumber(picture.time, 4), ShownNumber(1e3 * picture.draw_median, 3),
-                    Translate(picture.about)});
+    rows.push_back({picture.name, host::ShownNumber(picture.time, 4),
+                    host::ShownNumber(1e3 * picture.draw_median, 3), host::Translate(picture.about)});
   }
-  PrintTable(rows);
-  Say("{1} holds {2} pictures\n", arguments.output, pictures->size() - missing);
+  host::PrintTable(rows);
+  host::Say("{1} holds {2} pictures\n", arguments.output, pictures->size() - missing);
   outcome.has_finding = missing > 0;
   return {};
 }

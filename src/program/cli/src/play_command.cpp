@@ -35,6 +35,12 @@
 #include "validity_note.h"
 
 namespace trocar::cli {
+
+using host::PrintLine;
+using host::Say;
+using host::ShownNumber;
+using host::Translate;
+
 namespace {
 
 using scene::TaskPhase;
@@ -48,7 +54,7 @@ struct PlayArguments {
   std::uint64_t seed = 1;
   int threads = 1;
   double most_seconds = 3600;
-  PlayFiles files;
+  assessment::PlayFiles files;
   bool is_json = false, is_list = false;
 };
 
@@ -116,7 +122,7 @@ nlohmann::ordered_json ErrorJson(const scene::Scene& scene, const scene::TaskErr
                                  {"time_s", error.time},
                                  {"at_mm", {1e3 * p.x, 1e3 * p.y, 1e3 * p.z}}};
   if (error.object >= 0) json["object"] = scene.objects[static_cast<std::size_t>(error.object)].name;
-  if (error.hand >= 0) json["hand"] = error.hand == scene::kLeft ? "left" : "right";
+  if (error.hand >= 0) json["hand"] = error.hand == instrument::kLeft ? "left" : "right";
   return json;
 }
 
@@ -152,16 +158,17 @@ void PrintForProgram(const scene::Scene& scene, const PlayReport& report) {
 
 std::string FormatShownScore(const scene::Task& task, const scene::TaskSnapshot& now) {
   const std::string score = ShownNumber(scene::CalcShownScore(task, now), 4);
-  return task.reference_points > 0 ? TranslateWith("{1} of {2}", {score, ShownNumber(task.best_score, 4)})
-                                   : TranslateWith("{1} points", {score});
+  return task.reference_points > 0
+             ? host::TranslateWith("{1} of {2}", {score, ShownNumber(task.best_score, 4)})
+             : host::TranslateWith("{1} points", {score});
 }
 
 void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
   const auto done = std::count_if(report.task.goals.begin(), report.task.goals.end(),
                                   [](const auto& goal) { return goal.is_done; });
-  Say("{1}, level {2}: {3} after {4} s, {5} of {6} goals, score {7}\n", TranslateComposed(scene.task->name),
-      Translate(scene.task->level),
-      Translate(report.gave_up ? Mark("given up") : scene::PhaseName(report.task.phase)),
+  Say("{1}, level {2}: {3} after {4} s, {5} of {6} goals, score {7}\n",
+      host::TranslateComposed(scene.task->name), Translate(scene.task->level),
+      Translate(report.gave_up ? host::Mark("given up") : scene::PhaseName(report.task.phase)),
       ShownNumber(report.task.time, 4), done, report.task.goals.size(),
       FormatShownScore(*scene.task, report.task));
   for (std::size_t e = 0; e < scene.task->errors.size(); ++e) {
@@ -178,7 +185,7 @@ constexpr std::size_t kListWidth = 100;  // columns
 
 /// A task in one line, and below it who can do it, in lines that a terminal holds.
 void PrintTask(const std::string& key, const std::string& levels, const scene::Scene& scene) {
-  PrintLine(key + (levels.empty() ? "" : " (" + levels + ")") + ": " + TranslateComposed(scene.name));
+  PrintLine(key + (levels.empty() ? "" : " (" + levels + ")") + ": " + host::TranslateComposed(scene.name));
   std::string line = "   ";
   for (const agent::SurgeonEntry& entry : agent::ListSurgeons()) {
     if (!entry.suits(scene)) continue;
@@ -214,7 +221,7 @@ base::Status PrintList() {
   std::vector<std::vector<std::string>> rows = {{"surgeon", "error", "about"}};
   for (const agent::SurgeonEntry& entry : agent::ListSurgeons())
     rows.push_back({entry.name, *entry.error == 0 ? "-" : entry.error, Translate(entry.about)});
-  PrintTable(rows);
+  host::PrintTable(rows);
   return {};
 }
 
@@ -253,7 +260,7 @@ base::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
   run_report.Start(simulation);
   Watcher watcher(*scene);
   const std::size_t goals = scene->task->goals.size();
-  ProgressBar progress("playing", static_cast<double>(goals));
+  host::ProgressBar progress("playing", static_cast<double>(goals));
   while (!surgeon.HasFinished() && simulation.GetSnapshot().time < arguments.most_seconds) {
     const scene::Input input = surgeon.Act(simulation.GetSnapshot());
     simulation.Step(input);
@@ -271,7 +278,8 @@ base::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
   if (auto finished = recording->Finish(simulation); !finished) return finished.error();
   if (auto written = run_report.Write(); !written) return written.error();
   if (!arguments.files.save.empty()) {
-    if (auto saved = SavePlay(arguments.files.save, arguments.files.who, simulation, surgeon); !saved)
+    if (auto saved = assessment::SavePlay(arguments.files.save, arguments.files.who, simulation, surgeon);
+        !saved)
       return saved.error();
   }
   return watcher.Finish(simulation.GetSnapshot(), simulation.Hash());
@@ -288,7 +296,7 @@ base::Result<PlayReport> PlayForTheEye(std::shared_ptr<const scene::Scene> scene
   PartFolder part(arguments.output);
   options.output_folder = part.Path();
   Watcher watcher(*scene);
-  ProgressBar progress("playing", static_cast<double>(scene->task->goals.size()));
+  host::ProgressBar progress("playing", static_cast<double>(scene->task->goals.size()));
   options.surgeon = &surgeon;
   options.duration = arguments.most_seconds;
   Snapshot last;

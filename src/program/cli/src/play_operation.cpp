@@ -20,6 +20,11 @@
 #include "trocar/view/demo.h"
 
 namespace trocar::cli {
+
+using host::Say;
+using host::ShownNumber;
+using host::Translate;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -54,7 +59,7 @@ ordered_json ErrorJson(const cholecystectomy::ErrorEntry& entry) {
                        {"severity", cholecystectomy::NameOf(cholecystectomy::SeverityOf(entry.error))},
                        {"time_s", entry.time},
                        {"at_mm", {1e3 * entry.place.x, 1e3 * entry.place.y, 1e3 * entry.place.z}}};
-  if (entry.hand >= 0 && entry.hand < scene::kHandCount) json["hand"] = kHands[entry.hand];
+  if (entry.hand >= 0 && entry.hand < instrument::kHandCount) json["hand"] = kHands[entry.hand];
   return json;
 }
 
@@ -100,7 +105,7 @@ ordered_json MakeJson(const OperationResult& result, const Run& run, const std::
 void PrintForPerson(const scene::Scene& scene, const OperationResult& result, const Run& run,
                     const std::string& bail_out) {
   Say(result.is_completed ? "{1}: completed after {2} s\n" : "{1}: not completed after {2} s\n",
-      TranslateComposed(scene.name), ShownNumber(run.seconds, 4));
+      host::TranslateComposed(scene.name), ShownNumber(run.seconds, 4));
   if (!bail_out.empty()) {
     Say("Ended early: {1}.\n", Translate(bail_out));
     Say(EndOf(result, bail_out) == cholecystectomy::OperationEnd::kConversion
@@ -111,21 +116,21 @@ void PrintForPerson(const scene::Scene& scene, const OperationResult& result, co
                                         : "Critical view of safety: not achieved\n");
   if (!result.was_critical_view_achieved) {
     for (const std::string& reason : cholecystectomy::ExplainCriticalView(result.facts, result.critical_view))
-      PrintLine("  " + TranslateComposed(reason));
+      host::PrintLine("  " + host::TranslateComposed(reason));
   }
   for (std::size_t i = 0; i < cholecystectomy::kOperationErrorCount; ++i) {
     const auto error = static_cast<cholecystectomy::OperationError>(i);
     const std::size_t count = result.errors.Count(error);
     if (count == 0) continue;
-    PrintLine("  " + std::to_string(count) + " x " + ShownName(cholecystectomy::NameOf(error)) + " (" +
-              Translate(cholecystectomy::NameOf(cholecystectomy::SeverityOf(error))) +
-              "): " + Translate(cholecystectomy::ExplanationOf(error)));
+    host::PrintLine("  " + std::to_string(count) + " x " + ShownName(cholecystectomy::NameOf(error)) + " (" +
+                    Translate(cholecystectomy::NameOf(cholecystectomy::SeverityOf(error))) +
+                    "): " + Translate(cholecystectomy::ExplanationOf(error)));
   }
   Say("Blood {1} mL, bile {2} mL; injury by Strasberg: {3}\n",
       ShownNumber(Left(result, surgery::Fluid::kBlood), 3),
       ShownNumber(Left(result, surgery::Fluid::kBile), 3),
       Translate(cholecystectomy::StrasbergName(result.injuries.strasberg)));
-  const simulation::StoneCount& stones = result.stones;
+  const surgery::StoneCount& stones = result.stones;
   if (stones.inside < stones.all) {
     Say("Of {1} stones {2} came out of the gallbladder; spilled and not retrieved: {3}\n", stones.all,
         stones.all - stones.inside, stones.spilled);
@@ -137,7 +142,7 @@ void PrintForPerson(const scene::Scene& scene, const OperationResult& result, co
 }
 
 std::string Progress(const Snapshot& now, std::string_view doing) {
-  return TranslateWith(
+  return host::TranslateWith(
       "{1} s, {2}: fat cleared {3} %, bed free {4} %, errors {5}",
       {ShownNumber(now.time, 4), Translate(doing), ShownNumber(100 * now.operation.facts.cleared_share, 3),
        ShownNumber(100 * now.operation.facts.detached_share, 3), std::to_string(now.operation.errors)});
@@ -152,7 +157,7 @@ double Share(const Snapshot& now) {
 
 }  // namespace
 
-base::Status GoOn(const PlayFiles& files, double most_seconds, simulation::Simulation& simulation,
+base::Status GoOn(const assessment::PlayFiles& files, double most_seconds, simulation::Simulation& simulation,
                   agent::Surgeon& surgeon) {
   if (files.restore.empty()) return {};
   if (auto restored = assessment::RestorePlay(files.restore, files.who, simulation, surgeon); !restored)
@@ -169,7 +174,7 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
                            OperationPlay play) {
   Run run;
   OperationResult result;
-  ProgressBar progress("operating", 1.0);
+  host::ProgressBar progress("operating", 1.0);
   const auto see = [&](const Snapshot& now) {
     run.See(now);
     if (now.tick % 60 != 0) return;
@@ -194,7 +199,8 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     if (auto finished = recording->Finish(simulation); !finished) return finished;
     if (auto written = play.report.Write(); !written) return written;
     if (!play.files.save.empty()) {
-      if (auto saved = SavePlay(play.files.save, play.files.who, simulation, surgeon); !saved) return saved;
+      if (auto saved = assessment::SavePlay(play.files.save, play.files.who, simulation, surgeon); !saved)
+        return saved;
     }
     run.hash = simulation.Hash();
     result = *simulation.GetOperationResult();

@@ -16,16 +16,13 @@
 
 namespace trocar::cli {
 
-using assessment::PlayFiles;
-using assessment::SavePlay;
-
 struct OperationPlay {
   std::filesystem::path output;  ///< folder for pictures and a video, or empty
   int width = 1280, height = 720;
   int threads = 1;
   double most_seconds = 3600;
   bool is_json = false;
-  PlayFiles files;                  ///< only without pictures
+  assessment::PlayFiles files;      ///< only without pictures
   std::string record;               ///< file of a recording, or empty; only without pictures
   record::Description description;  ///< of that recording
   RunReport report;
@@ -33,7 +30,7 @@ struct OperationPlay {
 
 /// Goes on from files.restore, where one is named.
 /// \return an error as of RestorePlay, or where that state stands after most_seconds [s] already.
-base::Status GoOn(const PlayFiles& files, double most_seconds, simulation::Simulation& simulation,
+base::Status GoOn(const assessment::PlayFiles& files, double most_seconds, simulation::Simulation& simulation,
                   agent::Surgeon& surgeon);
 
 /// Runs to the surgeon's end and prints what it came to.

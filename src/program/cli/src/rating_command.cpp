@@ -17,6 +17,11 @@
 #include "trocar/report/rating.h"
 
 namespace trocar::cli {
+
+using host::PrintLine;
+using host::Say;
+using host::Translate;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -67,7 +72,7 @@ base::Status Enter(EnterArguments arguments) {
   arguments.rating.attempt = std::filesystem::path(arguments.rating.attempt).filename().string();
   const std::string text = report::FormatRating(arguments.rating);
   if (arguments.output.empty()) {
-    PrintLines(text);
+    host::PrintLines(text);
     return {};
   }
   if (const auto written = host::WriteFile(arguments.output, text); !written.ok()) return written;
@@ -89,12 +94,12 @@ ordered_json IccJson(const report::Icc& icc) {
 void PrintAgreement(const report::RatingForm& form, const report::FormAgreement& agreement,
                     double confidence) {
   Say("{1}: {2} raters of {3} attempts; interval of {4} %\n\n", Translate(form.name), agreement.raters.size(),
-      agreement.attempts.size(), ShownNumber(confidence, 3));
+      agreement.attempts.size(), host::ShownNumber(confidence, 3));
   std::vector<std::vector<std::string>> rows = {
       {"of", "ICC(2,1)", "interval", "ICC(2,k)", "interval", "ICC(3,1)", "interval", "one rater agrees"}};
-  const auto number = [](double value) { return ShownFixed(value, 2); };
+  const auto number = [](double value) { return host::ShownFixed(value, 2); };
   const auto interval = [&](const report::Icc& icc) {
-    return TranslateWith("{1} to {2}", {number(icc.low), number(icc.high)});
+    return host::TranslateWith("{1} to {2}", {number(icc.low), number(icc.high)});
   };
   for (const auto& [of, icc] : agreement.of) {
     rows.push_back({of, number(icc.two_random.value), interval(icc.two_random),
@@ -102,7 +107,7 @@ void PrintAgreement(const report::RatingForm& form, const report::FormAgreement&
                     number(icc.three_fixed.value), interval(icc.three_fixed),
                     Translate(report::DescribeAgreement(icc.two_random.value))});
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
   Say("\nICC(2,1): one rater, of any; ICC(2,k): the mean of these many; ICC(3,1): one of these raters, who "
       "may differ by a constant.\n"
       "Items whose ratings do not vary are left out. Words: Koo and Li 2016. Judge by the interval, not the "

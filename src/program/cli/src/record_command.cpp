@@ -18,6 +18,13 @@
 #include "trocar/simulation/engine_bits.h"
 
 namespace trocar::cli {
+
+using host::PrintLine;
+using host::Say;
+using host::ShownNumber;
+using host::TranslateComposed;
+using host::TranslateWith;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -82,14 +89,15 @@ std::string HowItEnded(const Recording& recording) {
                          {TranslateComposed(recording.damage), std::to_string(recording.whole_bytes),
                           std::to_string(recording.file_bytes)});
   }
-  return Translate(recording.ending
-                       ? Mark("finished")
-                       : Mark("not finished: the program ended before the attempt; what is there is whole"));
+  return host::Translate(
+      recording.ending
+          ? host::Mark("finished")
+          : host::Mark("not finished: the program ended before the attempt; what is there is whole"));
 }
 
 /// "    12.30 s  "
 std::string At(std::uint64_t tick, const record::Description& description) {
-  const std::string time = ShownFixed(static_cast<double>(tick) * description.tick_seconds, 2);
+  const std::string time = host::ShownFixed(static_cast<double>(tick) * description.tick_seconds, 2);
   return std::string(time.size() < 10 ? 10 - time.size() : 0, ' ') + time + " s  ";
 }
 
@@ -98,7 +106,7 @@ void PrintInfo(const Recording& recording) {
   const std::string what = (d.level.empty() ? d.name : TranslateWith("{1}, level {2}", {d.name, d.level})) +
                            (d.patient.empty() ? "" : TranslateWith(", patient {1}", {d.patient})) +
                            TranslateWith(", seed {1}", {std::to_string(d.seed)});
-  PrintLines(FormatFields(
+  host::PrintLines(host::FormatFields(
       {{"recording of", what},
        {"played by", TranslateComposed(d.player)},
        {"started", d.started},
@@ -127,7 +135,7 @@ void PrintInfo(const Recording& recording) {
   std::size_t shown = 0;
   for (const record::EventMark& event : recording.events) {
     if (!event.is_error || ++shown > kShownErrors) continue;
-    PrintLine(At(event.tick, d) + Translate(event.kind) +
+    PrintLine(At(event.tick, d) + host::Translate(event.kind) +
               (event.about.empty() ? "" : ": " + TranslateComposed(event.about)));
   }
   if (shown > kShownErrors) Say("  and {1} more (--json)\n", shown - kShownErrors);
@@ -205,7 +213,7 @@ base::Status MakeIndex(const std::string& path, double seconds, int threads) {
                        settings.index.string() +
                            " cannot be written, or another program does so; check the folder and its rights"};
   }
-  ProgressBar progress("replaying", 1.0);
+  host::ProgressBar progress("replaying", 1.0);
   for (;;) {
     const auto filled = replay->FillGap(replay->Tick(), seconds);
     if (!filled.ok()) return filled.error();

@@ -31,6 +31,12 @@
 #include "trocar/view/critical_view_picture.h"
 
 namespace trocar::cli {
+
+using host::ProgressBar;
+using host::Say;
+using host::ShownNumber;
+using host::Translate;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -81,7 +87,7 @@ base::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
   }
   if (verified->divergence) {
     Say("DIVERGED at {1} s: the state's hash is {2}, recorded was {3}\n",
-        ShownFixed(static_cast<double>(verified->divergence->tick) * tick, 2),
+        host::ShownFixed(static_cast<double>(verified->divergence->tick) * tick, 2),
         base::HashText(verified->divergence->computed), base::HashText(verified->divergence->recorded));
   } else if (!verified->is_outcome_same) {
     constexpr std::size_t kMostShown = 2000;  // a recording of a stranger may hold megabytes
@@ -100,7 +106,8 @@ base::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
         host::VersionText());
   }
   if (!recording.damage.empty())
-    Say("The file is damaged ({1}): what comes after is missing.\n", TranslateComposed(recording.damage));
+    Say("The file is damaged ({1}): what comes after is missing.\n",
+        host::TranslateComposed(recording.damage));
   return {};
 }
 
@@ -176,7 +183,7 @@ base::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) 
   Say("Triangle cleared {1} of 2, lower third off the plate {2} of 2, two structures {3} of 2\n",
       score.criteria[0], score.criteria[1], score.criteria[2]);
   for (const std::string& reason : cholecystectomy::ExplainCriticalView(result.facts, score))
-    PrintLine("  " + TranslateComposed(reason));
+    host::PrintLine("  " + host::TranslateComposed(reason));
   return {};
 }
 

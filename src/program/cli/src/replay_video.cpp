@@ -46,8 +46,8 @@ view::Overlay MakeOverlay(const Shown& shown, const Shown* other, bool has_ghost
   overlay.X_world_camera = shown.X_world_camera;
   if (!has_ghosts) return overlay;
   const double now = shown.replay->GetSimulation().GetSnapshot().time;
-  overlay.trails = view::MakePathTrails(shown.path.Between(scene::kLeft, now - kTrailSeconds, now),
-                                        shown.path.Between(scene::kRight, now - kTrailSeconds, now));
+  overlay.trails = view::MakePathTrails(shown.path.Between(instrument::kLeft, now - kTrailSeconds, now),
+                                        shown.path.Between(instrument::kRight, now - kTrailSeconds, now));
   if (other == nullptr) return overlay;
   const auto ghosts = view::MakeGhosts(other->replay->GetSimulation().GetSnapshot());
   overlay.trails.insert(overlay.trails.end(), ghosts.begin(), ghosts.end());
@@ -104,7 +104,7 @@ base::Status MakeReplayVideo(Replay& replay, Replay* other, const ReplayVideoOpt
   auto film = view::FilmMaker::Make(settings, simulations);
   if (!film.ok()) return film.error();
 
-  ProgressBar progress("drawing", 1.0);
+  host::ProgressBar progress("drawing", 1.0);
   const auto frames = std::max<std::uint64_t>(
       1, static_cast<std::uint64_t>(std::ceil((end - options.from) / options.speed * kFramesPerSecond)));
   int pictures = 0;
@@ -132,8 +132,8 @@ base::Status MakeReplayVideo(Replay& replay, Replay* other, const ReplayVideoOpt
   progress.Finish();
   if (const auto finished = film->Finish(); !finished.ok()) return finished;
   if (const auto kept = part.Keep(); !kept.ok()) return kept;
-  Say("{1} holds demo.webm and {2} pictures, from {3} s to {4} s\n", options.output, pictures,
-      ShownNumber(options.from, 4), ShownNumber(end, 4));
+  host::Say("{1} holds demo.webm and {2} pictures, from {3} s to {4} s\n", options.output, pictures,
+            host::ShownNumber(options.from, 4), host::ShownNumber(end, 4));
   return {};
 }
 

@@ -16,6 +16,9 @@
 #include "trocar/scene/scene.h"
 
 namespace trocar::cli {
+
+using host::Mark;
+
 namespace {
 
 struct ReportCardOptions {
@@ -28,7 +31,7 @@ base::Result<std::vector<bench::PhysicsCheck>> RunChecks(const ReportCardOptions
       bench::CheckPatch,  bench::CheckHangingChain,   bench::CheckIndentation, bench::CheckSelfWeight,
       bench::CheckEnergy, bench::CheckMeshRefinement, bench::CheckFreedOrgan};
   std::vector<bench::PhysicsCheck> checks;
-  ProgressBar progress("analytic cases", static_cast<double>(analytic.size()));
+  host::ProgressBar progress("analytic cases", static_cast<double>(analytic.size()));
   for (const auto& run : analytic) {
     checks.push_back(run());
     progress.Show(static_cast<double>(checks.size()));
@@ -61,14 +64,14 @@ base::Result<int> WriteReportCard(const ReportCardOptions& options) {
   std::vector<std::vector<std::string>> rows = {{"figure", "measured", "unit", ""}};
   for (const bench::PhysicsCheck& check : *checks) {
     for (const bench::CheckFigure& figure : check.figures) {
-      rows.push_back({figure.name, ShownNumber(figure.value), figure.unit,
-                      Translate(figure.Passes()         ? Mark("passes")
-                                : figure.is_known_limit ? Mark("known limit")
-                                                        : Mark("FAILS"))});
+      rows.push_back({figure.name, host::ShownNumber(figure.value), figure.unit,
+                      host::Translate(figure.Passes()         ? Mark("passes")
+                                      : figure.is_known_limit ? Mark("known limit")
+                                                              : Mark("FAILS"))});
     }
   }
-  PrintTable(rows);
-  Say("\nPage: {1}\n", page.string());
+  host::PrintTable(rows);
+  host::Say("\nPage: {1}\n", page.string());
   return bench::CountFailures(*checks);
 }
 

@@ -33,7 +33,7 @@ struct ReportArguments {
 base::Status WriteDictionary(const ReportArguments& arguments) {
   const std::string text = report::FormatDictionaryCsv();
   if (!arguments.output.empty()) return host::WriteFile(arguments.output, text);
-  PrintLines(text);
+  host::PrintLines(text);
   return {};
 }
 
@@ -94,8 +94,8 @@ base::Status Report(ReportArguments arguments) {
     written = WriteReport(trainee, arguments.output);
   }
   if (!written.ok()) return written;
-  if (reports.size() == 1) PrintLine(TranslateComposed(reports[0].outcome));
-  Say("Wrote {1}\n", arguments.output);
+  if (reports.size() == 1) host::PrintLine(host::TranslateComposed(reports[0].outcome));
+  host::Say("Wrote {1}\n", arguments.output);
   return {};
 }
 

@@ -30,7 +30,7 @@ base::Result<std::vector<bench::Experiment>> Run(std::span<const bench::Experime
   std::vector<bench::Experiment> done;
   bench::ExperimentStore store;
   for (const bench::ExperimentEntry& entry : entries) {
-    ProgressBar bar("reproduce " + std::string(entry.name), 1.0);
+    host::ProgressBar bar("reproduce " + std::string(entry.name), 1.0);
     bench::ExperimentOptions options = arguments.options;
     options.progress = [&bar](double part) { bar.Show(part); };
     bench::ExperimentResult result = entry.run(options, store);
@@ -41,7 +41,7 @@ base::Result<std::vector<bench::Experiment>> Run(std::span<const bench::Experime
           "A quick run: smaller meshes, fewer repeats; its times are no figures to quote.");
     // a person reads on while the next one runs
     if (!arguments.is_json) {
-      PrintLines(bench::FormatExperimentText(*result) + "\n");
+      host::PrintLines(bench::FormatExperimentText(*result) + "\n");
       std::fflush(stdout);
     }
     done.push_back(std::move(result).value());
@@ -86,11 +86,12 @@ base::Status Reproduce(std::span<const bench::ExperimentEntry> entries, const Ar
                               (arguments.options.threads == 1 ? " thread" : " threads");
   const auto experiments = Run(entries, arguments);
   if (!experiments) return experiments.error();
-  if (arguments.is_json) PrintLines(bench::FormatExperimentsJson(*experiments, machine));
+  if (arguments.is_json) host::PrintLines(bench::FormatExperimentsJson(*experiments, machine));
   if (!arguments.folder.empty()) {
     if (base::Status status = WritePages(*experiments, arguments, is_all, machine); !status) return status;
     const std::string page = is_all ? "index.html" : experiments->front().name + ".html";
-    if (!arguments.is_json) Say("Page: {1}\n", (std::filesystem::path(arguments.folder) / page).string());
+    if (!arguments.is_json)
+      host::Say("Page: {1}\n", (std::filesystem::path(arguments.folder) / page).string());
   }
   if (arguments.markdown.empty()) return {};
   return UpdateDocument(*experiments, arguments.markdown, machine);

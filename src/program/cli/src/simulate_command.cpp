@@ -31,6 +31,10 @@
 #include "trocar/tissue_cuda/gpu_or_cpu_solver.h"
 
 namespace trocar::cli {
+
+using host::Say;
+using host::ShownNumber;
+
 namespace {
 
 struct SimulateOptions {
@@ -126,7 +130,7 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   std::vector<double> tick_ms;
   tick_ms.reserve(count);
   SimulateReport report;
-  ProgressBar progress("simulating", options.ticks);
+  host::ProgressBar progress("simulating", options.ticks);
   for (int tick = 0; tick < options.ticks; ++tick) {
     scene::Input input = scene::CalcScriptInput(*scene, simulation.GetSnapshot().time);
     if (device != nullptr) device->Apply(simulation.GetSnapshot().time, input);
@@ -195,13 +199,13 @@ void PrintForPerson(const SimulateReport& report) {
   for (const StageTimes& stage : report.stages) {
     rows.push_back({ShownName(stage.name), ShownNumber(stage.median_ms, 3), ShownNumber(stage.p99_ms, 3)});
   }
-  rows.push_back({Translate("whole tick"), "", ShownNumber(report.tick_p99_ms, 3)});
-  PrintTable(rows);
+  rows.push_back({host::Translate("whole tick"), "", ShownNumber(report.tick_p99_ms, 3)});
+  host::PrintTable(rows);
   if (!report.gpu.empty()) Say("\nGPU: {1}\n", report.gpu);
   Say("\n{1} ticks, state hash {2}\n", report.ticks, report.hash);
   if (report.haptics) {
     for (const auto& [what, how] : session::DescribeSummary(*report.haptics))
-      PrintLine(Translate(what) + ": " + TranslateComposed(how));
+      host::PrintLine(host::Translate(what) + ": " + host::TranslateComposed(how));
   }
   Say("residual after the last tick {1}, largest force on an instrument {2} N\n",
       ShownNumber(report.residual), ShownNumber(report.max_force_n));

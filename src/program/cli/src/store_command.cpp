@@ -15,12 +15,18 @@
 #include "trocar/store/maintenance.h"
 
 namespace trocar::cli {
+
+using host::Say;
+using host::ShownNumber;
+using host::Translate;
+using host::TranslateWith;
+
 namespace {
 
 /// How long attempts are kept.
 std::string Days(int days) {
   return days == 0 ? Translate("for ever")
-                   : TranslateCount("{1} day", "{1} days", static_cast<std::size_t>(days));
+                   : host::TranslateCount("{1} day", "{1} days", static_cast<std::size_t>(days));
 }
 
 using nlohmann::ordered_json;
@@ -58,7 +64,7 @@ void AddInfo(CLI::App& parent, const Options& options, Outcome& outcome) {
                       {"retention_days", *days}});
       return {};
     }
-    PrintLines(FormatFields(
+    host::PrintLines(host::FormatFields(
         {{"store", place.Text()},
          {"database",
           TranslateWith("{1}, tables of version {2}",
@@ -164,7 +170,7 @@ void AddAttempts(CLI::App& parent, const Options& options, Outcome& outcome) {
     if (page->attempts.empty())
       Say("no attempts\n");
     else
-      PrintTable(rows);
+      host::PrintTable(rows);
     if (!page->next.empty()) Say("more: --page {1}\n", page->next);
     if (!is_all_verified)
       Say("what is not verified is as its file says; trocar store verify --attempts replays it\n");
@@ -280,7 +286,7 @@ void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
       if (!options->is_json && !attempt->mark.IsVerified())
         Say("{1}\n", Translate(store::DescribeMark(attempt->mark)));
       // a store that is away is no failure: the attempt is safe; one that is refused wants a person
-      if (kept->failure) PrintErrorLine("trocar: " + host::ShownText(*kept->failure));
+      if (kept->failure) host::PrintErrorLine("trocar: " + host::ShownText(*kept->failure));
       outcome.has_finding = !kept->is_in_store || attempt->mark.state == store::Verification::kRefused;
       return {};
     }();

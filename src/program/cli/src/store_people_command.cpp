@@ -13,6 +13,9 @@
 #include "trocar/store/names.h"
 
 namespace trocar::cli {
+
+using host::Say;
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -48,7 +51,7 @@ void AddAdd(CLI::App& trainee, const Options& options, Outcome& outcome) {
         return kept;
     }
     options->is_json ? PrintStoreJson({{"pseudonym", JsonText(person->pseudonym)}, {"role", arguments->role}})
-                     : PrintLine(Shown(person->pseudonym));
+                     : host::PrintLine(Shown(person->pseudonym));
     return {};
   });
 }
@@ -97,10 +100,10 @@ void AddList(CLI::App& trainee, const Options& options, Outcome& outcome) {
     for (const store::Person& person : *people) {
       std::string groups;
       for (const std::string& group : person.groups) groups += (groups.empty() ? "" : ", ") + Shown(group);
-      rows.push_back({Shown(person.pseudonym), Translate(store::RoleName(person.role)),
+      rows.push_back({Shown(person.pseudonym), host::Translate(store::RoleName(person.role)),
                       groups.empty() ? "-" : groups, Shown(name_of(person))});
     }
-    people->empty() ? Say("nobody\n") : PrintTable(rows);
+    people->empty() ? Say("nobody\n") : host::PrintTable(rows);
     if (people->size() == static_cast<std::size_t>(arguments->limit))
       Say("more: --after {1}\n", Shown(people->back().pseudonym));
     return {};
@@ -221,7 +224,7 @@ void AddGroups(CLI::App& parent, const Options& options, Outcome& outcome) {
     if (options->is_json)
       PrintStoreJson(json);
     else
-      groups->empty() ? Say("no groups\n") : PrintTable(rows);
+      groups->empty() ? Say("no groups\n") : host::PrintTable(rows);
     return {};
   });
   const auto add_membership = [&](const char* word, const char* help, auto change) {

@@ -77,7 +77,7 @@ base::Result<store::Attempt> ReplayHere(record::Recording recording, const std::
                                         const char* label) {
   store::ReplayChoice choice;
   choice.threads = threads;
-  ProgressBar progress(label, 1.0);
+  host::ProgressBar progress(label, 1.0);
   choice.progress = [&progress](double share) { return progress.Show(share), true; };
   auto attempt = store::ReplayAttempt(std::move(recording), file, choice);
   progress.Finish();
@@ -114,8 +114,8 @@ base::Status ReplayAttempts(StoreSession& session, const ReplayArguments& argume
                         {"state", store::VerificationName(state)},
                         {"why", store::WhyName(attempt->mark.why)}});
       } else if (!attempt->mark.IsVerified()) {
-        Say("{1} {2}: {3}\n", Shown(attempt->started), Shown(attempt->task),
-            Translate(DescribeMark(attempt->mark)));
+        host::Say("{1} {2}: {3}\n", Shown(attempt->started), Shown(attempt->task),
+                  host::Translate(DescribeMark(attempt->mark)));
       }
     }
   }
@@ -127,8 +127,8 @@ base::Status ReplayAttempts(StoreSession& session, const ReplayArguments& argume
                     {"not_verified", left},
                     {"attempts", std::move(rows)}});
   else
-    Say("{1} attempts are verified, {2} refused, {3} count as accepted, {4} stay not verified\n", verified,
-        refused, accepted, left);
+    host::Say("{1} attempts are verified, {2} refused, {3} count as accepted, {4} stay not verified\n",
+              verified, refused, accepted, left);
   return {};
 }
 

@@ -19,6 +19,9 @@
 #include "trocar/study/study.h"
 
 namespace trocar::cli {
+
+using host::Say;
+
 namespace {
 
 struct StudyArguments {
@@ -51,9 +54,9 @@ base::Status WriteStudy(const StudyArguments& arguments, const std::vector<bench
                                           [](const auto& finding) { return finding.separates; });
     rows.push_back({task.task, std::to_string(task.attempts), std::to_string(task.completed),
                     std::to_string(task.metrics.size()), std::to_string(separating),
-                    TranslateWith("{1} groups", {std::to_string(task.clusters.size())})});
+                    host::TranslateWith("{1} groups", {std::to_string(task.clusters.size())})});
   }
-  PrintTable(rows);
+  host::PrintTable(rows);
   Say("\nPage: {1}\n", (folder / "study.html").string());
   Say("The people are made by a program: this sets no standard of competence.\n");
   return {};
@@ -65,7 +68,7 @@ base::Status Study(const StudyArguments& arguments, Outcome& outcome) {
   options.has_weaknesses = options.has_careless = !arguments.has_levels_only;
   const auto wanted = bench::CountStudyAttempts(options);
   if (!wanted.ok()) return wanted.error();
-  ProgressBar progress("playing", 1.0);
+  host::ProgressBar progress("playing", 1.0);
   const auto attempts = bench::RunStudy(options, progress.Follow());
   progress.Finish();
   if (!attempts.ok()) return attempts.error();
@@ -100,12 +103,12 @@ base::Status RunPlan(const StudyArguments& arguments, Outcome& outcome) {
     if (!worker) return worker.error();
     return study::Work(options, *plan, *worker);
   }
-  ProgressBar progress("runs", 1.0);
+  host::ProgressBar progress("runs", 1.0);
   const auto summary = study::RunStudy(options, *plan, [&](double share) { progress.Show(share); });
   progress.Finish();
   if (!summary) return summary.error();
   Say("{1} of {2} runs are done; {3} failed\n", summary->done, summary->runs, summary->failed);
-  for (const std::string& line : summary->failures) PrintLine("  " + TranslateComposed(line));
+  for (const std::string& line : summary->failures) host::PrintLine("  " + host::TranslateComposed(line));
   if (summary->done < summary->runs) {
     Say("The same command goes on.\n");
     outcome.has_finding = true;

@@ -15,6 +15,9 @@
 #include "trocar/report/xapi_delivery.h"
 
 namespace trocar::cli {
+
+using host::Say;
+
 namespace {
 
 struct XapiArguments {
@@ -49,8 +52,9 @@ base::Status Queue(const XapiArguments& arguments) {
 
 base::Status List(const XapiArguments& arguments) {
   const report::XapiQueue queue = OpenQueue(arguments);
-  for (const report::XapiStatement& statement : queue.List()) PrintLine(statement.json);
-  for (const auto& path : queue.ListRefused()) PrintErrorLine(TranslateWith("refused: {1}", {path.string()}));
+  for (const report::XapiStatement& statement : queue.List()) host::PrintLine(statement.json);
+  for (const auto& path : queue.ListRefused())
+    host::PrintErrorLine(host::TranslateWith("refused: {1}", {path.string()}));
   return {};
 }
 
@@ -64,7 +68,7 @@ base::Status Deliver(const XapiArguments& arguments) {
     settings.credentials = std::move(*credentials);
   }
   settings.give_up_seconds = arguments.give_up_seconds;
-  settings.on_trouble = [](const std::string& text) { PrintErrorLine(TranslateComposed(text)); };
+  settings.on_trouble = [](const std::string& text) { host::PrintErrorLine(host::TranslateComposed(text)); };
   report::XapiQueue queue = OpenQueue(arguments);
   const auto delivered = report::DeliverQueue(queue, *endpoint, settings);
   if (!delivered.ok()) return delivered.error();

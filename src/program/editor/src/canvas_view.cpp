@@ -6,6 +6,9 @@
 #include <limits>
 
 namespace trocar::editor {
+
+using math::Vec2;
+
 namespace {
 
 constexpr double kMargin = 0.96;  // of the canvas that a fitted picture takes

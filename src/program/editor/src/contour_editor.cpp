@@ -8,6 +8,8 @@
 
 namespace trocar::editor {
 
+using math::Vec2;
+
 namespace {
 
 using contours::ContourId;

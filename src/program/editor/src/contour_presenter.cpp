@@ -107,7 +107,7 @@ void ContourPresenter::UseWorkspace(contours::ContourWorkspace workspace) {
     Report(error);
   };
   editor_->on_event = [this](const std::string& text) { ShowHint(text); };
-  editor_->on_place = [this](const contours::Vec2& place) { StartGrowth(place); };
+  editor_->on_place = [this](const math::Vec2& place) { StartGrowth(place); };
   prefetcher_ = std::make_unique<contours::SlicePrefetcher>(workspace_->Store());
   surfaces_ = std::make_unique<SurfaceUpdates>(*workspace_, wakes_.on_surfaces);
   screen_->UseEditor(editor_.get());
@@ -451,7 +451,7 @@ void ContourPresenter::ToggleGrowMode() {
       {host::Translate(organ)}));
 }
 
-void ContourPresenter::StartGrowth(const contours::Vec2& place) {
+void ContourPresenter::StartGrowth(const math::Vec2& place) {
   if (growing_.IsRunning()) return;
   growth_stop_ = {};
   is_growth_void_ = false;

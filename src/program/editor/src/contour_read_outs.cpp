@@ -18,10 +18,10 @@ std::string Format(const char* format, Values... values) {
   return host::LocalNumber(text);
 }
 
-double ShoelaceArea(std::span<const Vec2> polygon) {
+double ShoelaceArea(std::span<const math::Vec2> polygon) {
   double twice = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const math::Vec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
     twice += a.x * b.y - b.x * a.y;
   }
   return 0.5 * std::fabs(twice);

@@ -7,6 +7,9 @@
 #include <optional>
 
 namespace trocar::editor {
+
+using math::Vec2;
+
 namespace {
 
 using base::Error;

@@ -8,6 +8,9 @@
 #include "trocar/math/random.h"
 
 namespace trocar::editor {
+
+using math::Vec2;
+
 namespace {
 
 constexpr CanvasSize kSize{900, 650};

@@ -14,6 +14,9 @@
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::editor {
+
+using math::Vec2;
+
 namespace {
 
 class Editor : public testing::Test {

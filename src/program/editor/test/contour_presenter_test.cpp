@@ -10,6 +10,9 @@
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::editor {
+
+using math::Vec2;
+
 namespace {
 
 /// Keeps what it was given, as a window without widgets.

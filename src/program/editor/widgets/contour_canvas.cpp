@@ -7,6 +7,9 @@
 #include "trocar/host/clock.h"
 
 namespace trocar::editor {
+
+using math::Vec2;
+
 namespace {
 
 constexpr guint kLeftButton = 1, kMiddleButton = 2, kRightButton = 3;

@@ -8,6 +8,9 @@
 #include "trocar/editor/organ_colour.h"
 
 namespace trocar::editor {
+
+using math::Vec2;
+
 namespace {
 
 using CairoContext = Cairo::RefPtr<Cairo::Context>;

@@ -175,9 +175,9 @@ void ContourRun::MeasureFrame(double now) {
   if (!editor.IsDragging()) {
     editor.Press(ToCanvas(editor.view, editor.size, here.contours[0][0]), false);
   }
-  const Vec2 start = ToCanvas(editor.view, editor.size, here.contours[0][0]);
+  const math::Vec2 start = ToCanvas(editor.view, editor.size, here.contours[0][0]);
   const host::Stopwatch stopwatch;
-  editor.Drag(start + Vec2{3 * std::cos(angle), 3 * std::sin(angle)});
+  editor.Drag(start + math::Vec2{3 * std::cos(angle), 3 * std::sin(angle)});
   (void)editor.Fit().ok();
   measured_.fit.push_back(stopwatch.Seconds());
   at_.presenter.OnEdited();

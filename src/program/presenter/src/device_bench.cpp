@@ -11,7 +11,7 @@ namespace trocar::presenter {
 namespace {
 
 using base::ErrorCode;
-using device::Pose;
+using math::Pose;
 
 /// Poses that a fit is made of; more say nothing new.
 constexpr std::size_t kMostPoses = 400;

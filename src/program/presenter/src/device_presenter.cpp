@@ -119,7 +119,7 @@ void DevicePresenter::TakeHaptics(double now) {
   if (loop == nullptr) return;
   const session::HapticStatus& status = loop->Latest();
   state_.haptics = session::DescribeHaptics(status);
-  if (hand_ < scene::kHandCount) forces_.push_back({now, status.hands[hand_].force});
+  if (hand_ < instrument::kHandCount) forces_.push_back({now, status.hands[hand_].force});
   while (!forces_.empty() && forces_.front().time < now - DeviceBench::kHistory) forces_.pop_front();
   // what is, not what was asked for
   state_.is_force_on = std::any_of(

@@ -32,7 +32,7 @@ std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapsh
   if (std::isfinite(end.TimeLimit()))
     text = FormatTime(end.Elapsed(snapshot)) + " / " + FormatTime(end.TimeLimit());
   text += kBetween + report::PhaseName(std::string(cholecystectomy::NameOf(snapshot.operation.phase)));
-  for (const scene::Hand hand : {scene::kLeft, scene::kRight})
+  for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight})
     text += kBetween + ToolLabel(scene, snapshot, hand);
   return text;
 }
@@ -225,8 +225,8 @@ Situation SimulatorPresenter::MakeSituation() {
   for (const scene::InstrumentSetup& setup : scene.instruments)
     situation.has_tools = situation.has_tools || setup.tray.size() > 1;
   const simulation::Snapshot& now = control_->Now();
-  situation.left_jaws = DescribeJaws(scene, now, scene::kLeft);
-  situation.right_jaws = DescribeJaws(scene, now, scene::kRight);
+  situation.left_jaws = DescribeJaws(scene, now, instrument::kLeft);
+  situation.right_jaws = DescribeJaws(scene, now, instrument::kRight);
   return situation;
 }
 

@@ -23,8 +23,8 @@ constexpr double kFootLift = 0.0006;                         // above what it li
 constexpr double kNearest = 0.0015;                          // nearer, the tip touches it [m]
 constexpr double kClosedJaw = 0.06, kDash = 0.004;           // rad, m
 constexpr int kRingSteps = 24;
-constexpr std::array<Material, scene::kHandCount> kHandColours = {Material::kBlueRubber,
-                                                                  Material::kYellowRubber};
+constexpr std::array<Material, instrument::kHandCount> kHandColours = {Material::kBlueRubber,
+                                                                       Material::kYellowRubber};
 
 std::optional<double> Meet(const Vec3& from, const Vec3& way, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, p = math::Cross(way, ac);
@@ -165,7 +165,7 @@ NextStep FindNextStep(const scene::Task& task, const simulation::Snapshot& snaps
   if (!is_taken) return next;
   for (std::size_t s = step; s < steps.size() && next.regions.empty(); ++s) {
     for (const int region : steps[s].regions) {
-      const auto is_in = [&](const simulation::ObjectSnapshot& one) {
+      const auto is_in = [&](const scene::ObjectSnapshot& one) {
         return one.held_by == 0 &&
                task.regions[static_cast<std::size_t>(region)].Contains(one.X_world_object.translation);
       };
@@ -179,7 +179,7 @@ NextStep FindNextStep(const scene::Task& task, const simulation::Snapshot& snaps
 std::vector<Trail> MakeGuides(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
                               const simulation::Snapshot& snapshot) {
   std::vector<Trail> trails;
-  for (int hand = 0; hand < scene::kHandCount; ++hand) {
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
     AddDepthLine(scene, surfaces, snapshot, hand, trails);
     const auto& tool = snapshot.instruments[static_cast<std::size_t>(hand)];
     if (tool.is_grasping) {
@@ -201,7 +201,8 @@ std::vector<Trail> MakeGuides(const scene::Scene& scene, std::span<const scene::
   return trails;
 }
 
-std::string DescribeJaws(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand) {
+std::string DescribeJaws(const scene::Scene& scene, const simulation::Snapshot& snapshot,
+                         instrument::Hand hand) {
   const simulation::InstrumentSnapshot& now = snapshot.instruments[hand];
   if (now.object >= 0) return host::TranslateWith("holds {1}", {ObjectLabel(scene, now.object)});
   if (now.is_grasping) return host::TranslateWith("holds the {1}", {OrganLabel(scene.patient, now.organ)});

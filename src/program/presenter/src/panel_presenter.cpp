@@ -73,9 +73,10 @@ OperationPage MakeOperationPage(const scene::Scene& scene, const scene::Input& i
     if (place < tray.size() && tray[place].clips > 0)
       page.clips +=
           (page.clips.empty() ? "" : host::Translate(" and ")) + std::to_string(operation.clips_left[hand]);
-    page.hands[hand] = hand == scene::kLeft
-                           ? host::TranslateWith("1  Left {1}", {ToolLabel(scene, snapshot, scene::kLeft)})
-                           : host::TranslateWith("2  Right {1}", {ToolLabel(scene, snapshot, scene::kRight)});
+    page.hands[hand] =
+        hand == instrument::kLeft
+            ? host::TranslateWith("1  Left {1}", {ToolLabel(scene, snapshot, instrument::kLeft)})
+            : host::TranslateWith("2  Right {1}", {ToolLabel(scene, snapshot, instrument::kRight)});
   }
   if (page.clips.empty()) page.clips = kNothing;
   page.blood = DescribeFluid(operation.flow.ledger, surgery::Fluid::kBlood);
@@ -148,7 +149,7 @@ void PanelPresenter::ShowSettings() {
 
 // what a person does
 
-void PanelPresenter::ChooseTool(scene::Hand hand, std::size_t place) {
+void PanelPresenter::ChooseTool(instrument::Hand hand, std::size_t place) {
   if (control_ != nullptr) control_->ChooseTool(hand, place);
 }
 

@@ -112,10 +112,10 @@ std::string ObjectLabel(const scene::Scene& scene, std::int32_t object) {
 }
 
 std::string HandLabel(const scene::Scene& scene, std::int32_t hand) {
-  if (hand < 0 || hand >= scene::kHandCount) return host::Translate("instrument");
+  if (hand < 0 || hand >= instrument::kHandCount) return host::Translate("instrument");
   const scene::InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
   // where tools are exchanged, the one at the start may not be the one that is meant
-  const bool is_left = hand == scene::kLeft;
+  const bool is_left = hand == instrument::kLeft;
   if (setup.tray.size() > 1) return is_left ? host::Translate("left hand") : host::Translate("right hand");
   return host::TranslateWith(is_left ? host::Mark("left {1}") : host::Mark("right {1}"),
                              {ToolName(setup.tool)});
@@ -125,7 +125,8 @@ std::string ToolName(const instrument::Tool& tool) {
   return host::Translate(WithSpaces(tool.name));
 }
 
-std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand) {
+std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot,
+                      instrument::Hand hand) {
   const scene::InstrumentSetup& setup = scene.instruments[hand];
   const std::size_t place = snapshot.operation.tools[hand];
   const instrument::Tool& tool = place < setup.tray.size() ? setup.tray[place] : setup.tool;
@@ -146,13 +147,13 @@ std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid flu
                              {FormatMillilitres(account.left), FormatMillilitres(account.pooled)});
 }
 
-std::string DescribeStones(std::span<const simulation::StoneSnapshot> stones) {
-  using simulation::StonePlace;
-  const auto is_out = [](const simulation::StoneSnapshot& stone) {
+std::string DescribeStones(std::span<const surgery::StoneSnapshot> stones) {
+  using surgery::StonePlace;
+  const auto is_out = [](const surgery::StoneSnapshot& stone) {
     return stone.place == StonePlace::kSpilled || stone.place == StonePlace::kHeld;
   };
   const auto out = std::count_if(stones.begin(), stones.end(), is_out);
-  const auto inside = std::count_if(stones.begin(), stones.end(), [](const simulation::StoneSnapshot& stone) {
+  const auto inside = std::count_if(stones.begin(), stones.end(), [](const surgery::StoneSnapshot& stone) {
     return stone.place == StonePlace::kInside;
   });
   const auto retrieved = static_cast<std::ptrdiff_t>(stones.size()) - out - inside;

@@ -434,8 +434,8 @@ std::array<ReplayPresenter::SideWork, ReplayPresenter::kSides> ReplayPresenter::
     if (!has_ghosts_) continue;
     const double time = work[side].snapshot->time;
     const record::TipPath& path = sides_[side]->path_of_tips;
-    overlay.trails = view::MakePathTrails(path.Between(scene::kLeft, time - kTrail, time),
-                                          path.Between(scene::kRight, time - kTrail, time));
+    overlay.trails = view::MakePathTrails(path.Between(instrument::kLeft, time - kTrail, time),
+                                          path.Between(instrument::kRight, time - kTrail, time));
     if (const auto* other = work[1 - side].snapshot; other != nullptr) {
       const auto ghosts = view::MakeGhosts(*other);
       overlay.trails.insert(overlay.trails.end(), ghosts.begin(), ghosts.end());

@@ -41,7 +41,7 @@ device::MouseKeyboardSettings DeviceSettings(const scene::Scene& scene) {
   for (int channel = 0; channel < device::kChannelCount; ++channel) {
     device::HandLimits& limits = settings.limits[channel];
     limits.max_depth = std::min(limits.max_depth, settings.shaft_length - kHandlePart);
-    if (channel < scene::kHandCount) limits.max_jaw = scene.instruments[channel].tool.max_jaw;
+    if (channel < instrument::kHandCount) limits.max_jaw = scene.instruments[channel].tool.max_jaw;
   }
   // a laparoscope may look in from right below the wall
   settings.limits[device::kLaparoscope].min_depth = 0.005;
@@ -73,8 +73,8 @@ SessionControl::SessionControl(simulation::Simulation simulation,
 void SessionControl::PlaceAtHome() {
   const scene::Scene& scene = runner_.GetScene();
   device_.ReleaseAll();
-  device_.Place(device::kLeftHand, SampleOf(scene.instruments[scene::kLeft].home));
-  device_.Place(device::kRightHand, SampleOf(scene.instruments[scene::kRight].home));
+  device_.Place(device::kLeftHand, SampleOf(scene.instruments[instrument::kLeft].home));
+  device_.Place(device::kRightHand, SampleOf(scene.instruments[instrument::kRight].home));
   device_.Place(device::kLaparoscope, SampleOf(scene.laparoscope.home));
 }
 
@@ -217,7 +217,8 @@ void SessionControl::ApplyDevice() {
 /// Pedals of a stylus reach the tick by the loop's own way; what a press changes for good comes in here.
 void SessionControl::ApplyStylusButtons() {
   const session::HapticStatus& status = haptic_loop_->Latest();
-  const session::DeviceActs acts = {status.hands[scene::kLeft].acts, status.hands[scene::kRight].acts};
+  const session::DeviceActs acts = {status.hands[instrument::kLeft].acts,
+                                    status.hands[instrument::kRight].acts};
   if (MayAct()) {
     stylus_hands_.Step(acts, input_);
   } else {
@@ -260,13 +261,13 @@ bool SessionControl::IsDemonstrationOver() const {
   return is_demonstration_ && runner_.IsScriptOver();
 }
 
-void SessionControl::ChooseTool(scene::Hand hand, std::size_t place) {
+void SessionControl::ChooseTool(instrument::Hand hand, std::size_t place) {
   if (place < runner_.GetScene().instruments[hand].tray.size())
     input_.controls[hand].tool = static_cast<std::uint8_t>(place);
 }
 
 void SessionControl::StepTool(int step) {
-  const auto hand = static_cast<scene::Hand>(hand_);
+  const auto hand = static_cast<instrument::Hand>(hand_);
   const auto count = static_cast<int>(runner_.GetScene().instruments[hand].tray.size());
   if (count > 0)
     ChooseTool(hand, static_cast<std::size_t>((input_.controls[hand].tool + step + count) % count));
@@ -289,19 +290,20 @@ void SessionControl::SetPedal(Pedal pedal, bool is_down) {
       controls.aspirate = is_down;
       break;
     case Pedal::kClutch:
-      device_hands_.SetClutch(static_cast<scene::Hand>(hand_), is_down);
+      device_hands_.SetClutch(static_cast<instrument::Hand>(hand_), is_down);
       break;
   }
 }
 
 void SessionControl::ToggleFreeze() {
-  if (MayAct()) device_hands_.ToggleFreeze(static_cast<scene::Hand>(hand_));
+  if (MayAct()) device_hands_.ToggleFreeze(static_cast<instrument::Hand>(hand_));
 }
 
 void SessionControl::ReleasePedals() {
   for (scene::HandControls& controls : input_.controls)
     controls.cut = controls.coagulate = controls.rinse = controls.aspirate = false;
-  for (const scene::Hand hand : {scene::kLeft, scene::kRight}) device_hands_.SetClutch(hand, false);
+  for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight})
+    device_hands_.SetClutch(hand, false);
 }
 
 void SessionControl::StepAssistant() {

@@ -84,8 +84,8 @@ TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& 
         "",         rule.penalty, error.position};
     if (error.object >= 0) row.by = scene.objects[static_cast<std::size_t>(error.object)].name;
     if (error.hand >= 0)
-      row.by +=
-          (row.by.empty() ? "" : ", ") + std::string(error.hand == scene::kLeft ? "left hand" : "right hand");
+      row.by += (row.by.empty() ? "" : ", ") +
+                std::string(error.hand == instrument::kLeft ? "left hand" : "right hand");
     result.errors.push_back(std::move(row));
   }
   return result;

@@ -55,7 +55,7 @@ TEST(Guides, DropFromTheTipToTheBoard) {
   EXPECT_FALSE(FindDistanceAhead(*bench.scene, {}, bench.snapshot, {0.4, 0, -0.1}, {0, 0, -1}).has_value())
       << "beside the board";
   // the lowest point of a hand's line lies on the board, below the tip
-  bench.snapshot.instruments[scene::kLeft].X_world_tool.translation = tip;
+  bench.snapshot.instruments[instrument::kLeft].X_world_tool.translation = tip;
   const auto trails = bench.Guides();
   double lowest = 0;
   for (const view::Trail& trail : trails) {
@@ -104,15 +104,15 @@ TEST(Guides, MarkTheNextRingAndThenItsFreePegs) {
 
 TEST(Guides, SayWhetherJawsAreOpenClosedOrHold) {
   Bench bench = Bench::OfTask("peg_transfer");
-  auto& left = bench.snapshot.instruments[scene::kLeft];
+  auto& left = bench.snapshot.instruments[instrument::kLeft];
   left.joints.jaw = 0;
-  EXPECT_EQ(DescribeJaws(*bench.scene, bench.snapshot, scene::kLeft), "closed");
+  EXPECT_EQ(DescribeJaws(*bench.scene, bench.snapshot, instrument::kLeft), "closed");
   left.joints.jaw = 0.8;
-  EXPECT_EQ(DescribeJaws(*bench.scene, bench.snapshot, scene::kLeft), "open");
+  EXPECT_EQ(DescribeJaws(*bench.scene, bench.snapshot, instrument::kLeft), "open");
   const std::size_t before = bench.Guides().size();
   left.is_grasping = true;
   left.object = 2;
-  EXPECT_EQ(DescribeJaws(*bench.scene, bench.snapshot, scene::kLeft), "holds ring 3");
+  EXPECT_EQ(DescribeJaws(*bench.scene, bench.snapshot, instrument::kLeft), "holds ring 3");
   EXPECT_EQ(bench.Guides().size(), before + 1) << "a ring round jaws that hold";
 }
 

@@ -53,11 +53,11 @@ TEST_F(PanelPresenterTest, ShowsATask) {
   const simulation::Snapshot snapshot = control_->Advance(0);
   presenter_.ShowState(snapshot);
   EXPECT_TRUE(screen_.task.next.starts_with("Next: ")) << screen_.task.next;
-  EXPECT_EQ(screen_.hands[scene::kLeft].force, "0.0 N");
-  EXPECT_EQ(screen_.hands[scene::kLeft].level, ForceLevel::kCalm);
-  EXPECT_TRUE(screen_.hands[scene::kRight].is_chosen);
-  EXPECT_FALSE(screen_.hands[scene::kLeft].is_chosen);
-  EXPECT_TRUE(screen_.operation.hands[scene::kLeft].starts_with("1  Left "));
+  EXPECT_EQ(screen_.hands[instrument::kLeft].force, "0.0 N");
+  EXPECT_EQ(screen_.hands[instrument::kLeft].level, ForceLevel::kCalm);
+  EXPECT_TRUE(screen_.hands[instrument::kRight].is_chosen);
+  EXPECT_FALSE(screen_.hands[instrument::kLeft].is_chosen);
+  EXPECT_TRUE(screen_.operation.hands[instrument::kLeft].starts_with("1  Left "));
   EXPECT_EQ(screen_.operation.clips, "—");
 }
 
@@ -65,7 +65,7 @@ TEST_F(PanelPresenterTest, ADemonstrationChoosesNoHand) {
   Open("peg_transfer");
   control_->SetDemonstration(true);
   presenter_.ShowState(control_->Advance(0));
-  EXPECT_FALSE(screen_.hands[scene::kRight].is_chosen);
+  EXPECT_FALSE(screen_.hands[instrument::kRight].is_chosen);
 }
 
 TEST_F(PanelPresenterTest, SlidersMoveTheSettingsAndGoBack) {
@@ -103,7 +103,7 @@ TEST_F(PanelPresenterTest, DoesNothingWithoutAControl) {
   presenter_.UseControl(nullptr);
   presenter_.SetSetting(0, 1.0);
   presenter_.CommandAssistant(1);
-  presenter_.ChooseTool(scene::kLeft, 0);
+  presenter_.ChooseTool(instrument::kLeft, 0);
   presenter_.ShowState({});
   EXPECT_TRUE(screen_.operation.clips.empty());
 }

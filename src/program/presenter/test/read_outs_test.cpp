@@ -61,28 +61,28 @@ TEST(ReadOuts, ContactIsSaidInWords) {
 TEST(ReadOuts, EventsAreSaidInWords) {
   const scene::Scene scene = TwoOrgans();
   using scene::EventKind;
-  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, scene::kLeft, 1, 2.1}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, instrument::kLeft, 1, 2.1}, scene),
             "Left grasper: grasped the gallbladder, 2.1 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, scene::kRight, 1, 0}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, instrument::kRight, 1, 0}, scene),
             "Right grasper: let the gallbladder go");
-  EXPECT_EQ(DescribeEvent({EventKind::kSlip, 10, scene::kRight, 0, 4.0}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kSlip, 10, instrument::kRight, 0, 4.0}, scene),
             "Right grasper: the liver slipped, 4.0 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kPinchDamage, 10, scene::kRight, 0, 3.0}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kPinchDamage, 10, instrument::kRight, 0, 3.0}, scene),
             "Right grasper: pinched the liver too hard, 3.0 N");
   EXPECT_EQ(DescribeEvent({EventKind::kToolsTouch, 10, -1, -1, 0}, scene), "The instruments met");
   EXPECT_EQ(DescribeEvent({EventKind::kStateRestored, 10, -1, 0, 0}, scene),
             "Liver: was not finite, last good state restored (E-SIM-001)");
-  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, scene::kLeft, 0, 0.01}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, instrument::kLeft, 0, 0.01}, scene),
             "Left grasper: grasped the liver");
   scene::Scene rings = TwoOrgans();
   rings.objects.resize(2);
   rings.objects[1].name = "ring_2";
-  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, scene::kLeft, -1, 1.2, 1}, rings),
+  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, instrument::kLeft, -1, 1.2, 1}, rings),
             "Left grasper: grasped ring 2, 1.2 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, scene::kRight, -1, 0, 1}, rings),
+  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, instrument::kRight, -1, 0, 1}, rings),
             "Right grasper: let ring 2 go");
-  EXPECT_TRUE(IsWarning({EventKind::kSlip, 10, scene::kRight, 0, 4.0}));
-  EXPECT_FALSE(IsWarning({EventKind::kGrasp, 10, scene::kRight, 0, 4.0}));
+  EXPECT_TRUE(IsWarning({EventKind::kSlip, 10, instrument::kRight, 0, 4.0}));
+  EXPECT_FALSE(IsWarning({EventKind::kGrasp, 10, instrument::kRight, 0, 4.0}));
 }
 
 // What tears in blunt dissection is no duct, and no fault.
@@ -136,52 +136,52 @@ TEST(FrameMeter, HoldsMoreFramesThanItKeeps) {
 
 TEST(DescribeEvent, ARefusedExchangeSaysWhatToDo) {
   const scene::Scene scene;
-  EXPECT_EQ(DescribeEvent({scene::EventKind::kExchangeRefused, 1, scene::kLeft, -1, 0.0}, scene),
+  EXPECT_EQ(DescribeEvent({scene::EventKind::kExchangeRefused, 1, instrument::kLeft, -1, 0.0}, scene),
             "Left grasper: open the jaws and let go before the tool is exchanged");
 }
 
 TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
   scene::Scene scene;
-  scene.instruments[scene::kRight].tool = *instrument::FindTool("clip_applier");
+  scene.instruments[instrument::kRight].tool = *instrument::FindTool("clip_applier");
   const auto text = [&](scene::EventKind kind, int error = -1) {
-    scene::Event event{kind, 1, scene::kRight, -1, 0.0};
+    scene::Event event{kind, 1, instrument::kRight, -1, 0.0};
     event.error = error;
     return DescribeEvent(event, scene);
   };
   EXPECT_EQ(text(scene::EventKind::kNoClipsLeft),
             "Right clip applier: there is no clip left; exchange the tool for a full one");
-  scene.instruments[scene::kRight].tray = {*instrument::FindTool("clip_applier"),
-                                           *instrument::FindTool("scissors")};
+  scene.instruments[instrument::kRight].tray = {*instrument::FindTool("clip_applier"),
+                                                *instrument::FindTool("scissors")};
   EXPECT_EQ(text(scene::EventKind::kTubeCut), "Right hand: cut the tissue") << "whichever tool it has now";
   EXPECT_EQ(text(scene::EventKind::kStoneTaken), "Right hand: took a stone");
   EXPECT_EQ(text(scene::EventKind::kStoneRetrieved), "Right hand: retrieved a stone");
   EXPECT_EQ(text(scene::EventKind::kStoneSpilled), "A stone spilled out of the gallbladder");
-  EXPECT_TRUE(IsWarning({scene::EventKind::kStoneSpilled, 1, scene::kRight, -1, 0.0}));
+  EXPECT_TRUE(IsWarning({scene::EventKind::kStoneSpilled, 1, instrument::kRight, -1, 0.0}));
   EXPECT_EQ(text(scene::EventKind::kClipSlipped), "A clip slipped off the tissue");
   EXPECT_NE(text(scene::EventKind::kUsedOutside).find("push it in"), std::string::npos);
   const auto error = cholecystectomy::OperationError::kClipCrossed;
   EXPECT_EQ(text(scene::EventKind::kOperationError, static_cast<int>(error)),
             cholecystectomy::ExplanationOf(error));
-  EXPECT_TRUE(IsWarning({scene::EventKind::kOperationError, 1, scene::kRight, -1, 0.0}));
-  EXPECT_FALSE(IsWarning({scene::EventKind::kClipClosed, 1, scene::kRight, -1, 0.0}));
+  EXPECT_TRUE(IsWarning({scene::EventKind::kOperationError, 1, instrument::kRight, -1, 0.0}));
+  EXPECT_FALSE(IsWarning({scene::EventKind::kClipClosed, 1, instrument::kRight, -1, 0.0}));
 }
 
 TEST(ToolLabel, NamesTheToolInUseAndItsClips) {
   scene::Scene scene;
-  scene.instruments[scene::kRight].tray = {*instrument::FindTool("hook"),
-                                           *instrument::FindTool("clip_applier")};
+  scene.instruments[instrument::kRight].tray = {*instrument::FindTool("hook"),
+                                                *instrument::FindTool("clip_applier")};
   simulation::Snapshot snapshot;
-  EXPECT_EQ(ToolLabel(scene, snapshot, scene::kRight), "hook");
-  snapshot.operation.tools[scene::kRight] = 1;
-  snapshot.operation.clips_left[scene::kRight] = 12;
-  EXPECT_EQ(ToolLabel(scene, snapshot, scene::kRight), "clip applier, 12 clips");
-  snapshot.operation.clips_left[scene::kRight] = 1;
-  EXPECT_EQ(ToolLabel(scene, snapshot, scene::kRight), "clip applier, 1 clip");
+  EXPECT_EQ(ToolLabel(scene, snapshot, instrument::kRight), "hook");
+  snapshot.operation.tools[instrument::kRight] = 1;
+  snapshot.operation.clips_left[instrument::kRight] = 12;
+  EXPECT_EQ(ToolLabel(scene, snapshot, instrument::kRight), "clip applier, 12 clips");
+  snapshot.operation.clips_left[instrument::kRight] = 1;
+  EXPECT_EQ(ToolLabel(scene, snapshot, instrument::kRight), "clip applier, 1 clip");
 }
 
 TEST(DescribeStones, CountsWhatCameOutOfTheGallbladder) {
-  using simulation::StonePlace;
-  std::vector<simulation::StoneSnapshot> stones(5);
+  using surgery::StonePlace;
+  std::vector<surgery::StoneSnapshot> stones(5);
   EXPECT_EQ(DescribeStones({}), "none spilled");
   EXPECT_EQ(DescribeStones(stones), "none spilled");
   stones[0].place = StonePlace::kSpilled, stones[1].place = StonePlace::kHeld;

@@ -48,8 +48,8 @@ TEST_F(SessionControlTest, StartsPausedAtHomeWithTheScenesSettings) {
   EXPECT_TRUE(control->IsPaused());
   control->Device().SetKey(Motion::kIn, true);
   EXPECT_EQ(control->Advance(0.05).tick, 0u);
-  EXPECT_EQ(control->GetInput().hands[scene::kRight].depth,
-            control->GetScene().instruments[scene::kRight].home.depth)
+  EXPECT_EQ(control->GetInput().hands[instrument::kRight].depth,
+            control->GetScene().instruments[instrument::kRight].home.depth)
       << "paused hands stand still";
   EXPECT_EQ(control->GetSettings(), control->GetScene().settings);
 }
@@ -60,7 +60,7 @@ TEST_F(SessionControlTest, TheHandStaysNearAToolThatSomethingStops) {
   control->SetPaused(false);
   control->Device().SetKey(Motion::kIn, true);
   const auto lead = [](const simulation::Snapshot& now) {
-    const auto& hand = now.instruments[scene::kRight];
+    const auto& hand = now.instruments[instrument::kRight];
     return math::Distance(hand.X_world_device.translation, hand.X_world_tool.translation);
   };
   ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) { return lead(now) > 0.018; })) << "pressed";
@@ -71,10 +71,10 @@ TEST_F(SessionControlTest, TheHandStaysNearAToolThatSomethingStops) {
   }
   EXPECT_LT(most, 0.032);
   control->Device().SetKey(Motion::kIn, false);
-  const double depth = control->GetInput().hands[scene::kRight].depth;
+  const double depth = control->GetInput().hands[instrument::kRight].depth;
   control->Device().SetKey(Motion::kOut, true);
   EXPECT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) { return lead(now) < 1e-3; }));
-  EXPECT_LT(control->GetInput().hands[scene::kRight].depth, depth);
+  EXPECT_LT(control->GetInput().hands[instrument::kRight].depth, depth);
 }
 
 // A beginner turns the wheel until something is reached: the tip ends before it, and a further turn presses.
@@ -85,8 +85,8 @@ TEST_F(SessionControlTest, TheWheelStopsBeforeWhatTheTipMeets) {
       control->Scroll(1);
       for (int frame = 0; frame < 12; ++frame) control->Advance(1.0 / 60);
     }
-    const math::Vec3& port = control->GetScene().instruments[scene::kRight].p_world_port;
-    return instrument::CalcToolPose(port, control->GetInput().hands[scene::kRight]).translation.z;
+    const math::Vec3& port = control->GetScene().instruments[instrument::kRight].p_world_port;
+    return instrument::CalcToolPose(port, control->GetInput().hands[instrument::kRight]).translation.z;
   };
   constexpr double kBoard = -0.140;  // [m]
   control->SetPaused(false);
@@ -128,16 +128,17 @@ TEST_F(SessionControlTest, PedalsBelongToTheChosenHandAndAPauseReleasesThem) {
   control->SetPedal(Pedal::kCut, true);
   control->SetPedal(Pedal::kRinse, true);
   const auto& controls = control->GetInput().controls;
-  EXPECT_TRUE(controls[scene::kLeft].cut && controls[scene::kLeft].rinse);
-  EXPECT_FALSE(controls[scene::kRight].cut || controls[scene::kLeft].coagulate);
+  EXPECT_TRUE(controls[instrument::kLeft].cut && controls[instrument::kLeft].rinse);
+  EXPECT_FALSE(controls[instrument::kRight].cut || controls[instrument::kLeft].coagulate);
   control->SwitchHand();
-  EXPECT_FALSE(controls[scene::kLeft].cut || controls[scene::kRight].cut) << "no foot stays on a pedal";
+  EXPECT_FALSE(controls[instrument::kLeft].cut || controls[instrument::kRight].cut)
+      << "no foot stays on a pedal";
   control->SetPedal(Pedal::kCoagulate, true);
-  EXPECT_TRUE(controls[scene::kRight].coagulate);
+  EXPECT_TRUE(controls[instrument::kRight].coagulate);
   control->SetPaused(true);
-  EXPECT_FALSE(controls[scene::kRight].coagulate);
+  EXPECT_FALSE(controls[instrument::kRight].coagulate);
   control->SetPedal(Pedal::kCoagulate, true);
-  EXPECT_FALSE(controls[scene::kRight].coagulate) << "a pedal does nothing while paused";
+  EXPECT_FALSE(controls[instrument::kRight].coagulate) << "a pedal does nothing while paused";
 }
 
 /// What a device says, set by the test; lost while `is_plugged` is false.
@@ -169,17 +170,17 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   control->UseDevice(std::make_unique<FakeDevice>(shared));
   control->SetPaused(false);
   const auto left = [&]() -> const scene::HandControls& {
-    return control->GetSentInput().controls[scene::kLeft];
+    return control->GetSentInput().controls[instrument::kLeft];
   };
   const auto until = [&](const std::function<bool()>& claim) {
     return AdvanceUntil([&](const simulation::Snapshot&) { return claim(); });
   };
   shared.pan = 0.2;
-  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[scene::kLeft].pan == 0.2; }));
+  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[instrument::kLeft].pan == 0.2; }));
   shared.buttons = 1;
   ASSERT_TRUE(until([&] { return left().cut; }));
-  EXPECT_FALSE(control->GetInput().controls[scene::kLeft].cut) << "no key";
-  EXPECT_FALSE(control->GetSentInput().controls[scene::kRight].cut);
+  EXPECT_FALSE(control->GetInput().controls[instrument::kLeft].cut) << "no key";
+  EXPECT_FALSE(control->GetSentInput().controls[instrument::kRight].cut);
   shared.buttons = 8;
   ASSERT_TRUE(until([&] { return left().tool == 1; }));
   EXPECT_FALSE(left().cut);
@@ -192,12 +193,12 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   EXPECT_EQ(left().tool, 1) << "the tool stays";
   shared.is_plugged = true;
   control->SetPaused(false);
-  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[scene::kLeft].pan == 0.5; }));
+  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[instrument::kLeft].pan == 0.5; }));
   for (int frame = 0; frame < 20; ++frame) control->Advance(0.01);
   EXPECT_FALSE(left().coagulate) << "the foot that stayed does not count";
   // a tool that is far behind its hand would draw it back where the device is out of sight for a moment
   ASSERT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) {
-    return std::fabs(now.instruments[scene::kLeft].joints.pan - 0.5) < 0.01;
+    return std::fabs(now.instruments[instrument::kLeft].joints.pan - 0.5) < 0.01;
   }));
   control->ChooseHand(device::kLeftHand);
   control->SetPedal(Pedal::kClutch, true);
@@ -205,62 +206,64 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   shared.pan = 0.9;
   device::SystemClock().Sleep(0.02);
   control->Advance(0.01);
-  EXPECT_EQ(control->GetSentInput().hands[scene::kLeft].pan, 0.5);
+  EXPECT_EQ(control->GetSentInput().hands[instrument::kLeft].pan, 0.5);
   control->SetPedal(Pedal::kClutch, false);
   control->Advance(0.01);
-  EXPECT_NEAR(control->GetSentInput().hands[scene::kLeft].pan, 0.5, 1e-12) << "it goes on from there";
+  EXPECT_NEAR(control->GetSentInput().hands[instrument::kLeft].pan, 0.5, 1e-12) << "it goes on from there";
 }
 
 TEST_F(SessionControlTest, ADevicesPedalsDoNothingWhilePaused) {
   FakeDevice::Shared shared;
   control->UseDevice(std::make_unique<FakeDevice>(shared));
   shared.pan = 0.2;
-  ASSERT_TRUE(AdvanceUntil(
-      [&](const simulation::Snapshot&) { return control->GetSentInput().hands[scene::kLeft].pan == 0.2; }));
+  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot&) {
+    return control->GetSentInput().hands[instrument::kLeft].pan == 0.2;
+  }));
   shared.buttons = 1 | 8;
   for (int frame = 0; frame < 20; ++frame) {
     device::SystemClock().Sleep(0.005);
     control->Advance(0.01);
   }
-  EXPECT_FALSE(control->GetSentInput().controls[scene::kLeft].cut);
+  EXPECT_FALSE(control->GetSentInput().controls[instrument::kLeft].cut);
   control->SetPaused(false);
   control->Advance(0.01);
-  EXPECT_TRUE(control->GetSentInput().controls[scene::kLeft].cut) << "it is held";
-  EXPECT_EQ(control->GetSentInput().controls[scene::kLeft].tool, 0) << "that press was for nothing";
+  EXPECT_TRUE(control->GetSentInput().controls[instrument::kLeft].cut) << "it is held";
+  EXPECT_EQ(control->GetSentInput().controls[instrument::kLeft].tool, 0) << "that press was for nothing";
 }
 
 TEST_F(SessionControlTest, ToolsGoRoundTheTrayAndTheAssistantObeys) {
-  const auto& tray = control->GetScene().instruments[scene::kRight].tray;
+  const auto& tray = control->GetScene().instruments[instrument::kRight].tray;
   ASSERT_FALSE(tray.empty());
   control->ChooseHand(device::kRightHand);
   for (std::size_t i = 0; i < tray.size(); ++i) {
-    EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, i);
+    EXPECT_EQ(control->GetInput().controls[instrument::kRight].tool, i);
     control->StepTool(1);
   }
-  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, 0);
+  EXPECT_EQ(control->GetInput().controls[instrument::kRight].tool, 0);
   control->StepTool(-1);
-  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, tray.size() - 1);
-  control->ChooseTool(scene::kRight, tray.size());
-  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, tray.size() - 1) << "no such place";
+  EXPECT_EQ(control->GetInput().controls[instrument::kRight].tool, tray.size() - 1);
+  control->ChooseTool(instrument::kRight, tray.size());
+  EXPECT_EQ(control->GetInput().controls[instrument::kRight].tool, tray.size() - 1) << "no such place";
   control->StepAssistant();
   EXPECT_EQ(control->GetInput().assistant, scene::AssistantCommand::kRetract);
   control->Reset();
   EXPECT_EQ(control->GetInput().assistant, scene::AssistantCommand::kWait);
-  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, 0);
+  EXPECT_EQ(control->GetInput().controls[instrument::kRight].tool, 0);
 }
 
 TEST_F(SessionControlTest, HeldKeyMovesTheToolOfTheSimulation) {
   control->SetPaused(false);
   control->ChooseHand(device::kLeftHand);
   ASSERT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) { return now.tick > 2; }));
-  const math::Vec3 start = control->Advance(0).instruments[scene::kLeft].X_world_tool.translation;
+  const math::Vec3 start = control->Advance(0).instruments[instrument::kLeft].X_world_tool.translation;
   const math::Pose X_world_view = control->CalcView(control->Advance(0));
   const math::Vec3 right = math::Rotate(X_world_view.rotation, {1, 0, 0});
   control->Device().SetKey(Motion::kRight, true);
   EXPECT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
-    return math::Dot(now.instruments[scene::kLeft].X_world_tool.translation - start, right) > 0.005;
+    return math::Dot(now.instruments[instrument::kLeft].X_world_tool.translation - start, right) > 0.005;
   })) << "the tip goes to the right in the picture";
-  const math::Vec3 moved = control->Advance(0).instruments[scene::kLeft].X_world_tool.translation - start;
+  const math::Vec3 moved =
+      control->Advance(0).instruments[instrument::kLeft].X_world_tool.translation - start;
   EXPECT_GT(math::Dot(moved, right), 0.95 * math::Norm(moved)) << "and nowhere else";
 }
 
@@ -282,15 +285,15 @@ TEST_F(SessionControlTest, DemonstrationMovesTheHandsAndIsTakenOverWithoutAJump)
   ASSERT_TRUE(control->HasScript());
   control->SetDemonstration(true);
   control->SetPaused(false);
-  const double home = control->GetScene().instruments[scene::kLeft].home.depth;
+  const double home = control->GetScene().instruments[instrument::kLeft].home.depth;
   ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
-    return std::abs(now.instruments[scene::kLeft].joints.depth - home) > 0.01;
+    return std::abs(now.instruments[instrument::kLeft].joints.depth - home) > 0.01;
   }));
-  const simulation::InstrumentSnapshot before = control->Advance(0).instruments[scene::kLeft];
+  const simulation::InstrumentSnapshot before = control->Advance(0).instruments[instrument::kLeft];
   control->SetDemonstration(false);
   control->Advance(0);
-  EXPECT_NEAR(control->GetInput().hands[scene::kLeft].depth, before.joints.depth, 0.005);
-  EXPECT_NEAR(control->GetInput().hands[scene::kLeft].pan, before.joints.pan, 0.05);
+  EXPECT_NEAR(control->GetInput().hands[instrument::kLeft].depth, before.joints.depth, 0.005);
+  EXPECT_NEAR(control->GetInput().hands[instrument::kLeft].pan, before.joints.pan, 0.05);
 }
 
 TEST_F(SessionControlTest, ATaskWithoutAScriptIsShownByTheExpertAndTakenOverWithTheToolInUse) {
@@ -299,12 +302,12 @@ TEST_F(SessionControlTest, ATaskWithoutAScriptIsShownByTheExpertAndTakenOverWith
   control->SetDemonstration(true);
   control->SetPaused(false);
   EXPECT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) {
-    return now.operation.tools[scene::kRight] == 1;
+    return now.operation.tools[instrument::kRight] == 1;
   })) << "three clips, then the scissors";
   EXPECT_EQ(control->Advance(0).operation.clip_count, 3u);
   EXPECT_FALSE(control->IsDemonstrationOver());
   control->SetDemonstration(false);
-  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, 1) << "it is not exchanged back";
+  EXPECT_EQ(control->GetInput().controls[instrument::kRight].tool, 1) << "it is not exchanged back";
   control->SetDemonstration(true);
   EXPECT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
     return now.task.IsOver() && control->IsDemonstrationOver();
@@ -331,8 +334,8 @@ TEST_F(SessionControlTest, ResetGoesHomeAndToTheFirstTick) {
   control->SetPaused(true);
   control->Reset();
   EXPECT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) { return now.tick == 0; }));
-  EXPECT_EQ(control->GetInput().hands[scene::kRight].depth,
-            control->GetScene().instruments[scene::kRight].home.depth);
+  EXPECT_EQ(control->GetInput().hands[instrument::kRight].depth,
+            control->GetScene().instruments[instrument::kRight].home.depth);
 }
 
 TEST_F(SessionControlTest, LaparoscopeIsHeldAndGivenBackToTheSameHand) {

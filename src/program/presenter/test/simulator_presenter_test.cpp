@@ -291,8 +291,8 @@ TEST_F(PresenterSlow, APreparedStepGoesOnWhereTheExpertStood) {
   ASSERT_NE(screen_.control, nullptr) << screen_.page.event;
   EXPECT_TRUE(screen_.control->IsPaused()) << "until the hands are ready";
   EXPECT_EQ(screen_.control->Advance(0.01).tick, kPrepared);
-  EXPECT_EQ(screen_.control->GetInput().controls[scene::kRight].tool,
-            simulation->GetSnapshot().operation.tools[scene::kRight]);
+  EXPECT_EQ(screen_.control->GetInput().controls[instrument::kRight].tool,
+            simulation->GetSnapshot().operation.tools[instrument::kRight]);
   presenter_->Do(Action::kTogglePause);
   ASSERT_TRUE(RunTo(kPrepared + 130));
   presenter_->Do(Action::kFinish);
@@ -642,7 +642,7 @@ Branch MakeBranch(std::uint64_t seed) {
   auto simulation = simulation::Simulation::Make(shared);
   EXPECT_TRUE(simulation.ok());
   scene::Input input = scene::CalcScriptInput(*shared, 0);
-  input.hands[scene::kRight].pan += 0.1;
+  input.hands[instrument::kRight].pan += 0.1;
   for (int tick = 0; tick < 180; ++tick) simulation->Step(input);
   record::Description description;
   description.kind = record::Description::Kind::kTask;
@@ -665,7 +665,7 @@ TEST_F(Presenter, TakesOverFromARecording) {
   EXPECT_EQ(presenter_->GetOptions().task, "wire_run");
   EXPECT_EQ(presenter_->GetOptions().level, "easy");
   EXPECT_EQ(control.Advance(0.01).tick, 180u);
-  EXPECT_NEAR(control.GetInput().hands[scene::kRight].pan, last.hands[scene::kRight].pan, 1e-9)
+  EXPECT_NEAR(control.GetInput().hands[instrument::kRight].pan, last.hands[instrument::kRight].pan, 1e-9)
       << "the hands rest where the tools stand";
   presenter_->Do(Action::kTogglePause);
   EXPECT_TRUE(RunTo(330));

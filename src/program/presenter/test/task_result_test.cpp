@@ -68,7 +68,8 @@ TEST(TaskErrorLog, KeepsEveryErrorOnceAndForgetsThoseOfTheRunBefore) {
 }
 
 TEST(TaskResult, SaysGoalsErrorsTimeAndScore) {
-  const auto result = MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, 0, scene::kRight}});
+  const auto result =
+      MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, 0, instrument::kRight}});
   EXPECT_EQ(result.verdict, "The time is over");
   EXPECT_EQ(FormatScore(result), "35.1 of 85");
   ASSERT_EQ(result.goals.size(), 2u);
@@ -80,7 +81,8 @@ TEST(TaskResult, SaysGoalsErrorsTimeAndScore) {
 }
 
 TEST(TaskResult, IsWrittenAsJson) {
-  const auto result = MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, -1, scene::kLeft}});
+  const auto result =
+      MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, -1, instrument::kLeft}});
   const auto json = nlohmann::json::parse(FormatTaskResultJson(result));
   EXPECT_EQ(json.at("format"), "trocar-task-result");
   EXPECT_EQ(json.at("task"), "Rings <on> pegs");

@@ -25,7 +25,7 @@ struct Person {
 
 /// What each step asks for, in frames.
 std::vector<std::vector<std::function<void(Person&)>>> Lessons() {
-  constexpr int kHand = scene::kRight;
+  constexpr int kHand = instrument::kRight;
   return {{[](Person& p) { p.sight.is_pointer_taken = true; }},
           {[](Person& p) { p.input.hands[kHand].pan += 0.3; }},
           {[](Person& p) { p.input.hands[kHand].depth += 0.012; }},

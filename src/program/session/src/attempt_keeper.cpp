@@ -34,7 +34,7 @@ std::filesystem::path MakeName(const AttemptKeeping& keeping) {
 
 }  // namespace
 
-void AttemptKeeper::BeforeStep(const Simulation& simulation, bool is_demonstration) {
+void AttemptKeeper::BeforeStep(const simulation::Simulation& simulation, bool is_demonstration) {
   if (!keeping_ || recorder_ != nullptr || has_failed_ || is_closed_) return;
   record::Description description = keeping_->description;
   if (is_demonstration) description.player = "the demonstration";
@@ -64,7 +64,7 @@ void AttemptKeeper::BeforeStep(const Simulation& simulation, bool is_demonstrati
   host::Log(host::LogLevel::kWarning, "attempts are not recorded: " + recorder.error().Text());
 }
 
-void AttemptKeeper::End(const Simulation& simulation) {
+void AttemptKeeper::End(const simulation::Simulation& simulation) {
   if (recorder_ == nullptr) return;
   const bool is_short =
       static_cast<double>(recorder_->Status().added) * simulation.GetScene().tick_seconds < kShortestAttempt;

@@ -20,12 +20,12 @@ class AttemptKeeper {
   /// Opens the file of a new attempt where none is open, and holds its first tick up for that long. Where it cannot be
   /// opened, that is logged once and the surgery goes on unrecorded.
   /// \param is_demonstration  nobody's own: it begins with the script or the expert
-  void BeforeStep(const Simulation& simulation, bool is_demonstration);
-  void AfterStep(const Input& input, const Simulation& simulation) noexcept {
+  void BeforeStep(const simulation::Simulation& simulation, bool is_demonstration);
+  void AfterStep(const scene::Input& input, const simulation::Simulation& simulation) noexcept {
     if (recorder_ != nullptr) recorder_->Add(input, simulation);
   }
   /// The attempt is over: writes its ending. One that was hardly begun is taken away.
-  void End(const Simulation& simulation);
+  void End(const simulation::Simulation& simulation);
   /// No attempt begins until it is opened again.
   void Close() { is_closed_ = true; }
   void Reopen() { is_closed_ = false; }

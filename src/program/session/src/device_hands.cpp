@@ -5,9 +5,13 @@
 
 namespace trocar::session {
 
+using instrument::Hand;
+using instrument::kLeft;
+using instrument::kRight;
+using scene::AssistantCommand;
 using scene::HandControls;
-using scene::kLeft;
-using scene::kRight;
+using scene::Input;
+
 namespace {
 
 using device::HandAct;
@@ -54,7 +58,7 @@ void PressPedals(const DeviceActs& acts, Input& input) noexcept {
   }
 }
 
-DeviceHands::DeviceHands(const Scene& scene) noexcept {
+DeviceHands::DeviceHands(const scene::Scene& scene) noexcept {
   for (const Hand hand : kHands) tray_sizes_[hand] = scene.instruments[hand].tray.size();
 }
 

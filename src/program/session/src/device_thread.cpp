@@ -14,8 +14,8 @@
 
 namespace trocar::session {
 
-using scene::kLeft;
-using scene::kRight;
+using instrument::kLeft;
+using instrument::kRight;
 namespace {
 
 constexpr double kReadPeriod = 0.002;  // [s]
@@ -33,7 +33,7 @@ std::string HeldBackText(const device::Driver& driver) {
 
 }  // namespace
 
-void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept {
+void PlaceAtHome(const scene::Scene& scene, device::Driver& driver) noexcept {
   const std::array<instrument::TrocarJoints, device::kChannelCount> homes = {
       scene.instruments[kLeft].home, scene.instruments[kRight].home, scene.laparoscope.home};
   for (std::size_t i = 0; i < homes.size(); ++i) {

@@ -3,11 +3,11 @@
 
 namespace trocar::session {
 
-void HapticHandsReader::Take(HapticLink& link, Input& input) noexcept {
+void HapticHandsReader::Take(HapticLink& link, scene::Input& input) noexcept {
   if (!link.is_used.load(std::memory_order_relaxed)) return;
   silent_ticks_ = link.hands.Update() ? 0 : silent_ticks_ + 1;
   const HapticHands& hands = link.hands.Front();
-  for (const Hand hand : {kLeft, kRight}) {
+  for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight}) {
     if (hands.is_driven[hand]) input.hands[hand] = hands.joints[hand];
   }
   if (silent_ticks_ <= kLongestSilence) PressPedals(hands.acts, input);

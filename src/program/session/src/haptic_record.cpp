@@ -5,6 +5,9 @@
 #include <cstdio>
 
 namespace trocar::session {
+
+using instrument::kHandCount;
+
 namespace {
 
 using haptics::ArmState;

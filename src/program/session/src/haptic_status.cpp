@@ -7,7 +7,11 @@
 
 namespace trocar::session {
 
+using instrument::Hand;
+using instrument::kLeft;
+using instrument::kRight;
 using scene::InstrumentSetup;
+
 namespace {
 
 std::string DescribeHand(const HapticHandStatus& hand, const char* name) {
@@ -86,11 +90,12 @@ std::string FormatHapticsJson(const HapticStatus& status) {
   return json + "}";
 }
 
-base::Result<HapticLoopSettings> MakeHapticSettings(const device::ForceDriver& driver, const Scene& scene,
-                                                    const Pose& X_world_laparoscope,
+base::Result<HapticLoopSettings> MakeHapticSettings(const device::ForceDriver& driver,
+                                                    const scene::Scene& scene,
+                                                    const math::Pose& X_world_laparoscope,
                                                     const device::ButtonMap& buttons) {
   const int channels = driver.GetChannelCount();
-  if (channels > kHandCount) {
+  if (channels > instrument::kHandCount) {
     return base::Error{base::ErrorCode::kDeviceSettings,
                        driver.GetName() + " has more channels than a person has hands"};
   }
@@ -104,7 +109,8 @@ base::Result<HapticLoopSettings> MakeHapticSettings(const device::ForceDriver& d
   return settings;
 }
 
-HapticHand MakeHapticHand(const Scene& scene, const Pose& X_world_laparoscope, Hand hand, double scale) {
+HapticHand MakeHapticHand(const scene::Scene& scene, const math::Pose& X_world_laparoscope, Hand hand,
+                          double scale) {
   const InstrumentSetup& setup = scene.instruments[hand];
   HapticHand made;
   made.hand = hand;

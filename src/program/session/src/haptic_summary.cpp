@@ -5,11 +5,14 @@
 #include "trocar/session/haptic_record.h"
 
 namespace trocar::session {
+
+using instrument::kLeft;
+
 namespace {
 
 using haptics::Fault;
 
-constexpr const char* kHandNames[kHandCount] = {"left", "right"};
+constexpr const char* kHandNames[instrument::kHandCount] = {"left", "right"};
 
 __attribute__((format(printf, 1, 2))) std::string Format(const char* format, ...) {
   char text[320];
@@ -68,7 +71,7 @@ std::string FormatSummaryJson(const HapticSummary& summary) {
       summary.seconds, Wide(summary.ticks), Wide(summary.late_ticks), Wide(summary.overruns), summary.rate,
       summary.lowest_rate, 1e6 * summary.period_max, 1e6 * summary.cpu_max, YesOrNo(summary.is_real_time),
       YesOrNo(summary.is_supervised));
-  for (const Hand hand : {kLeft, kRight}) {
+  for (const instrument::Hand hand : {kLeft, instrument::kRight}) {
     if (!summary.hands[hand].is_present) continue;
     json += std::string(", \"") + kHandNames[hand] + "\": " + HandJson(summary.hands[hand]);
   }
@@ -85,7 +88,7 @@ std::vector<std::array<std::string, 2>> DescribeSummary(const HapticSummary& sum
                       Wide(summary.late_ticks), Wide(summary.overruns))},
       {"Guards", std::string(summary.is_supervised ? "supervised" : "no supervisor, so no force") +
                      (summary.is_real_time ? ", real-time priority" : ", no real-time priority")}};
-  for (const Hand hand : {kLeft, kRight}) {
+  for (const instrument::Hand hand : {kLeft, instrument::kRight}) {
     if (summary.hands[hand].is_present)
       rows.push_back({hand == kLeft ? "Left hand" : "Right hand", DescribeHand(summary.hands[hand])});
   }

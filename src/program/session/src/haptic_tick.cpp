@@ -50,9 +50,9 @@ HapticTick::HapticTick(device::ForceDriver& driver, const HapticLoopSettings& se
 }
 
 /// The shaft goes through the trocar to where the hand is.
-Pose HapticTick::FindHandPose(std::size_t channel) const noexcept {
+math::Pose HapticTick::FindHandPose(std::size_t channel) const noexcept {
   const HapticHand& hand = settings_.hands[channel];
-  const Vec3 p_world_hand = channels_[channel].CalcHand();
+  const math::Vec3 p_world_hand = channels_[channel].CalcHand();
   const auto joints =
       instrument::FindJoints(hand.p_world_port, p_world_hand, CalcSpin(devices_[channel].orientation), 0.0);
   return {instrument::CalcToolPose(hand.p_world_port, joints).rotation, p_world_hand};

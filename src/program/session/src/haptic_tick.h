@@ -32,7 +32,7 @@ class HapticTick {
   const HapticStatus& GetStatus() const noexcept { return status_; }
 
  private:
-  Pose FindHandPose(std::size_t channel) const noexcept;
+  math::Pose FindHandPose(std::size_t channel) const noexcept;
   void Publish(std::size_t channel, const haptics::ChannelOutput& output) noexcept;
 
   device::ForceDriver& driver_;

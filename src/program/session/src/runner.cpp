@@ -24,6 +24,10 @@ using agent::MakeSurgeonTakingOver;
 using agent::Surgeon;
 using agent::SurgeonEntry;
 using scene::CalcScriptInput;
+using scene::Input;
+using simulation::Simulation;
+using simulation::Snapshot;
+
 namespace {
 
 constexpr std::string_view kExpert = "expert";
@@ -54,7 +58,7 @@ struct Runner::Content {
 
   /// What the script does in the next tick, or the expert where there is no script.
   Input CalcScripted(const Input& input) {
-    const Scene& scene = simulation.GetScene();
+    const scene::Scene& scene = simulation.GetScene();
     const Snapshot& seen = simulation.GetSnapshot();
     Input now = input;
     if (!scene.script.keys.empty()) {
@@ -79,7 +83,7 @@ struct Runner::Content {
   }
   void PublishPatches() {
     if (haptics == nullptr || !haptics->is_used.load(std::memory_order_relaxed)) return;
-    for (const Hand hand : {kLeft, kRight}) {
+    for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight}) {
       simulation.CutPatch(hand, haptics->patches[hand].Back());
       haptics->patches[hand].Publish();
     }
@@ -213,13 +217,13 @@ std::optional<record::RecorderStatus> Runner::RecordingStatus() const {
   return content_->attempts.Status();
 }
 
-const Scene& Runner::GetScene() const {
+const scene::Scene& Runner::GetScene() const {
   return content_->simulation.GetScene();
 }
-std::span<const SurfaceInfo> Runner::Surfaces() const {
+std::span<const scene::SurfaceInfo> Runner::Surfaces() const {
   return content_->simulation.Surfaces();
 }
-std::span<const StrandInfo> Runner::Strands() const {
+std::span<const scene::StrandInfo> Runner::Strands() const {
   return content_->simulation.Strands();
 }
 

@@ -5,16 +5,18 @@
 
 namespace trocar::session {
 
+using instrument::Hand;
+using instrument::kLeft;
+using instrument::kRight;
 using scene::HandControls;
-using scene::kLeft;
-using scene::kRight;
+
 namespace {
 
 using device::HandAct;
 using instrument::TrocarJoints;
 
-Scene MakeScene() {
-  Scene scene;
+scene::Scene MakeScene() {
+  scene::Scene scene;
   scene.instruments[kLeft].tray.resize(3);
   scene.instruments[kRight].tray.resize(5);
   return scene;
@@ -42,7 +44,7 @@ class DeviceHandsTest : public testing::Test {
   DeviceHands hands_{MakeScene()};
   DeviceSamples samples_;
   DeviceActs acts_;
-  Input input_;
+  scene::Input input_;
 };
 
 TEST_F(DeviceHandsTest, PedalsAreTheirHandsAndNobodyElsesAreLifted) {
@@ -84,10 +86,10 @@ TEST_F(DeviceHandsTest, AnotherDeviceCountsFromZeroAgain) {
 TEST_F(DeviceHandsTest, TheAssistantGoesRound) {
   Press(kLeft, HandAct::kAssistant);
   hands_.Step(acts_, input_);
-  EXPECT_EQ(input_.assistant, AssistantCommand::kRetract);
+  EXPECT_EQ(input_.assistant, scene::AssistantCommand::kRetract);
   for (int i = 0; i < 3; ++i) Press(kRight, HandAct::kAssistant);
   hands_.Step(acts_, input_);
-  EXPECT_EQ(input_.assistant, AssistantCommand::kWait);
+  EXPECT_EQ(input_.assistant, scene::AssistantCommand::kWait);
 }
 
 TEST_F(DeviceHandsTest, AClutchedToolStandsAndGoesOnFromThere) {

@@ -16,7 +16,7 @@
 
 namespace trocar::session {
 
-using scene::kRight;
+using instrument::kRight;
 namespace {
 
 using device::kLeftHand;
@@ -27,7 +27,7 @@ TEST(ApplyHands, TakesOnlyHandsThatAreSeenAndFinite) {
   samples[0] = {0.1, 0.2, 0.3, 0.15, 0.5, 0, true};
   samples[1] = {0.4, 0.4, 0.4, 0.4, 0.4, 0, false};
   samples[2] = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0, 0, 0, true};
-  Input input, before;
+  scene::Input input, before;
   ApplyHands(samples, input);
   EXPECT_EQ(input.hands[0], (instrument::TrocarJoints{0.1, 0.2, 0.3, 0.15, 0.5}));
   EXPECT_EQ(input.hands[1], before.hands[1]);

@@ -15,6 +15,9 @@
 #include "trocar/session/haptic_loop.h"
 
 namespace trocar::session {
+
+using instrument::kRight;
+
 namespace {
 
 using device::SimulatedFault;
@@ -32,7 +35,7 @@ class FaultBench {
     simulated.wire = wire.Host();
     simulated.path = [this](int, double) {
       Feed();
-      return Vec3{};
+      return math::Vec3{};
     };
     auto made = std::make_unique<device::SimulatedForceDevice>(simulated);
     device = made.get();

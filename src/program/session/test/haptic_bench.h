@@ -24,7 +24,7 @@ class HapticBench {
     simulated.path = [this](int, double) { return hand; };  // both hands alike
     device = std::make_unique<device::SimulatedForceDevice>(simulated);
     EXPECT_TRUE(device->Configure().ok() && device->Activate().ok());
-    for (const Hand side : {kLeft, kRight}) {
+    for (const instrument::Hand side : {instrument::kLeft, instrument::kRight}) {
       HapticHand made;
       made.hand = side;
       made.p_world_port = {0, 0, 0.15};
@@ -38,7 +38,7 @@ class HapticBench {
   void Step() {
     input.now += 0.001;
     if (count++ % 8 == 0) {
-      for (const Hand side : {kLeft, kRight}) {
+      for (const instrument::Hand side : {instrument::kLeft, instrument::kRight}) {
         link.patches[side].Back() = is_touching ? patch : Untouched();
         link.patches[side].Publish();
       }
@@ -74,7 +74,7 @@ class HapticBench {
     hand = {0, 0, -0.006};
     Run(100);
   }
-  const HapticHandStatus& Right() const { return tick->GetStatus().hands[kRight]; }
+  const HapticHandStatus& Right() const { return tick->GetStatus().hands[instrument::kRight]; }
 
   static tissue::LocalPatch Untouched() {
     tissue::LocalPatch none;
@@ -85,7 +85,7 @@ class HapticBench {
   haptics::PressedSheet sheet;
   tissue::LocalPatch patch;
   bool is_touching = false;
-  Vec3 hand;  // of both channels, device frame = world frame [m]
+  math::Vec3 hand;  // of both channels, device frame = world frame [m]
   std::unique_ptr<device::SimulatedForceDevice> device;
   HapticLoopSettings settings;
   HapticLink link;

@@ -6,6 +6,9 @@
 #include "trocar/host/json.h"
 
 namespace trocar::session {
+
+using instrument::kRight;
+
 namespace {
 
 using haptics::ArmState;
@@ -64,7 +67,7 @@ TEST(HapticRecord, SumsUpWhatAPersonWantsToKnow) {
   EXPECT_EQ(summary.cpu_max, 0.0002);
   EXPECT_EQ(summary.overruns, 2u);
   const HapticHandSummary& hand = summary.hands[kRight];
-  EXPECT_FALSE(summary.hands[kLeft].is_present);
+  EXPECT_FALSE(summary.hands[instrument::kLeft].is_present);
   EXPECT_NEAR(hand.armed_time, 7, 0.01);
   EXPECT_EQ(hand.longest_reason, Fault::kDeadMan) << "3 s against 1 s";
   EXPECT_EQ(hand.last_reason, Fault::kDeviceLost);

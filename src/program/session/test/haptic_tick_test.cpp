@@ -12,6 +12,10 @@
 #include "trocar/host/json.h"
 
 namespace trocar::session {
+
+using instrument::kLeft;
+using instrument::kRight;
+
 namespace {
 
 using device::SimulatedFault;
@@ -41,7 +45,7 @@ TEST(HapticTick, ToolsFollowTheHandsAsFarAsTheTissueLetsThem) {
   ASSERT_TRUE(bench.link.hands.Update());
   const auto free_hands = bench.link.hands.Front();
   ASSERT_TRUE(free_hands.is_driven[kLeft] && free_hands.is_driven[kRight]);
-  const Vec3 tip =
+  const math::Vec3 tip =
       instrument::CalcToolPose(bench.settings.hands[0].p_world_port, free_hands.joints[kLeft]).translation;
   EXPECT_LT(math::Distance(tip, bench.hand), 1e-4);  // the encoders' step
   bench.hand = {};
@@ -91,7 +95,7 @@ TEST(HapticTick, PedalsOfAStylusAreLetGoOfWithEveryFault) {
 TEST(HapticHandsReader, ALoopThatStandsStillHoldsNoPedal) {
   HapticLink link;
   HapticHandsReader reader;
-  Input input;
+  scene::Input input;
   const auto publish = [&] {
     HapticHands& hands = link.hands.Back();
     hands.is_driven[kRight] = true;
@@ -101,7 +105,7 @@ TEST(HapticHandsReader, ALoopThatStandsStillHoldsNoPedal) {
   };
   publish();
   reader.Take(link, input);
-  EXPECT_EQ(input, Input{}) << "no loop runs";
+  EXPECT_EQ(input, scene::Input{}) << "no loop runs";
   link.is_used = true;
   for (int tick = 0; tick < 100; ++tick) {
     publish();
@@ -207,7 +211,7 @@ RealtimeCounts CountWhileRunning(HapticBench& bench, int ticks) {
   const RealtimeCounts before = RealtimeWatch::Counts();
   for (int i = 0; i < ticks; ++i) {
     if (i % 8 == 0) {
-      for (const Hand side : {kLeft, kRight}) {
+      for (const instrument::Hand side : {kLeft, kRight}) {
         bench.link.patches[side].Back() = bench.patch;
         bench.link.patches[side].Publish();
       }

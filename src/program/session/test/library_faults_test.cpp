@@ -20,6 +20,10 @@
 #include "trocar/session/haptic_loop.h"
 
 namespace trocar::session {
+
+using instrument::kLeft;
+using instrument::kRight;
+
 namespace {
 
 /// A loop that presses tissue with both devices of a stand-in library in another process.
@@ -55,7 +59,7 @@ class LibraryFaults : public testing::Test {
   }
   void FeedTissue() {
     while (!is_ending_) {
-      for (const Hand hand : {kLeft, kRight}) {
+      for (const instrument::Hand hand : {kLeft, kRight}) {
         tissue::LocalPatch& patch = link_.patches[hand].Back();
         patch.kind = tissue::LocalPatch::Kind::kLinear;
         patch.is_healthy = true;

@@ -17,8 +17,8 @@
 
 namespace trocar::session {
 
-using scene::kLeft;
-using scene::kRight;
+using instrument::kLeft;
+using instrument::kRight;
 using simulation::Simulation;
 namespace {
 
@@ -29,12 +29,12 @@ class PlayedJump : public testing::Test {
   void SetUp() override {
     auto read = files::ReadScene(fs::path(TROCAR_SOURCE_DIR) / "scenes/retraction.json");
     ASSERT_TRUE(read.ok()) << read.error().Text();
-    scene_ = std::make_shared<const Scene>(std::move(*read));
+    scene_ = std::make_shared<const scene::Scene>(std::move(*read));
   }
 
   /// Largest force on a tool that a recording of 100 samples a second pushes in by `way` [m] from 0.3 s on [N].
   /// \param seconds  that the push takes; 0: from one sample to the next
-  double Push(Hand hand, double way, double seconds) {
+  double Push(instrument::Hand hand, double way, double seconds) {
     std::vector<device::HandFrame> frames(160);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       frames[i].time = 0.01 * static_cast<double>(i);
@@ -50,7 +50,7 @@ class PlayedJump : public testing::Test {
     PlaceAtHome(*scene_, player);
     EXPECT_TRUE(player.Configure().ok() && player.Activate().ok());
     auto simulation = std::move(*Simulation::Make(scene_));
-    Input input;
+    scene::Input input;
     input.hands = {scene_->instruments[kLeft].home, scene_->instruments[kRight].home};
     input.laparoscope = scene_->laparoscope.home;
     input.settings = scene_->settings;
@@ -66,7 +66,7 @@ class PlayedJump : public testing::Test {
     return largest;
   }
 
-  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const scene::Scene> scene_;
   test::TemporaryFolder folder_;
   const fs::path path_ = folder_.Path() / "hands.csv";
 };
@@ -74,7 +74,7 @@ class PlayedJump : public testing::Test {
 // 5 m/s and 8 m/s from one sample to the next: no spike beyond what the same place costs a hand that takes its time
 TEST_F(PlayedJump, PressesHardlyHarderThanASlowHand) {
   const struct {
-    Hand hand;
+    instrument::Hand hand;
     double way;  // [m]
   } cases[] = {{kLeft, 0.050}, {kLeft, 0.080}};
   for (const auto& pushed : cases) {

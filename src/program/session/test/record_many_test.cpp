@@ -23,6 +23,10 @@
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::session {
+
+using scene::Input;
+using scene::Scene;
+
 namespace {
 
 using record::Description;
@@ -44,7 +48,7 @@ class RandomHands {
       : scene_(scene), random_(seed), input_(scene::CalcScriptInput(scene, 0)), home_(input_) {}
 
   Input Next() {
-    for (std::size_t hand = 0; hand < kHandCount; ++hand) {
+    for (std::size_t hand = 0; hand < instrument::kHandCount; ++hand) {
       auto& joints = input_.hands[hand];
       if (Draw() < 0.02) wanted_[hand] = MakeWish(home_.hands[hand]);
       joints.pan += 0.02 * (wanted_[hand].pan - joints.pan) + 1e-5 * (Draw() - 0.5);
@@ -82,7 +86,7 @@ class RandomHands {
   const Scene& scene_;
   std::mt19937_64 random_;
   Input input_, home_;
-  std::array<instrument::TrocarJoints, kHandCount> wanted_ = home_.hands;
+  std::array<instrument::TrocarJoints, instrument::kHandCount> wanted_ = home_.hands;
 };
 
 class RecordMany : public testing::Test {
@@ -111,7 +115,7 @@ class RecordMany : public testing::Test {
     if (!read.ok()) return "!" + read.error().Text();
     description.seed = read->seed;
     const auto scene = std::make_shared<const Scene>(std::move(*read));
-    auto simulation = Simulation::Make(scene, {.threads = host::UseThreads(1 + number % 2)});
+    auto simulation = simulation::Simulation::Make(scene, {.threads = host::UseThreads(1 + number % 2)});
     if (!simulation.ok()) return "!" + simulation.error().Text();
     const auto seed = random();
     if (number % 8 == 3) return RecordHaptic(folder, description, std::move(*simulation), seed);
@@ -148,7 +152,7 @@ class RecordMany : public testing::Test {
 
   /// In real time, with the 1 kHz loop and an emulated device that is held.
   std::string RecordHaptic(const std::filesystem::path& folder, const Description& description,
-                           Simulation simulation, std::uint64_t seed) {
+                           simulation::Simulation simulation, std::uint64_t seed) {
     HapticLink link;
     auto driver = device::MakeForceDriver("simulated:held");
     if (!driver.ok()) return "!" + driver.error().Text();

@@ -15,16 +15,18 @@
 
 namespace trocar::session {
 
+using instrument::kRight;
 using scene::CalcScriptInput;
 using scene::SmallScene;
+
 namespace {
 
 class RunnerTest : public SmallScene {
  protected:
-  Simulation MakeSimulation() {
+  simulation::Simulation MakeSimulation() {
     auto scene = Read();
     EXPECT_TRUE(scene.ok());
-    return std::move(*Simulation::Make(std::make_shared<const Scene>(std::move(*scene))));
+    return std::move(*simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene))));
   }
   /// Waits, for at most ten seconds, until `claim` holds.
   static bool Eventually(const std::function<bool()>& claim) {
@@ -62,7 +64,7 @@ TEST_F(RunnerTest, RunsPausesAndResets) {
 
 TEST_F(RunnerTest, UsesTheNewestInput) {
   Runner runner(MakeSimulation());
-  Input input = CalcScriptInput(runner.GetScene(), 0.0);
+  scene::Input input = CalcScriptInput(runner.GetScene(), 0.0);
   input.hands[kRight].pan += 0.1;
   runner.SetInput(input);
   runner.SetPaused(false);

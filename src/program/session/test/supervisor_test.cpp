@@ -28,7 +28,10 @@
 
 namespace trocar::session {
 
+using instrument::kRight;
+using math::Vec3;
 using scene::Condition;
+
 namespace {
 
 using Got = ForceWire::Got;

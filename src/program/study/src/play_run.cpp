@@ -18,8 +18,8 @@ constexpr double kMillilitre = 1e-6;  // m^3
 
 /// What both tools do over a run.
 struct Sums {
-  std::array<double, scene::kHandCount> path{}, impulse{}, most_force{};  // [m], [N s], [N]
-  std::array<math::Vec3, scene::kHandCount> last{};
+  std::array<double, instrument::kHandCount> path{}, impulse{}, most_force{};  // [m], [N s], [N]
+  std::array<math::Vec3, instrument::kHandCount> last{};
   double iterations = 0;
   std::uint64_t pinched = 0, torn = 0, restored = 0, events_seen = 0;
   std::uint64_t ticks = 0;

@@ -7,6 +7,10 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::simulation {
+
+using math::Vec3;
+using scene::AssistantCommand;
+
 namespace {
 
 constexpr double kSpeed = 0.03;    // of the assistant's tip [m/s]

@@ -10,16 +10,11 @@
 
 namespace trocar::simulation {
 
-using math::Vec3;
-using scene::AssistantCommand;
-using scene::AssistantSetup;
-using scene::VisitState;
-
 /// A grasper in a trocar of its own. It goes around nothing and pushes nothing: what its jaws take is carried, no more.
 class Assistant {
  public:
   Assistant() = default;
-  Assistant(const AssistantSetup& setup, const Vec3& p_world_target)
+  Assistant(const scene::AssistantSetup& setup, const math::Vec3& p_world_target)
       : setup_(setup), p_rest_(p_world_target) {
     Reset();
   }
@@ -28,7 +23,7 @@ class Assistant {
   /// One tick: moves as the command says, closes or opens the jaws.
   /// \param fundus   where what it takes is now [m]
   /// \note Real-time safe.
-  surgery::GraspChange Step(AssistantCommand command, const Vec3& fundus, double seconds,
+  surgery::GraspChange Step(scene::AssistantCommand command, const math::Vec3& fundus, double seconds,
                             std::span<const surgery::OrganSurface> organs, const tissue::TissueModel& model,
                             const surgery::GraspSettings& settings, tissue::TissueState& tissue) noexcept;
 
@@ -39,9 +34,9 @@ class Assistant {
   void VisitState(base::StateArchive& archive);
 
  private:
-  AssistantSetup setup_;
-  Vec3 p_rest_;   // of the fundus [m]
-  Vec3 p_taken_;  // tip where the jaws closed [m]
+  scene::AssistantSetup setup_;
+  math::Vec3 p_rest_;   // of the fundus [m]
+  math::Vec3 p_taken_;  // tip where the jaws closed [m]
   instrument::TrocarJoints joints_;
   surgery::Grasp grasp_;
 };

@@ -13,9 +13,15 @@
 
 namespace trocar::simulation {
 
+using instrument::kHandCount;
+using instrument::kLeft;
+using instrument::kRight;
+using math::Vec3;
 using scene::CalcPathology;
-using scene::kLeft;
-using scene::kRight;
+using scene::PatientTissue;
+using scene::StrandInfo;
+using scene::SurfaceInfo;
+
 namespace {
 
 /// A tool that is exchanged is out of the way at this depth [m], for this long [s].
@@ -31,7 +37,7 @@ cholecystectomy::PatternCutMonitor MakePatternCutMonitor(const scene::ModelSheet
 
 }  // namespace
 
-base::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene,
+base::Result<std::unique_ptr<Operation>> Operation::Make(const scene::Scene& scene,
                                                          std::shared_ptr<const PatientTissue> tissue) {
   std::unique_ptr<Operation> made(new Operation(scene, tissue->strands));
   auto stones = MakeGallstones(scene, tissue->surfaces, tissue->definition.rest);
@@ -128,7 +134,7 @@ void Operation::FindBandStrands() {
 
 void Operation::MakeAssistant() {
   if (!scene_->operation->assistant) return;
-  const AssistantSetup& setup = *scene_->operation->assistant;
+  const scene::AssistantSetup& setup = *scene_->operation->assistant;
   const Vec3& target = setup.p_world_target;
   assistant_.emplace(setup, target);
   // the landmark moves with the organ: the nearest vertex at rest carries it
@@ -169,7 +175,7 @@ bool Operation::IsOf(std::uint32_t node, std::int32_t organ) const noexcept {
 
 // --- tools
 
-bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
+bool Operation::MoveTool(int hand, const scene::HandControls& controls, bool is_holding, double seconds,
                          instrument::TrocarJoints& wanted) noexcept {
   HandState& state = hands_[static_cast<std::size_t>(hand)];
   std::size_t& active = active_[static_cast<std::size_t>(hand)];
@@ -251,7 +257,8 @@ void Operation::Act(const HandsNow& hands, const TissueNow& tissue, OperatedTiss
 
 void Operation::Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   if (!assistant_) return;
-  const AssistantCommand command = retrieval_.is_in_bag ? AssistantCommand::kRelease : hands.input->assistant;
+  const scene::AssistantCommand command =
+      retrieval_.is_in_bag ? scene::AssistantCommand::kRelease : hands.input->assistant;
   (void)assistant_->Step(command, tissue.state->position[facts_.assistant_node], hands.seconds, tissue.organs,
                          *tissue.model, {}, operated.state);
 }
@@ -424,7 +431,7 @@ cholecystectomy::OperationJudge Operation::MakeJudge() const {
 }
 
 cholecystectomy::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,
-                                                         const Camera& camera) const noexcept {
+                                                         const instrument::Camera& camera) const noexcept {
   cholecystectomy::OperationObservation now{
       hands.time,
       hands.seconds,

@@ -25,30 +25,19 @@
 
 namespace trocar::simulation {
 
-using cholecystectomy::EmittedAct;
-using cholecystectomy::EmittedActs;
-using instrument::Camera;
-using scene::EventKind;
-using scene::HandControls;
-using scene::PatientTissue;
-using scene::Scene;
-using scene::SpareNodes;
-using scene::StrandInfo;
-using scene::SurfaceInfo;
-using surgery::WallHoles;
-
 /// State of the hands in a tick, with gravity, camera and time.
 struct HandsNow {
-  const Input* input = nullptr;
-  std::array<instrument::TrocarJoints, kHandCount> joints;
-  std::array<Pose, kHandCount> X_proxy, X_device;
-  std::array<surgery::GraspChange, kHandCount> changes{};
-  const std::array<surgery::Grasp, kHandCount>* grasps = nullptr;
-  std::array<Vec3, kHandCount> forces;  ///< on the tools in the tick before, world frame [N]
-  Vec3 gravity;                         ///< [m/s^2]
-  Camera camera;                        ///< as the trainee saw when the hands moved
-  double time = 0;                      ///< [s]
-  double seconds = 0;                   ///< of the tick
+  const scene::Input* input = nullptr;
+  std::array<instrument::TrocarJoints, instrument::kHandCount> joints;
+  std::array<math::Pose, instrument::kHandCount> X_proxy, X_device;
+  std::array<surgery::GraspChange, instrument::kHandCount> changes{};
+  const std::array<surgery::Grasp, instrument::kHandCount>* grasps = nullptr;
+  std::array<math::Vec3, instrument::kHandCount>
+      forces;                 ///< on the tools in the tick before, world frame [N]
+  math::Vec3 gravity;         ///< [m/s^2]
+  instrument::Camera camera;  ///< as the trainee saw when the hands moved
+  double time = 0;            ///< [s]
+  double seconds = 0;         ///< of the tick
 };
 
 /// The tissue that is operated on, as it is.
@@ -67,25 +56,25 @@ struct TissueNow {
 struct OperatedTissue {
   tissue::TissueState& state;
   tissue::ConservationState& conserved;
-  std::array<surgery::Grasp, kHandCount>& grasps;
+  std::array<surgery::Grasp, instrument::kHandCount>& grasps;
 };
 
 /// Something that an operation emits: it becomes an event of the tick.
 struct OperationEvent {
-  EventKind kind = EventKind::kClipClosed;
+  scene::EventKind kind = scene::EventKind::kClipClosed;
   std::int32_t hand = -1;
   std::int32_t surface = -1;  ///< as in Event::organ
-  Vec3 p_rest;                ///< of a clip or a cut: where on its vessel at rest, world frame [m]
+  math::Vec3 p_rest;          ///< of a clip or a cut: where on its vessel at rest, world frame [m]
 };
 
 class Operation {
  public:
   /// Nodes that cuts may use.
-  static constexpr SpareNodes kSpare{500, 32};
+  static constexpr scene::SpareNodes kSpare{500, 32};
 
   /// \return kPatientInvalid or kMeshInvalid
-  static base::Result<std::unique_ptr<Operation>> Make(const Scene& scene,
-                                                       std::shared_ptr<const PatientTissue> tissue);
+  static base::Result<std::unique_ptr<Operation>> Make(const scene::Scene& scene,
+                                                       std::shared_ptr<const scene::PatientTissue> tissue);
 
   /// Begins a tick, before all other calls: clears the events and acts of the tick before.
   void BeginTick() noexcept;
@@ -99,7 +88,7 @@ class Operation {
   /// \param is_holding  then there is no exchange, unless it is the bag that holds
   /// \return false where an exchange was asked for and refused
   /// \note Real-time safe.
-  bool MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
+  bool MoveTool(int hand, const scene::HandControls& controls, bool is_holding, double seconds,
                 instrument::TrocarJoints& wanted) noexcept;
 
   /// Opening that a stone between the jaws allows them [rad]. Stones are taken and let go here.
@@ -128,7 +117,7 @@ class Operation {
   /// Observation of this tick for a judge. It refers to the state of the tick, which has to outlive it.
   /// \param camera  through which the trainee looks
   cholecystectomy::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
-                                                const Camera& camera) const noexcept;
+                                                const instrument::Camera& camera) const noexcept;
   /// Events of this tick.
   std::span<const OperationEvent> Events() const { return std::span(emitted_.events).first(emitted_.count); }
 
@@ -139,7 +128,7 @@ class Operation {
   /// Ducts and vessels as they are now, for contacts.
   std::vector<collision::TubePiece> TubePieces() const;
   std::vector<std::uint32_t> TubesOfPieces() const;
-  std::span<const StrandInfo> Strands() const { return strands_; }
+  std::span<const scene::StrandInfo> Strands() const { return strands_; }
 
   void Size(OperationSnapshot& snapshot) const;
   void Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept;
@@ -168,7 +157,7 @@ class Operation {
     void VisitState(base::StateArchive& archive);
   };
 
-  Operation(const Scene& scene, std::vector<StrandInfo> strands)
+  Operation(const scene::Scene& scene, std::vector<scene::StrandInfo> strands)
       : scene_(&scene), strands_(std::move(strands)) {}
   base::Status MakeAll();
   base::Status MakeOrgans();
@@ -207,15 +196,15 @@ class Operation {
     return scene_->operation->parameters.judgement;
   }
 
-  const Scene* scene_;  // outlives this
-  std::vector<StrandInfo> strands_;
-  std::shared_ptr<const PatientTissue> made_;
+  const scene::Scene* scene_;  // outlives this
+  std::vector<scene::StrandInfo> strands_;
+  std::shared_ptr<const scene::PatientTissue> made_;
   /// Anatomy of the patient that is asked for again and again; constant.
   struct AnatomyFacts {
     std::int32_t liver = -1, gallbladder = -1;
     std::vector<std::uint32_t> main_ducts, main_arteries;  // nodes of those that must stay
     cholecystectomy::BiliaryAnatomy biliary;               // of the vessels
-    Vec3 p_pool;                                           // where blood and bile gather
+    math::Vec3 p_pool;                                     // where blood and bile gather
     double deepest = 0;                                    // z below which nothing falls [m]
     std::uint32_t assistant_node = 0;                      // of what the assistant takes
     std::vector<std::uint32_t> band_strands, band_starts;  // (bands) the strands of each, by band_starts
@@ -235,13 +224,13 @@ class Operation {
   std::optional<surgery::Vessels> vessels_;
   surgery::Electrosurgery heat_;
   surgery::GallbladderAttachment attachment_;
-  EmittedActs acts_;
+  cholecystectomy::EmittedActs acts_;
   std::optional<Assistant> assistant_;
   surgery::TopologyChange change_;
   surgery::FluidLedger fluids_;
   /// Damage to the gallbladder's wall, and the leak that has been booked.
   struct Wall {
-    WallHoles holes;
+    surgery::WallHoles holes;
     double open_area = 0;    // that cuts have made [m^2]
     double leaked_seen = 0;  // that has been booked [m^3]
   };
@@ -250,9 +239,9 @@ class Operation {
   surgery::BedOoze ooze_;
   std::vector<surgery::LooseStone*> loose_clips_;  // scratch
 
-  std::array<std::size_t, kHandCount> active_{};
-  std::array<HandState, kHandCount> hands_;
-  std::array<Pose, kHandCount> X_world_tools_;  // that are seen, in the tick before
+  std::array<std::size_t, instrument::kHandCount> active_{};
+  std::array<HandState, instrument::kHandCount> hands_;
+  std::array<math::Pose, instrument::kHandCount> X_world_tools_;  // that are seen, in the tick before
   double smoke_ = 0;
   std::uint32_t topology_version_ = 0;
   /// How far the gallbladder is on its way out.

@@ -8,6 +8,13 @@
 #include "trocar/math/elementary.h"
 
 namespace trocar::simulation {
+
+using cholecystectomy::EmittedAct;
+using math::Pose;
+using math::Vec3;
+using scene::EventKind;
+using scene::HandControls;
+
 namespace {
 
 using cholecystectomy::InstrumentKind;
@@ -122,8 +129,8 @@ void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue,
       const std::size_t count =
           surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, torn);
       for (std::size_t i = 0; i < count; ++i) {
-        const StrandInfo::Kind kind = strands_[torn[i]].kind;
-        if (kind == StrandInfo::Kind::kEnd) continue;  // a duct's end does not give way to a jaw
+        const scene::StrandInfo::Kind kind = strands_[torn[i]].kind;
+        if (kind == scene::StrandInfo::Kind::kEnd) continue;  // a duct's end does not give way to a jaw
         operated.state.strand_is_intact[torn[i]] = 0;
         acts_.Add({InstrumentKind::kGrasper, Verb::kDissect,
                    TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + torn[i])},
@@ -190,7 +197,7 @@ void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTis
   const std::size_t count = heat_.Step(hands.seconds, operated.state, parted);
   smoke_ += Electrode().smoke_by_heat * heat_.Power() * hands.seconds;
   std::int32_t hand = -1;
-  for (int i = 0; i < kHandCount; ++i) {
+  for (int i = 0; i < instrument::kHandCount; ++i) {
     if (hands_[static_cast<std::size_t>(i)].has_current) hand = i;
   }
   for (const std::uint32_t node : std::span(parted).first(count)) {
@@ -316,7 +323,7 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
   acts_.Add({InstrumentKind::kSpecimenBag, Verb::kPack, cholecystectomy::Target::kGallbladder}, hand);
   if (!retrieval_.is_in_bag) EmitRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
   if (retrieval_.is_in_bag || facts_.gallbladder < 0 || !retrieval_.is_gallbladder_free) return;
-  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(facts_.gallbladder)];
+  const scene::SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(facts_.gallbladder)];
   Vec3 centre;
   for (std::uint32_t i = 0; i < surface.node_count; ++i)
     centre += tissue.state->position[surface.first_node + i] / static_cast<double>(surface.node_count);

@@ -6,6 +6,10 @@
 #include "operation/operation.h"
 
 namespace trocar::simulation {
+
+using instrument::kHandCount;
+using scene::EventKind;
+
 namespace {
 
 using cholecystectomy::OperationError;
@@ -70,7 +74,7 @@ void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexce
   std::array<surgery::StonePusher, 2 * kHandCount> pushers;
   std::size_t count = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
-    const Pose& X = hands.X_proxy[static_cast<std::size_t>(hand)];
+    const math::Pose& X = hands.X_proxy[static_cast<std::size_t>(hand)];
     const auto parts = instrument::CalcCapsules(Tool(hand), 0.0, kPushLength);
     pushers[count++] = {X * parts.shaft.a, X * parts.shaft.b, parts.shaft.radius};
     // jaws take stones between them; what has none pushes with its tip

@@ -16,6 +16,9 @@
 #include "trocar/host/user_folder.h"
 
 namespace trocar::device {
+
+using math::Vec3;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,7 +213,7 @@ TrackerEntry DefaultTracker() {
 }
 
 base::Result<TrackedHandsSettings> MakeHandsSettings(const TrackerEntry& entry) {
-  const base::Result<Quaternion> rotation = FindSourceRotation(entry.source_right, entry.source_up);
+  const base::Result<math::Quaternion> rotation = FindSourceRotation(entry.source_right, entry.source_up);
   if (!rotation) return rotation.error();
   TrackedHandsSettings settings;
   settings.calibrations = entry.hands;

@@ -11,6 +11,11 @@
 #include "trocar/host/translate.h"
 
 namespace trocar::device {
+
+using math::Pose;
+using math::Quaternion;
+using math::Vec3;
+
 namespace {
 
 using Matrix3 = Eigen::Matrix3d;

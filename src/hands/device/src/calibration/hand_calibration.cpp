@@ -5,6 +5,11 @@
 #include <cmath>
 
 namespace trocar::device {
+
+using math::Pose;
+using math::Quaternion;
+using math::Vec3;
+
 namespace {
 
 /// Nearer to the trocar than this the tip does not say where the shaft points; further than the second it does [m].

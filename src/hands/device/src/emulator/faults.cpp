@@ -107,7 +107,7 @@ std::string SpoilBytes(const std::vector<Fault>& faults, double time, std::strin
 
 SensorMotion SpoilMotion(std::vector<Fault> faults, SensorMotion motion) {
   return [faults = std::move(faults), motion = std::move(motion)](int channel, double time) {
-    Pose pose = motion(channel, time);
+    math::Pose pose = motion(channel, time);
     pose.translation.x += CalcJump(faults, time);
     return pose;
   };
@@ -115,7 +115,7 @@ SensorMotion SpoilMotion(std::vector<Fault> faults, SensorMotion motion) {
 
 CursorMotion SpoilCursor(std::vector<Fault> faults, CursorMotion motion) {
   return [faults = std::move(faults), motion = std::move(motion)](int device, double time) {
-    return motion(device, time) + Vec3{CalcJump(faults, time), 0, 0};
+    return motion(device, time) + math::Vec3{CalcJump(faults, time), 0, 0};
   };
 }
 

@@ -35,7 +35,7 @@ class HaplyEmulator : public Emulator {
       if (parsed.verdict != Parsed::Verdict::kRecord) break;
       done += parsed.length;
       std::vector<std::string> ids;
-      std::array<Vec3, haply::kMaxDevices> forces;
+      std::array<math::Vec3, haply::kMaxDevices> forces;
       if (frame.opcode != Opcode::kText || !haply::ParseForces(frame.payload, ids, forces)) continue;
       forces_->newtons = forces;
       ++forces_->messages;
@@ -49,7 +49,7 @@ class HaplyEmulator : public Emulator {
     if (!is_open_ || !std::exchange(is_state_due_, false)) return bytes;
     haply::State state;
     for (int i = 0; i < emulation_.devices; ++i) {
-      const Vec3 p = emulation_.position(i, time);
+      const math::Vec3 p = emulation_.position(i, time);
       state.devices.push_back({"emulated-" + std::to_string(i), p});
     }
     if (emulation_.buttons) state.buttons = emulation_.buttons(time);

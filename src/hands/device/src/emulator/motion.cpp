@@ -53,10 +53,10 @@ SensorMotion MoveAboutTip(const TrackedHandsSettings& settings) {
     const auto index = static_cast<std::size_t>(channel);
     const HandCalibration& calibration = settings.calibrations[index];
     HandSample joints = CalcHandMotion(time)[index];
-    Pose pose = CalcSensorPose(calibration, settings.R_world_source, joints);
+    math::Pose pose = CalcSensorPose(calibration, settings.R_world_source, joints);
     // the same turning, but the tip stays where it was
     joints = CalcRest(time)[index];
-    const Vec3 dimple =
+    const math::Vec3 dimple =
         CalcSensorPose(calibration, settings.R_world_source, joints) * calibration.p_sensor_tip;
     pose.translation = dimple - math::Rotate(pose.rotation, calibration.p_sensor_tip);
     return pose;

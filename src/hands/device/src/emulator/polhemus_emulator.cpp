@@ -42,7 +42,7 @@ class PolhemusEmulator : public Emulator {
  private:
   struct Station {
     std::vector<int> items{2, 4, 1};  // as after power-on
-    Vec3 hemisphere{1, 0, 0};
+    math::Vec3 hemisphere{1, 0, 0};
   };
 
   void PowerOn() {
@@ -125,14 +125,14 @@ void PolhemusEmulator::ObeyShared(char command, const std::vector<double>& list)
   Station& station = stations_[static_cast<std::size_t>(list[0]) - 1];
   if (command == 'O') station.items.assign(list.begin() + 1, list.end());
   if (command == 'H' && list.size() == 4)
-    station.hemisphere = math::Normalized(Vec3{list[1], list[2], list[3]});
+    station.hemisphere = math::Normalized(math::Vec3{list[1], list[2], list[3]});
 }
 
 std::string PolhemusEmulator::FormatStation(int number, double time) {
   const Station& station = stations_[static_cast<std::size_t>(number - 1)];
   // LIBERTY in ASCII is not spoken here: no driver of ours asks for it
   if (!IsFastrak(emulation_.format) && !is_binary_) return {};
-  const Pose pose = emulation_.motion(number - 1, time);
+  const math::Pose pose = emulation_.motion(number - 1, time);
   TrackerRecord record{number, ' ', pose.translation, pose.rotation};
   if (math::Dot(record.position, station.hemisphere) < 0.0) record.position = -record.position;
   PolhemusFormat format = emulation_.format;

@@ -7,6 +7,9 @@
 #include "trocar/math/rotation_angle.h"
 
 namespace trocar::device {
+
+using math::Pose;
+
 namespace {
 
 /// Noise and rounding of a sensor at rest: FASTRAK in ASCII steps by 0.25 mm and 0.01 degrees.
@@ -51,7 +54,7 @@ bool TrackedHands::Gate(Hand& hand, Pose& pose, double time) noexcept {
     }
     return true;
   }
-  const Vec3 before = hand.X_source_sensor.translation;
+  const math::Vec3 before = hand.X_source_sensor.translation;
   if (settings_.has_hemisphere_doubt &&
       math::SquaredDistance(-pose.translation, before) < math::SquaredDistance(pose.translation, before)) {
     pose.translation = -pose.translation;

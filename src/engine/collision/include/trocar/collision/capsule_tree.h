@@ -42,11 +42,12 @@ class CapsuleTree {
   /// \param pieces     (n), copied; may be empty
   /// \return kMeshInvalid for an index out of range, or a coordinate or radius that is not finite or too large
   /// \note Not real-time safe: allocates.
-  static base::Result<CapsuleTree> Make(std::span<const Vec3> positions, std::span<const TubePiece> pieces,
+  static base::Result<CapsuleTree> Make(std::span<const math::Vec3> positions,
+                                        std::span<const TubePiece> pieces,
                                         base::SimdLevel simd = base::FindSimdLevel());
 
   /// \note Real-time safe: no allocation, lock or throw.
-  void Update(std::span<const Vec3> positions) noexcept;
+  void Update(std::span<const math::Vec3> positions) noexcept;
 
   /// The piece whose surface is nearest to a segment (or a point), deepest where it lies inside of some; of
   /// equally near ones that of lowest index.
@@ -54,7 +55,7 @@ class CapsuleTree {
   /// \param max_distance  pieces with a farther surface are not found [m], >= 0
   /// \return not Found() when there is none or the segment is not finite
   /// \note Real-time safe: no allocation, lock or throw.
-  NearestPiece FindNearest(std::span<const Vec3> positions, const Segment& segment,
+  NearestPiece FindNearest(std::span<const math::Vec3> positions, const Segment& segment,
                            double max_distance = std::numeric_limits<double>::infinity()) const noexcept;
 
   /// Every piece that overlaps or touches `capsule`.
@@ -62,7 +63,7 @@ class CapsuleTree {
   /// \param[out] found  as many indices as fit, ascending; which ones when they do not all fit is not said
   /// \return how many there are
   /// \note Real-time safe: no allocation, lock or throw.
-  std::size_t FindWithin(std::span<const Vec3> positions, const Capsule& capsule,
+  std::size_t FindWithin(std::span<const math::Vec3> positions, const Capsule& capsule,
                          std::span<std::uint32_t> found) const noexcept;
 
   std::span<const TubePiece> Pieces() const noexcept { return pieces_; }
@@ -74,7 +75,7 @@ class CapsuleTree {
 
 /// Nearest piece of tube to a segment by testing every piece: bit for bit the result of CapsuleTree::FindNearest.
 NearestPiece FindNearestPieceBruteForce(
-    std::span<const Vec3> positions, std::span<const TubePiece> pieces, const Segment& segment,
+    std::span<const math::Vec3> positions, std::span<const TubePiece> pieces, const Segment& segment,
     double max_distance = std::numeric_limits<double>::infinity()) noexcept;
 
 }  // namespace trocar::collision

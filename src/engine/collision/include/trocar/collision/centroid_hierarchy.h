@@ -30,10 +30,6 @@
 
 namespace trocar::collision {
 
-using geometry::Box;
-using geometry::Triangle;
-using math::Vec3;
-
 /// In place of a triangle's index: there is none.
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 /// Nodes of this depth and above are split by the paper's rule [-].
@@ -42,7 +38,7 @@ inline constexpr int kMaxFarthestPairDepth = 64;
 inline constexpr int kMaxHierarchyDepth = kMaxFarthestPairDepth + 33;
 
 /// Centroid of a triangle, the mean of its corners [m].
-inline Vec3 CalcCentroid(std::span<const Vec3> positions, const Triangle& triangle) {
+inline math::Vec3 CalcCentroid(std::span<const math::Vec3> positions, const geometry::Triangle& triangle) {
   return (positions[triangle[0]] + positions[triangle[1]] + positions[triangle[2]]) / 3.0;
 }
 
@@ -60,7 +56,7 @@ struct HierarchyNode {
 /// Answer of a search.
 struct NearestTriangle {
   std::uint32_t triangle = kNoTriangle;
-  Vec3 point;                                 ///< nearest point of the triangle [m]
+  math::Vec3 point;                           ///< nearest point of the triangle [m]
   std::array<double, 3> weights = {0, 0, 0};  ///< its barycentric weights, >= 0, sum 1
   double squared_distance = std::numeric_limits<double>::infinity();  ///< [m^2]
 
@@ -88,49 +84,51 @@ class CentroidHierarchy {
   /// \param triangles  (nt)
   /// \return kMeshInvalid for no triangle, an index out of range or a coordinate that is not finite
   /// \note Not real-time safe: allocates.
-  static base::Result<CentroidHierarchy> Make(std::span<const Vec3> positions,
-                                              std::span<const Triangle> triangles);
+  static base::Result<CentroidHierarchy> Make(std::span<const math::Vec3> positions,
+                                              std::span<const geometry::Triangle> triangles);
 
   /// Recomputes every centroid and refits every node from the leaves to the root.
   ///
   /// Groups and their two representative triangles stay; the representatives' centroids move with the mesh.
   /// \param positions  (nv) [m]
   /// \note Real-time safe: no allocation, lock or throw.
-  void UpdateAll(std::span<const Vec3> positions) noexcept;
+  void UpdateAll(std::span<const math::Vec3> positions) noexcept;
 
   /// UpdateAll() for modified triangles and the nodes above them alone (section 3.3.4). Repeated entries do no harm.
   /// \param modified  indices of triangles, each < Triangles().size() (TROCAR_ASSERT)
   /// \note Real-time safe: no allocation, lock or throw.
-  void Update(std::span<const Vec3> positions, std::span<const std::uint32_t> modified) noexcept;
+  void Update(std::span<const math::Vec3> positions, std::span<const std::uint32_t> modified) noexcept;
 
   /// The paper's search: from the root always to the child whose representative centroid is nearer
   /// (section 3.3.3).
   /// \return a triangle that is near and often not the nearest; kNoTriangle in an empty
   /// hierarchy
   /// \note Real-time safe: no allocation, lock or throw.
-  std::uint32_t FindGreedy(const Vec3& p) const noexcept;
+  std::uint32_t FindGreedy(const math::Vec3& p) const noexcept;
 
   /// The nearest triangle to p; of equally near ones that of lowest index.
   ///
   /// \param positions  (nv) as at the last update [m]
   /// \return not Found() when nothing lies within max_distance or p is not finite
   /// \note Real-time safe: no allocation, lock or throw.
-  NearestTriangle FindNearest(std::span<const Vec3> positions, const Vec3& p,
+  NearestTriangle FindNearest(std::span<const math::Vec3> positions, const math::Vec3& p,
                               const SearchLimits& limits = {}) const noexcept;
 
-  std::span<const Triangle> Triangles() const noexcept { return triangles_; }
-  std::span<const Vec3> Centroids() const noexcept { return centroids_; }   ///< (nt) [m]
-  std::span<const HierarchyNode> Nodes() const noexcept { return nodes_; }  ///< (2 nt - 1), root first
-  std::span<const Box> Boxes() const noexcept { return boxes_; }  ///< (2 nt - 1) around each node's triangles
-  int Depth() const noexcept { return depth_; }                   ///< edges from the root to the deepest leaf
+  std::span<const geometry::Triangle> Triangles() const noexcept { return triangles_; }
+  std::span<const math::Vec3> Centroids() const noexcept { return centroids_; }  ///< (nt) [m]
+  std::span<const HierarchyNode> Nodes() const noexcept { return nodes_; }       ///< (2 nt - 1), root first
+  std::span<const geometry::Box> Boxes() const noexcept {
+    return boxes_;
+  }                                              ///< (2 nt - 1) around each node's triangles
+  int Depth() const noexcept { return depth_; }  ///< edges from the root to the deepest leaf
 
  private:
-  void RefitLeaf(std::span<const Vec3> positions, std::uint32_t triangle) noexcept;
+  void RefitLeaf(std::span<const math::Vec3> positions, std::uint32_t triangle) noexcept;
 
-  std::vector<Triangle> triangles_;
-  std::vector<Vec3> centroids_;
+  std::vector<geometry::Triangle> triangles_;
+  std::vector<math::Vec3> centroids_;
   std::vector<HierarchyNode> nodes_;
-  std::vector<Box> boxes_;
+  std::vector<geometry::Box> boxes_;
   std::vector<std::uint32_t> leaves_;   // (nt) node of each triangle
   std::vector<std::uint8_t> modified_;  // (2 nt - 1) all zero between calls
   int depth_ = 0;

@@ -11,8 +11,6 @@
 
 namespace trocar::collision {
 
-using math::Vec3;
-
 /// Two points of a group by their indices, first < second.
 struct FarthestPair {
   std::uint32_t first = 0;
@@ -30,6 +28,6 @@ struct FarthestPair {
 /// \param members  (m) indices into points, ascending, m >= 2
 /// \pre m >= 2 (TROCAR_ASSERT)
 /// \note Not real-time safe: allocates.
-FarthestPair FindFarthestPair(std::span<const Vec3> points, std::span<const std::uint32_t> members);
+FarthestPair FindFarthestPair(std::span<const math::Vec3> points, std::span<const std::uint32_t> members);
 
 }  // namespace trocar::collision

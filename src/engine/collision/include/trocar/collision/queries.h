@@ -15,7 +15,7 @@ namespace trocar::collision {
 
 /// Straight line between two points, for example the axis of a shaft [m].
 struct Segment {
-  Vec3 start, end;
+  math::Vec3 start, end;
 };
 
 /// Rounded cylinder about a segment.
@@ -28,7 +28,7 @@ struct Capsule {
 struct SegmentContact {
   NearestTriangle nearest;  ///< squared_distance is exactly 0 where the segment pierces the triangle
   double parameter = 0;     ///< of the segment's nearest point, 0 at its start, 1 at its end
-  Vec3 on_segment;          ///< that point [m]
+  math::Vec3 on_segment;    ///< that point [m]
 
   bool Found() const { return nearest.Found(); }
 };
@@ -37,9 +37,9 @@ struct SegmentContact {
 struct CapsuleContact {
   SegmentContact axis;  ///< of the capsule's axis
   double distance =
-      0;            ///< gap between the surfaces [m]; negative: depth of the overlap measured from the axis
-  Vec3 on_capsule;  ///< the capsule's surface point towards the triangle; the axis point where the axis
-                    ///< pierces it
+      0;  ///< gap between the surfaces [m]; negative: depth of the overlap measured from the axis
+  math::Vec3 on_capsule;  ///< the capsule's surface point towards the triangle; the axis point where the axis
+                          ///< pierces it
 
   bool Found() const { return axis.Found(); }
 };
@@ -49,12 +49,12 @@ struct CapsuleContact {
 /// \param positions  (nv) as at the hierarchy's last update [m]
 /// \return not Found() when nothing lies within max_distance or the segment is not finite
 /// \note Real-time safe: no allocation, lock or throw.
-SegmentContact FindNearestToSegment(const CentroidHierarchy& hierarchy, std::span<const Vec3> positions,
+SegmentContact FindNearestToSegment(const CentroidHierarchy& hierarchy, std::span<const math::Vec3> positions,
                                     const Segment& segment, const SearchLimits& limits = {}) noexcept;
 
 /// The nearest triangle to a capsule. limits.max_distance is the gap to the capsule's surface.
 /// \note Real-time safe: no allocation, lock or throw.
-CapsuleContact FindNearestToCapsule(const CentroidHierarchy& hierarchy, std::span<const Vec3> positions,
+CapsuleContact FindNearestToCapsule(const CentroidHierarchy& hierarchy, std::span<const math::Vec3> positions,
                                     const Capsule& capsule, const SearchLimits& limits = {}) noexcept;
 
 /// Every triangle that lies within `capsule` or touches it.
@@ -62,7 +62,7 @@ CapsuleContact FindNearestToCapsule(const CentroidHierarchy& hierarchy, std::spa
 /// \param[out] found  as many indices as fit, ascending
 /// \return how many there are; when more than found.size(), the list is incomplete
 /// \note Real-time safe: no allocation, lock or throw.
-std::size_t FindTrianglesInCapsule(const CentroidHierarchy& hierarchy, std::span<const Vec3> positions,
+std::size_t FindTrianglesInCapsule(const CentroidHierarchy& hierarchy, std::span<const math::Vec3> positions,
                                    const Capsule& capsule, std::span<std::uint32_t> found) noexcept;
 
 /// Part of a triangle on which a nearest point lies.
@@ -71,7 +71,7 @@ enum class SurfaceFeature { kVertex, kEdge, kFace };
 /// A point's place relative to a closed surface.
 struct SurfaceSide {
   SurfaceFeature feature = SurfaceFeature::kFace;
-  Vec3 normal;  ///< unit pseudo-normal of the feature; zero where all triangles around it have no area
+  math::Vec3 normal;  ///< unit pseudo-normal of the feature; zero where all triangles around it have no area
   double distance = 0;  ///< signed [m]: negative inside
 };
 
@@ -86,8 +86,8 @@ struct SurfaceSide {
 /// \note Real-time safe: no allocation, lock or throw.
 /// Source: Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE
 /// TVCG 2005.
-SurfaceSide FindSide(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                     const geometry::Rows& vertex_triangles, const Vec3& p,
+SurfaceSide FindSide(std::span<const math::Vec3> positions, std::span<const geometry::Triangle> triangles,
+                     const geometry::Rows& vertex_triangles, const math::Vec3& p,
                      const NearestTriangle& nearest) noexcept;
 
 /// Whether a point lies inside of a surface, however that is folded: three rays count how often they leave it more than they
@@ -95,6 +95,7 @@ SurfaceSide FindSide(std::span<const Vec3> positions, std::span<const Triangle> 
 ///
 /// Unlike FindSide it needs no sound surface near the point, and it costs a look at every triangle.
 /// \note Real-time safe.
-bool IsInside(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Vec3& p) noexcept;
+bool IsInside(std::span<const math::Vec3> positions, std::span<const geometry::Triangle> triangles,
+              const math::Vec3& p) noexcept;
 
 }  // namespace trocar::collision

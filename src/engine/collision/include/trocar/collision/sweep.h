@@ -26,9 +26,9 @@ struct MovingSegment {
 };
 
 struct MovingTriangle {
-  std::array<Vec3, 3> from, to;  ///< at time 0 and 1
+  std::array<math::Vec3, 3> from, to;  ///< at time 0 and 1
 
-  std::array<Vec3, 3> At(double time) const {
+  std::array<math::Vec3, 3> At(double time) const {
     return {math::Lerp(from[0], to[0], time), math::Lerp(from[1], to[1], time),
             math::Lerp(from[2], to[2], time)};
   }

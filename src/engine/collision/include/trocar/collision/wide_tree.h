@@ -17,9 +17,6 @@
 
 namespace trocar::collision {
 
-using geometry::Triangle;
-using math::Vec3;
-
 inline constexpr int kTreeWidth = 8;  ///< children of a node, and items of a leaf
 
 /// Boxes of up to eight children, by coordinate; a lane without a child is an empty box.
@@ -68,11 +65,11 @@ struct WideTree {
 /// \param radii    (n) or empty for zero [m], >= 0
 /// \note Allocates only what the tree has never held before: building again after a cut of the topology can be
 /// made free of allocation by having built once with as many items.
-void BuildWideTree(std::span<const Vec3> positions, std::span<const Triangle> corners,
+void BuildWideTree(std::span<const math::Vec3> positions, std::span<const geometry::Triangle> corners,
                    std::span<const double> radii, WideTree& tree);
 
 /// Refits every box to moved positions.
 /// \note Real-time safe: no allocation, lock or throw.
-void RefitWideTree(std::span<const Vec3> positions, WideTree& tree) noexcept;
+void RefitWideTree(std::span<const math::Vec3> positions, WideTree& tree) noexcept;
 
 }  // namespace trocar::collision

@@ -13,19 +13,19 @@ namespace trocar::geometry {
 
 /// The cutting edge of a blade, a straight piece.
 struct BladeEdge {
-  Vec3 a, b;  ///< ends [m]
+  math::Vec3 a, b;  ///< ends [m]
 
   friend bool operator==(const BladeEdge&, const BladeEdge&) = default;
 };
 
 /// A flat convex piece of the surface that a blade swept: a triangle or a quadrilateral.
 struct FlatSweep {
-  std::array<Vec3, 4> corners;  ///< in order around it [m]
-  std::size_t count = 0;        ///< 3 or 4
-  Vec3 normal;                  ///< unit
+  std::array<math::Vec3, 4> corners;  ///< in order around it [m]
+  std::size_t count = 0;              ///< 3 or 4
+  math::Vec3 normal;                  ///< unit
 
   /// Distance to the plane, positive on the side of the normal [m].
-  double Height(const Vec3& p) const noexcept { return math::Dot(p - corners[0], normal); }
+  double Height(const math::Vec3& p) const noexcept { return math::Dot(p - corners[0], normal); }
 };
 
 /// A move of a blade whose sweep is flat.
@@ -49,20 +49,20 @@ struct BladeMoves {
 BladeMoves MakeFlatMoves(const BladeEdge& before, const BladeEdge& now) noexcept;
 
 /// The triangle between a point and a blade; empty where they lie on one line.
-std::optional<FlatSweep> MakeFlatSweep(const Vec3& tip, const BladeEdge& blade) noexcept;
+std::optional<FlatSweep> MakeFlatSweep(const math::Vec3& tip, const BladeEdge& blade) noexcept;
 
 /// Box around a sweep [m].
 Box CalcBox(const FlatSweep& sweep) noexcept;
 
 /// Whether a point of the sweep's plane lies in it or, to 1e-9 of its size, on its border.
-bool Contains(const FlatSweep& sweep, const Vec3& p) noexcept;
+bool Contains(const FlatSweep& sweep, const math::Vec3& p) noexcept;
 
 /// Where segment a-b crosses a sweep: the parameter in [0, 1] from a to b. Segments that lie in the plane do not
 /// cross.
-std::optional<double> FindCrossing(const FlatSweep& sweep, const Vec3& a, const Vec3& b) noexcept;
+std::optional<double> FindCrossing(const FlatSweep& sweep, const math::Vec3& a, const math::Vec3& b) noexcept;
 
 /// Where the segment meets a triangle, as a point of the triangle [m].
-std::optional<Vec3> FindPiercing(const BladeEdge& segment, const Vec3& a, const Vec3& b,
-                                 const Vec3& c) noexcept;
+std::optional<math::Vec3> FindPiercing(const BladeEdge& segment, const math::Vec3& a, const math::Vec3& b,
+                                       const math::Vec3& c) noexcept;
 
 }  // namespace trocar::geometry

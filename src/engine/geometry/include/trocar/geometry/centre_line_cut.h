@@ -16,10 +16,10 @@ namespace trocar::geometry {
 /// Centre lines of ducts and vessels: points joined by edges, branches included. Points and edges are only ever
 /// appended.
 struct CentreLineGraph {
-  std::vector<Vec3> rest, positions;     ///< (np) [m]
-  std::vector<double> radii;             ///< (np) [m]
-  std::vector<Edge> edges;               ///< (ne) pairs of points, in the line's direction
-  std::vector<std::uint8_t> is_cut_end;  ///< (np) 1 for an end that a cut made
+  std::vector<math::Vec3> rest, positions;  ///< (np) [m]
+  std::vector<double> radii;                ///< (np) [m]
+  std::vector<Edge> edges;                  ///< (ne) pairs of points, in the line's direction
+  std::vector<std::uint8_t> is_cut_end;     ///< (np) 1 for an end that a cut made
 
   /// Capacity for cuts, so that they allocate nothing: each takes two points and an edge.
   void ReserveCuts(std::size_t count);
@@ -32,7 +32,8 @@ void VisitState(base::StateArchive& archive, CentreLineGraph& graph);
 
 /// Joins the points of one line, first to last.
 /// \return index of the line's first point
-std::uint32_t AddLine(std::span<const Vec3> points, std::span<const double> radii, CentreLineGraph& graph);
+std::uint32_t AddLine(std::span<const math::Vec3> points, std::span<const double> radii,
+                      CentreLineGraph& graph);
 
 /// One line cut in two.
 struct CentreLineCut {

@@ -71,8 +71,8 @@ class EditableMesh {
     return VertexCount() + vertices <= vertex_capacity_ && TriangleCount() + triangles <= triangle_capacity_;
   }
 
-  std::span<const Vec3> Rest() const { return rest_; }            ///< (nv) [m]
-  std::span<const Vec3> Positions() const { return positions_; }  ///< (nv) now [m]
+  std::span<const math::Vec3> Rest() const { return rest_; }            ///< (nv) [m]
+  std::span<const math::Vec3> Positions() const { return positions_; }  ///< (nv) now [m]
   std::span<const Triangle> Triangles() const { return triangles_; }
   std::span<const TriangleKind> Kinds() const { return kinds_; }      ///< (nt)
   std::span<const VertexSource> Sources() const { return sources_; }  ///< (nv)
@@ -82,7 +82,7 @@ class EditableMesh {
   /// Follows the tissue.
   /// \param positions  (nv) [m]
   /// \note Real-time safe, as all that follows unless said otherwise.
-  void SetPositions(std::span<const Vec3> positions) noexcept;
+  void SetPositions(std::span<const math::Vec3> positions) noexcept;
 
   // --- half-edges
   static std::uint32_t TriangleOf(std::uint32_t h) { return h / 3; }
@@ -151,7 +151,8 @@ class EditableMesh {
 
   /// Adds a vertex below another, as part of a trench; AddTriangle connects it.
   /// \pre HasCapacity(1, 0)
-  std::uint32_t AddVertex(const VertexSource& source, const Vec3& rest, const Vec3& position) noexcept;
+  std::uint32_t AddVertex(const VertexSource& source, const math::Vec3& rest,
+                          const math::Vec3& position) noexcept;
   /// Adds a triangle without neighbours; Join connects it.
   /// \pre HasCapacity(0, 1)
   std::uint32_t AddTriangle(const Triangle& corners, TriangleKind kind) noexcept;
@@ -176,7 +177,7 @@ class EditableMesh {
   void SetTwins(std::uint32_t h, std::uint32_t g) noexcept;
 
   std::size_t vertex_capacity_ = 0, triangle_capacity_ = 0;
-  std::vector<Vec3> rest_, positions_;
+  std::vector<math::Vec3> rest_, positions_;
   std::vector<VertexSource> sources_;
   std::vector<std::uint32_t> outgoing_;
   std::vector<Triangle> triangles_;

@@ -14,30 +14,31 @@
 namespace trocar::geometry {
 
 /// Bounding box; all zero for no points.
-Box CalcBox(std::span<const Vec3> positions);
+Box CalcBox(std::span<const math::Vec3> positions);
 
 /// Normal of a triangle times twice its area [m^2].
-Vec3 CalcAreaNormal(std::span<const Vec3> positions, const Triangle& triangle);
+math::Vec3 CalcAreaNormal(std::span<const math::Vec3> positions, const Triangle& triangle);
 
 /// Smallest angle of a triangle [rad].
 /// \note Real-time safe.
-double CalcSmallestAngle(const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
+double CalcSmallestAngle(const math::Vec3& a, const math::Vec3& b, const math::Vec3& c) noexcept;
 
 /// Sum of the triangles' areas [m^2].
-double CalcArea(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+double CalcArea(std::span<const math::Vec3> positions, std::span<const Triangle> triangles);
 
 /// Volume by the divergence theorem, V = 1/6 sum x_a . (x_b x x_c) [m^3]; negative when inside out.
 /// \pre closed mesh; otherwise the value depends on the origin
-double CalcVolume(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+double CalcVolume(std::span<const math::Vec3> positions, std::span<const Triangle> triangles);
 
 /// Unit normals of vertices, weighted by the angles of their triangles (Thuermer and Wuethrich 1998).
 /// \param[out] normals  (nv); {0, 0, 1} where a vertex has no area
 /// \note Real-time safe: no allocation, lock or throw.
-void CalcVertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                       std::span<Vec3> normals);
+void CalcVertexNormals(std::span<const math::Vec3> positions, std::span<const Triangle> triangles,
+                       std::span<math::Vec3> normals);
 
 /// Area that belongs to each vertex: a third of its triangles' [m^2], (nv).
-std::vector<double> CalcVertexAreas(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+std::vector<double> CalcVertexAreas(std::span<const math::Vec3> positions,
+                                    std::span<const Triangle> triangles);
 
 /// Findings about a mesh as a surface.
 struct MeshReport {
@@ -68,8 +69,8 @@ bool BoxesOverlap(const Box& a, const Box& b) noexcept;
 /// one, if they meet beyond it. Neighbours along an edge never do.
 /// \param a_corners, b_corners  (3) positions
 /// \note Real-time safe.
-bool TrianglesCut(const Triangle& a, const Vec3* a_corners, const Triangle& b,
-                  const Vec3* b_corners) noexcept;
+bool TrianglesCut(const Triangle& a, const math::Vec3* a_corners, const Triangle& b,
+                  const math::Vec3* b_corners) noexcept;
 
 /// Pairs of triangles that cut each other (TrianglesCut), smaller index first, ascending.
 /// Grid-accelerated; not real-time safe.

@@ -12,7 +12,7 @@
 namespace trocar::geometry {
 
 struct Ball {
-  Vec3 centre;        ///< [m]
+  math::Vec3 centre;  ///< [m]
   double radius = 0;  ///< [m]
 };
 

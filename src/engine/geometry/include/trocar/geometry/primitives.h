@@ -7,7 +7,7 @@
 namespace trocar::geometry {
 
 /// Sphere of radius [m] about `centre`: an icosahedron divided `subdivisions` times, 20 * 4^s triangles.
-TriangleMesh MakeSphere(const Vec3& centre, double radius, int subdivisions);
+TriangleMesh MakeSphere(const math::Vec3& centre, double radius, int subdivisions);
 
 /// Flat n x n grid in the plane z = 0 from the origin, one diagonal a cell, as the paper's Table 1 meshes:
 /// n * n vertices, 2 (n - 1)^2 triangles, spacing [m].
@@ -18,6 +18,6 @@ TriangleMesh MakeGrid(int n, double spacing);
 TriangleMesh MakeTriangularLattice(int columns, int rows, double spacing);
 
 /// Closed box between two corners, 12 triangles.
-TriangleMesh MakeBox(const Vec3& min, const Vec3& max);
+TriangleMesh MakeBox(const math::Vec3& min, const math::Vec3& max);
 
 }  // namespace trocar::geometry

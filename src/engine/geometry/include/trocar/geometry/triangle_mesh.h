@@ -10,20 +10,19 @@
 
 namespace trocar::geometry {
 
-using math::Vec3;
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// Surface of triangles; counter-clockwise seen from outside.
 struct TriangleMesh {
-  std::vector<Vec3> positions;      ///< (nv) [m] unless said otherwise
-  std::vector<Triangle> triangles;  ///< (nt) indices into positions
+  std::vector<math::Vec3> positions;  ///< (nv) [m] unless said otherwise
+  std::vector<Triangle> triangles;    ///< (nt) indices into positions
 
   friend bool operator==(const TriangleMesh&, const TriangleMesh&) = default;
 };
 
 /// Axis-aligned box.
 struct Box {
-  Vec3 min, max;
+  math::Vec3 min, max;
 };
 
 }  // namespace trocar::geometry

@@ -12,8 +12,8 @@ namespace trocar::geometry {
 
 /// Centre line of one duct or vessel, from its first point to its last.
 struct CentreLine {
-  std::vector<Vec3> points;   ///< (n) n >= 2 [m]
-  std::vector<double> radii;  ///< (n) outer radius at each point [m], > 0
+  std::vector<math::Vec3> points;  ///< (n) n >= 2 [m]
+  std::vector<double> radii;       ///< (n) outer radius at each point [m], > 0
 
   friend bool operator==(const CentreLine&, const CentreLine&) = default;
 };
@@ -35,8 +35,8 @@ std::vector<Triangle> MakeTubeTriangles(std::size_t point_count, int sides);
 /// \param radii   (n) [m]
 /// \param[out] skin  (n * sides + 2) [m]
 /// \note Real-time safe: no allocation, lock or throw.
-void CalcTubeSkin(std::span<const Vec3> points, std::span<const double> radii, int sides,
-                  std::span<Vec3> skin) noexcept;
+void CalcTubeSkin(std::span<const math::Vec3> points, std::span<const double> radii, int sides,
+                  std::span<math::Vec3> skin) noexcept;
 
 /// MakeTubeTriangles and CalcTubeSkin together.
 TriangleMesh MakeTube(const CentreLine& line, int sides);

@@ -14,9 +14,6 @@
 
 namespace trocar::instrument {
 
-using math::Pose;
-using math::Vec3;
-
 /// Kind of a tool: what it can do besides pushing.
 enum class ToolKind : std::uint8_t {
   kGrasper,    ///< atraumatic, with a ratchet
@@ -55,15 +52,15 @@ inline constexpr double kBagMouth = 0.060;  ///< its diameter [m]
 inline constexpr double kBagDepth = 0.085;  ///< of the pouch [m]
 
 /// Hinge of the jaws in the tool frame [m].
-Vec3 JawHinge(const Tool& tool) noexcept;
+math::Vec3 JawHinge(const Tool& tool) noexcept;
 
 /// Tip of a jaw in the tool frame; side is +1 for the upper jaw, -1 for the lower.
 /// \param jaw  whole opening [rad], at most the tool's own: a tool without jaws has one tip
-Vec3 JawTip(const Tool& tool, double jaw, int side) noexcept;
+math::Vec3 JawTip(const Tool& tool, double jaw, int side) noexcept;
 
 /// Straight piece with round ends, in the tool frame.
 struct Capsule {
-  Vec3 a, b;          ///< [m]
+  math::Vec3 a, b;    ///< [m]
   double radius = 0;  ///< [m]
 };
 
@@ -92,6 +89,6 @@ struct ToolPart {
 std::vector<ToolPart> MakeParts(const Tool& tool);
 
 /// Pose of a part in the tool frame at an opening: jaws, and what they hold, turn about the hinge; the rest stays.
-Pose CalcPartPose(const Tool& tool, ToolPart::Kind kind, double jaw) noexcept;
+math::Pose CalcPartPose(const Tool& tool, ToolPart::Kind kind, double jaw) noexcept;
 
 }  // namespace trocar::instrument

@@ -7,9 +7,6 @@
 
 namespace trocar::instrument {
 
-using math::Pose;
-using math::Vec3;
-
 /// The four degrees of freedom of a shaft in a trocar, and the jaws.
 struct TrocarJoints {
   double pan = 0;    ///< about the y axis (towards the patient's left and right) [rad]
@@ -37,11 +34,12 @@ TrocarJoints ClampJoints(const TrocarJoints& joints, const JointLimits& limits) 
 /// direction of the jaws.
 /// \param p_world_port  trocar point [m]
 /// \note Real-time safe.
-Pose CalcToolPose(const Vec3& p_world_port, const TrocarJoints& joints) noexcept;
+math::Pose CalcToolPose(const math::Vec3& p_world_port, const TrocarJoints& joints) noexcept;
 
 /// Joints that bring the tip to `p_world_tip`, with the given spin and jaw. A tip at the port itself gives
 /// depth 0.
-TrocarJoints FindJoints(const Vec3& p_world_port, const Vec3& p_world_tip, double spin, double jaw) noexcept;
+TrocarJoints FindJoints(const math::Vec3& p_world_port, const math::Vec3& p_world_tip, double spin,
+                        double jaw) noexcept;
 
 /// Moves `from` towards `to` no faster than the limits [m/s], [rad/s] allow in dt [s].
 /// \note Guards against device jumps (faults D5); real-time safe.

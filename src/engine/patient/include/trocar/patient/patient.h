@@ -17,13 +17,6 @@
 
 namespace trocar::patient {
 
-using math::Vec3;
-using roles::LandmarkRole;
-using roles::NeighbourRole;
-using roles::OrganRole;
-using roles::RegionRole;
-using roles::TubeRole;
-
 /// Names are for files and persons; programs ask for roles. A file may state a role; otherwise it is that of a
 /// conventional name.
 
@@ -31,7 +24,7 @@ using roles::TubeRole;
 struct Region {
   std::string name;
   std::vector<std::uint32_t> vertices;  ///< ascending
-  RegionRole role = roles::ConventionalRole<RegionRole>(name);
+  roles::RegionRole role = roles::ConventionalRole<roles::RegionRole>(name);
 
   friend bool operator==(const Region&, const Region&) = default;
 };
@@ -41,10 +34,10 @@ struct Organ {
   std::string name;             ///< "liver", "gallbladder"
   geometry::TriangleMesh mesh;  ///< closed, manifold, outward; world frame [m]
   std::vector<Region> regions;
-  OrganRole role = roles::ConventionalRole<OrganRole>(name);
+  roles::OrganRole role = roles::ConventionalRole<roles::OrganRole>(name);
 
   /// The region of that role, or null.
-  const Region* RegionOf(RegionRole wanted) const;
+  const Region* RegionOf(roles::RegionRole wanted) const;
 };
 
 /// Connective tissue between a vertex of one organ and a vertex of another; it can be dissected.
@@ -75,15 +68,15 @@ struct Tube {
   std::string from, to;
   geometry::CentreLine line;  ///< world frame [m]
   bool is_seen = true;        ///< false: placed by landmarks because the images do not show it
-  TubeRole role = roles::ConventionalRole<TubeRole>(name);
+  roles::TubeRole role = roles::ConventionalRole<roles::TubeRole>(name);
 
   friend bool operator==(const Tube&, const Tube&) = default;
 };
 
 struct Landmark {
-  std::string name;  ///< "umbilicus", "fundus", "infundibulum"
-  Vec3 position;     ///< world frame [m]
-  LandmarkRole role = roles::ConventionalRole<LandmarkRole>(name);
+  std::string name;     ///< "umbilicus", "fundus", "infundibulum"
+  math::Vec3 position;  ///< world frame [m]
+  roles::LandmarkRole role = roles::ConventionalRole<roles::LandmarkRole>(name);
 
   friend bool operator==(const Landmark&, const Landmark&) = default;
 };
@@ -103,7 +96,7 @@ struct Neighbour {
   std::string name;             ///< "stomach"
   geometry::TriangleMesh mesh;  ///< closed, manifold, outward, of one part or several; world frame [m]
   bool is_seen = true;          ///< false: a template placed by landmarks because the images do not show it
-  NeighbourRole role = roles::ConventionalRole<NeighbourRole>(name);
+  roles::NeighbourRole role = roles::ConventionalRole<roles::NeighbourRole>(name);
 };
 
 /// Use of a port: for the laparoscope, a hand of the surgeon, or the assistant.
@@ -117,8 +110,8 @@ std::optional<PortUse> FindPortUse(std::string_view name) noexcept;
 /// Where an instrument passes this patient's insufflated wall, in place of what a scene says.
 struct Port {
   PortUse use = PortUse::kLaparoscope;
-  Vec3 position;       ///< world frame [m]
-  std::string reason;  ///< a sentence: why there
+  math::Vec3 position;  ///< world frame [m]
+  std::string reason;   ///< a sentence: why there
 
   friend bool operator==(const Port&, const Port&) = default;
 };
@@ -170,13 +163,13 @@ struct Patient {
   std::vector<SourceLabel> labels;    ///< none for a patient that was not made of a label map
 
   /// Index of the organ of that role, or -1.
-  int OrganOf(OrganRole role) const;
+  int OrganOf(roles::OrganRole role) const;
   /// Index of the first duct or artery of that role, or -1.
-  int TubeOf(TubeRole role) const;
+  int TubeOf(roles::TubeRole role) const;
   /// The role of the organ at that index; kOther beyond the organs, where tubes are.
-  OrganRole RoleOfOrgan(int organ) const;
+  roles::OrganRole RoleOfOrgan(int organ) const;
   /// The landmark of that role, or null.
-  const Landmark* LandmarkOf(LandmarkRole role) const;
+  const Landmark* LandmarkOf(roles::LandmarkRole role) const;
 
   // what a file or a person names
 
@@ -187,12 +180,14 @@ struct Patient {
   /// Index of the organ or tube of that name, tubes after organs, or -1: what a tube's end joins.
   int FindPart(std::string_view part_name) const;
   /// The role of the organ of that name; kOther where there is none.
-  OrganRole FindOrganRole(std::string_view organ_name) const { return RoleOfOrgan(FindOrgan(organ_name)); }
+  roles::OrganRole FindOrganRole(std::string_view organ_name) const {
+    return RoleOfOrgan(FindOrgan(organ_name));
+  }
   /// The landmark of that name, else the one whose role is called so; null where there is none.
   const Landmark* FindLandmark(std::string_view landmark_name) const;
   const Parameter* FindParameter(std::string_view parameter_name) const;
   /// The neighbour of that role, or null.
-  const Neighbour* NeighbourOf(NeighbourRole role) const;
+  const Neighbour* NeighbourOf(roles::NeighbourRole role) const;
   const Port* PortOf(PortUse use) const;
 };
 
@@ -200,10 +195,10 @@ struct Patient {
 bool IsPlainName(std::string_view name) noexcept;
 
 /// Names of the paper's four boundary rules (section 3.2.2).
-inline constexpr const char* kDiaphragmaticFace = roles::NameOf(RegionRole::kDiaphragmaticFace);
-inline constexpr const char* kFalciform = roles::NameOf(RegionRole::kFalciform);
-inline constexpr const char* kCoronary = roles::NameOf(RegionRole::kCoronary);
-inline constexpr const char* kGallbladderBed = roles::NameOf(RegionRole::kGallbladderBed);
+inline constexpr const char* kDiaphragmaticFace = roles::NameOf(roles::RegionRole::kDiaphragmaticFace);
+inline constexpr const char* kFalciform = roles::NameOf(roles::RegionRole::kFalciform);
+inline constexpr const char* kCoronary = roles::NameOf(roles::RegionRole::kCoronary);
+inline constexpr const char* kGallbladderBed = roles::NameOf(roles::RegionRole::kGallbladderBed);
 
 /// Closed, manifold, outward organs and neighbours; at most one of each role, and so with landmarks, ports and an organ's
 /// regions; regions and attachments in range; tubes finite with positive radii; names of parameters unique and their numbers finite.

@@ -17,9 +17,6 @@
 
 namespace trocar::rigid {
 
-using math::Pose;
-using math::Vec3;
-
 /// Convex part of a body, or a ring of them.
 struct RigidShape {
   enum class Kind : std::uint8_t {
@@ -30,13 +27,13 @@ struct RigidShape {
     kRing       ///< torus about z; size.x radius of its circle, size.y radius of its section
   };
   Kind kind = Kind::kBox;
-  Vec3 size;  ///< [m], > 0 where used
-  Pose X_body_shape;
+  math::Vec3 size;  ///< [m], > 0 where used
+  math::Pose X_body_shape;
 };
 
 struct RigidBody {
   std::vector<RigidShape> shapes;  ///< at least one
-  Pose X_world_body;
+  math::Pose X_world_body;
   double mass = 0;        ///< [kg]; 0: never moves
   double friction = 0.8;  ///< Coulomb's, with a partner of 1; the product of both counts [-]
 };
@@ -53,16 +50,16 @@ enum ToolPart : std::uint8_t { kShaftPart, kUpperJawPart, kLowerJawPart, kToolPa
 /// Where a tool enters a body that never moves.
 struct ToolObstacle {
   std::uint32_t body = 0;
-  Vec3 point;        ///< of the tool's axis, world frame [m]
-  Vec3 normal;       ///< unit, into the body
-  double depth = 0;  ///< of the tool's surface in the body [m]; negative: they are this far apart
+  math::Vec3 point;   ///< of the tool's axis, world frame [m]
+  math::Vec3 normal;  ///< unit, into the body
+  double depth = 0;   ///< of the tool's surface in the body [m]; negative: they are this far apart
 };
 
 class RigidWorld {
  public:
   /// \param gravity  [m/s^2]
   /// \param tick_seconds  of every Step, > 0
-  RigidWorld(const Vec3& gravity, double tick_seconds);
+  RigidWorld(const math::Vec3& gravity, double tick_seconds);
   ~RigidWorld();
   RigidWorld(RigidWorld&&) noexcept;
   RigidWorld& operator=(RigidWorld&&) noexcept;
@@ -72,14 +69,14 @@ class RigidWorld {
   /// \param parts  shaft, upper jaw, lower jaw
   /// \return index of the tool; kSceneInvalid
   base::Result<std::uint32_t> AddTool(const ToolCapsule (&parts)[kToolPartCount],
-                                      const Pose (&X_world_parts)[kToolPartCount]);
+                                      const math::Pose (&X_world_parts)[kToolPartCount]);
 
   /// Where a tool's parts are at the end of the next Step; in between they move there evenly.
   /// \pre finite (TROCAR_ASSERT)
-  void MoveTool(std::uint32_t tool, const Pose (&X_world_parts)[kToolPartCount]);
+  void MoveTool(std::uint32_t tool, const math::Pose (&X_world_parts)[kToolPartCount]);
 
   /// From the next Step on [m/s^2]; what lies still wakes when it changes.
-  void SetGravity(const Vec3& gravity);
+  void SetGravity(const math::Vec3& gravity);
 
   /// One tick.
   /// \note Bounded by the number of bodies; takes memory from pools that grow to the most contacts seen.
@@ -97,7 +94,7 @@ class RigidWorld {
   std::int32_t HeldBy(std::uint32_t tool) const;
 
   /// Force of what the tool touches or holds, on the tool, mean over the last Step [N].
-  Vec3 ForceOn(std::uint32_t tool) const;
+  math::Vec3 ForceOn(std::uint32_t tool) const;
   /// Whether any part of the tool touched a body in the last Step.
   bool Touches(std::uint32_t tool, std::uint32_t body) const;
 
@@ -106,11 +103,11 @@ class RigidWorld {
   /// Finds the bodies without mass that a tool with its parts in these poses enters, or that are nearer than `reach` [m].
   /// Step pushes the bodies with mass. Those without mass have to keep the tool out, and the caller sees to that.
   /// \param[out] obstacles  cleared first; the deepest of each part and body
-  void FindObstacles(std::uint32_t tool, const Pose (&X_world_parts)[kToolPartCount], double reach,
+  void FindObstacles(std::uint32_t tool, const math::Pose (&X_world_parts)[kToolPartCount], double reach,
                      std::vector<ToolObstacle>& obstacles);
 
-  Pose PoseOf(std::uint32_t body) const;
-  Vec3 VelocityOf(std::uint32_t body) const;  ///< [m/s]
+  math::Pose PoseOf(std::uint32_t body) const;
+  math::Vec3 VelocityOf(std::uint32_t body) const;  ///< [m/s]
   bool IsAtRest(std::uint32_t body) const;
   std::size_t BodyCount() const;
   /// Everything as it was added; tools stay where they are and hold nothing.

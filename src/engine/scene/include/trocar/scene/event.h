@@ -10,8 +10,6 @@
 
 namespace trocar::scene {
 
-using math::Vec3;
-
 enum class EventKind {
   kGrasp,
   kRelease,
@@ -47,7 +45,7 @@ struct Event {
   double force;              ///< [N], 0 where it means nothing
   std::int32_t object = -1;  ///< Scene::objects that is meant, or -1
   std::int32_t error = -1;   ///< cholecystectomy::OperationError, or -1
-  Vec3 p_rest;               ///< of a clip or a cut: where on its vessel at rest, world frame [m]
+  math::Vec3 p_rest;         ///< of a clip or a cut: where on its vessel at rest, world frame [m]
 };
 
 void VisitState(base::StateArchive& archive, Event& event);

@@ -11,11 +11,6 @@
 
 namespace trocar::scene {
 
-using instrument::Hand;
-using instrument::kHandCount;
-using instrument::kLeft;
-using instrument::kRight;
-
 /// Controls of a hand and its foot besides the motion of the tool.
 struct HandControls {
   std::uint8_t tool = 0;  ///< wanted, by its place in InstrumentSetup::tray; exchanged when the shaft is free
@@ -53,8 +48,8 @@ struct LiveSettings {
 LiveSettings ClampSettings(const LiveSettings& settings) noexcept;
 
 struct Input {
-  std::array<instrument::TrocarJoints, kHandCount> hands;
-  std::array<HandControls, kHandCount> controls;
+  std::array<instrument::TrocarJoints, instrument::kHandCount> hands;
+  std::array<HandControls, instrument::kHandCount> controls;
   AssistantCommand assistant = AssistantCommand::kWait;
   /// jaw is not used; spin turns the angled tip (the light post), the horizon of the picture stays
   instrument::TrocarJoints laparoscope;

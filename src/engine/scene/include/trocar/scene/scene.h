@@ -23,11 +23,9 @@
 
 namespace trocar::scene {
 
-using math::Vec3;
-
 /// Straight or angled telescope in its port.
 struct LaparoscopeSetup {
-  Vec3 p_world_port;                ///< [m]
+  math::Vec3 p_world_port;          ///< [m]
   instrument::TrocarJoints home;    ///< where it starts
   double view_angle = 0;            ///< 0 or 30 deg, between shaft and line of sight [rad]
   double field_of_view = 1.308997;  ///< diagonal, 75 deg [rad]
@@ -36,16 +34,16 @@ struct LaparoscopeSetup {
 struct InstrumentSetup {
   instrument::Tool tool;               ///< at the start: the first of the tray
   std::vector<instrument::Tool> tray;  ///< what can be exchanged through this trocar, at least one
-  Vec3 p_world_port;                   ///< [m]
+  math::Vec3 p_world_port;             ///< [m]
   instrument::TrocarJoints home;       ///< where it starts
 };
 
 /// Pose of both hands at one time; between keys the tips move smoothly along straight lines.
 struct ScriptKey {
   double time = 0;  ///< [s]
-  std::array<Vec3, kHandCount> p_world_tip;
-  std::array<double, kHandCount> spin{};  ///< [rad]
-  std::array<double, kHandCount> jaw{};   ///< [rad]
+  std::array<math::Vec3, instrument::kHandCount> p_world_tip;
+  std::array<double, instrument::kHandCount> spin{};  ///< [rad]
+  std::array<double, instrument::kHandCount> jaw{};   ///< [rad]
 };
 
 /// A row of keys in time order: a deterministic pair of hands.
@@ -59,9 +57,9 @@ struct Script {
 /// The third grasper and who holds it.
 struct AssistantSetup {
   instrument::Tool tool;
-  Vec3 p_world_port;    ///< [m]
-  Vec3 p_world_target;  ///< a landmark of the patient: what it takes, as it lies at rest [m]
-  Vec3 lift;            ///< from where it took it, when told to retract [m]
+  math::Vec3 p_world_port;    ///< [m]
+  math::Vec3 p_world_target;  ///< a landmark of the patient: what it takes, as it lies at rest [m]
+  math::Vec3 lift;            ///< from where it took it, when told to retract [m]
 };
 
 /// Setup that makes a scene an operation: tissue to be dissected, and tools that do more than push and hold.
@@ -78,15 +76,15 @@ struct OperationSetup {
 struct ModelBand {
   std::string name;
   ObjectColour colour = ObjectColour::kRed;
-  Vec3 from, to;           ///< world frame [m]
+  math::Vec3 from, to;     ///< world frame [m]
   double radius = 0.0006;  ///< [m]
 };
 
 /// A level sheet that is held at its border, with a circle drawn round its middle.
 struct ModelSheet {
   std::string name;
-  Vec3 centre;             ///< world frame [m]
-  Vec3 half;               ///< of its sides along x and y [m]; z is 0
+  math::Vec3 centre;       ///< world frame [m]
+  math::Vec3 half;         ///< of its sides along x and y [m]; z is 0
   double spacing = 0.003;  ///< of its nodes [m]
   double circle = 0.020;   ///< radius [m]
   double prestrain = 0;    ///< how far the frame stretches it in every direction [-]
@@ -121,7 +119,7 @@ struct Scene {
   std::filesystem::path patient_folder;
   patient::Patient patient;
   std::vector<OrganMaterial> materials;
-  std::array<InstrumentSetup, kHandCount> instruments;
+  std::array<InstrumentSetup, instrument::kHandCount> instruments;
   LaparoscopeSetup laparoscope;
   LiveSettings settings;             ///< at the start
   double tick_seconds = 1.0 / 120;   ///< [s]
@@ -141,10 +139,10 @@ math::Pose CalcLaparoscopePose(const LaparoscopeSetup& setup,
 
 /// Request for a view: the point in the middle of the picture, its distance, and the side from which it is seen.
 struct ViewRequest {
-  Vec3 p_world;                ///< in its middle [m]
-  double distance = 0.08;      ///< from the lens [m], > 0
-  std::optional<Vec3> facing;  ///< from this side as nearly as can be, unit
-  double most_depth = 0.28;    ///< of the lens [m]
+  math::Vec3 p_world;                ///< in its middle [m]
+  double distance = 0.08;            ///< from the lens [m], > 0
+  std::optional<math::Vec3> facing;  ///< from this side as nearly as can be, unit
+  double most_depth = 0.28;          ///< of the lens [m]
 };
 /// Joints of a laparoscope that shows it, with the light post that does it best; nothing where none can.
 /// \note Real-time safe, as the one below.

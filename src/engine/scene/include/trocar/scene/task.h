@@ -100,8 +100,6 @@ struct Goal {
   int stage = 0;  ///< counts only when every goal of a lower stage is done
 };
 
-using cholecystectomy::Severity;
-
 /// Error rule of a task. Counts each time that one of its conditions begins to hold.
 struct ErrorRule {
   std::string name;   ///< key: "wire_touched"

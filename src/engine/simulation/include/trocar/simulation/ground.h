@@ -10,12 +10,10 @@
 
 namespace trocar::simulation {
 
-using math::Vec3;
-
 /// Balls under which geometry::MakeOmentum leads the omentum: around all organs and tubes but the liver, which touches it.
 /// \param surfaces   of Simulation::Surfaces()
 /// \param positions  (nodes) of the first snapshot [m]
-std::vector<geometry::Ball> FindOmentumBalls(std::span<const SurfaceInfo> surfaces,
-                                             std::span<const Vec3> positions);
+std::vector<geometry::Ball> FindOmentumBalls(std::span<const scene::SurfaceInfo> surfaces,
+                                             std::span<const math::Vec3> positions);
 
 }  // namespace trocar::simulation

@@ -13,16 +13,11 @@
 
 namespace trocar::simulation {
 
-using math::Vec3;
-using scene::Scene;
-using scene::StrandInfo;
-using scene::SurfaceInfo;
-
 /// Knowledge of the patient before the operation, as from images and a textbook. Rows are those of Snapshot::positions.
 struct ModelDescription {
-  std::vector<SurfaceInfo> surfaces;  ///< organs, then tubes, as Simulation::Surfaces()
-  std::vector<StrandInfo> strands;    ///< as Simulation::Strands()
-  std::vector<Vec3> rest;             ///< (nodes) at rest, world frame [m]
+  std::vector<scene::SurfaceInfo> surfaces;  ///< organs, then tubes, as Simulation::Surfaces()
+  std::vector<scene::StrandInfo> strands;    ///< as Simulation::Strands()
+  std::vector<math::Vec3> rest;              ///< (nodes) at rest, world frame [m]
   /// (tubes)(nodes of it) what the duct or artery is to the surgeon there; empty where they make no network
   std::vector<std::vector<cholecystectomy::VesselRole>> tube_roles;
   /// Of an operation: strands of fat and peritoneum over the window of the hepatocystic triangle.
@@ -36,6 +31,6 @@ struct ModelDescription {
 /// Compiles the scene's tissue as the simulation does, and keeps what is constant.
 /// \return the error with which Simulation::Make refuses the scene's tissue
 /// \note Not real-time safe: takes as long as making a simulation.
-base::Result<ModelDescription> DescribeModel(const Scene& scene);
+base::Result<ModelDescription> DescribeModel(const scene::Scene& scene);
 
 }  // namespace trocar::simulation

@@ -11,8 +11,6 @@
 
 namespace trocar::simulation {
 
-using surgery::StoneCount;
-
 struct OperationResult {
   cholecystectomy::ErrorLog errors;
   cholecystectomy::DissectionFacts facts;
@@ -21,7 +19,7 @@ struct OperationResult {
   cholecystectomy::InjuryReport injuries;
   surgery::FluidLedger fluids;
   double bed_blood = 0;  ///< that the liver's bed has oozed, part of `fluids` [m^3]
-  StoneCount stones;
+  surgery::StoneCount stones;
   cholecystectomy::Phase phase = cholecystectomy::Phase::kPreparation;
   bool is_gallbladder_free = false;
   bool is_in_bag = false;

@@ -21,14 +21,6 @@
 
 namespace trocar::simulation {
 
-using scene::kHandCount;
-using surgery::ClipSnapshot;
-using surgery::LeakSnapshot;
-using surgery::OozeSnapshot;
-using surgery::StonePlace;
-using surgery::StoneSnapshot;
-using surgery::TubePiece;
-
 /// Surfaces and tubes as cutting has left them.
 struct TopologySnapshot {
   std::uint32_t version = 0;  ///< grows when triangles or tube pieces change
@@ -36,7 +28,7 @@ struct TopologySnapshot {
   /// triangles[first[i] + count[i]]. Empty where the scene has nothing that cuts: SurfaceInfo::triangles hold.
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> first_triangle, triangle_count;  ///< (organs)
-  std::vector<TubePiece> tube_pieces;                         ///< the first tube_piece_count count
+  std::vector<surgery::TubePiece> tube_pieces;                ///< the first tube_piece_count count
   std::size_t tube_piece_count = 0;
 
   /// Whether a duct or artery was cut through somewhere, so that it has as many pieces as it had nodes, or more.
@@ -44,16 +36,16 @@ struct TopologySnapshot {
   bool IsDivided(std::span<const scene::SurfaceInfo> surfaces, std::size_t tube) const noexcept {
     const auto last = tube_pieces.begin() + static_cast<std::ptrdiff_t>(tube_piece_count);
     const auto count = std::count_if(tube_pieces.begin(), last,
-                                     [&](const TubePiece& piece) { return piece.surface == tube; });
+                                     [&](const surgery::TubePiece& piece) { return piece.surface == tube; });
     return static_cast<std::size_t>(count) >= surfaces[tube].node_count;
   }
 };
 
 /// Leaks and oozing blood, and where the fluids gather.
 struct FlowSnapshot {
-  std::array<LeakSnapshot, 32> leaks{};  ///< the first leak_count count
+  std::array<surgery::LeakSnapshot, 32> leaks{};  ///< the first leak_count count
   std::size_t leak_count = 0;
-  std::array<OozeSnapshot, 32> oozes{};  ///< the first ooze_count count: those that bleed most
+  std::array<surgery::OozeSnapshot, 32> oozes{};  ///< the first ooze_count count: those that bleed most
   std::size_t ooze_count = 0;
   surgery::FluidLedger ledger;
   math::Vec3 p_world_pool;  ///< lowest place, where blood, bile and rinse gather [m]
@@ -69,21 +61,21 @@ struct AssistantSnapshot {
 
 /// Fixed sizes while a scene runs, so that copying allocates nothing.
 struct OperationSnapshot {
-  std::array<std::uint8_t, kHandCount> tools{};  ///< in use, by place in InstrumentSetup::tray
-  std::array<bool, kHandCount> has_current{};    ///< flows through the electrode into tissue
-  std::array<int, kHandCount> clips_left{};      ///< in the tool in use
+  std::array<std::uint8_t, instrument::kHandCount> tools{};  ///< in use, by place in InstrumentSetup::tray
+  std::array<bool, instrument::kHandCount> has_current{};    ///< flows through the electrode into tissue
+  std::array<int, instrument::kHandCount> clips_left{};      ///< in the tool in use
   /// (Simulation::Strands()) 1 while it holds
   std::vector<std::uint8_t> strand_is_intact;
   /// (nodes) 0 to 1 [-]; empty where the scene has no electrode
   std::vector<float> blanching, charring;
   TopologySnapshot topology;
-  std::vector<ClipSnapshot> clips;  ///< the first clip_count count
+  std::vector<surgery::ClipSnapshot> clips;  ///< the first clip_count count
   std::size_t clip_count = 0;
   std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
   std::size_t tube_cut_count = 0;
   std::vector<std::uint8_t> band_is_whole;          ///< (ModelSetup::bands)
   std::vector<cholecystectomy::PatternCut> sheets;  ///< (ModelSetup::sheets)
-  std::vector<StoneSnapshot> stones;                ///< the patient's gallstones
+  std::vector<surgery::StoneSnapshot> stones;       ///< the patient's gallstones
   FlowSnapshot flow;
   double smoke = 0;  ///< in the view, 0 none to 1 thick [-]
   AssistantSnapshot assistant;
@@ -97,7 +89,7 @@ struct OperationSnapshot {
   std::size_t errors = 0, critical_errors = 0;  ///< so far
   bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
   /// Pedals of a suction-irrigator in this tick. No part of the state: up after it was restored, until the next tick.
-  std::array<bool, kHandCount> is_rinsing{}, is_aspirating{};
+  std::array<bool, instrument::kHandCount> is_rinsing{}, is_aspirating{};
 };
 
 }  // namespace trocar::simulation

@@ -24,9 +24,6 @@
 
 namespace trocar::simulation {
 
-using scene::Hand;
-using scene::Input;
-
 /// Services that the program gives a simulation from outside: threads, a device's solver, a clock.
 struct Services {
   base::Threads threads{};
@@ -43,8 +40,8 @@ struct SimulationModel;
 
 /// \param threads  used to fill tense organs
 /// \return kSceneInvalid or kPatientInvalid
-base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::shared_ptr<const Scene> scene,
-                                                                         const base::Threads& threads = {});
+base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(
+    std::shared_ptr<const scene::Scene> scene, const base::Threads& threads = {});
 
 /// Parts of a simulation's state.
 enum class StatePart : std::uint8_t {
@@ -65,7 +62,8 @@ enum class StatePart : std::uint8_t {
 class Simulation {
  public:
   /// \return kSceneInvalid or kPatientInvalid
-  static base::Result<Simulation> Make(std::shared_ptr<const Scene> scene, const Services& services = {});
+  static base::Result<Simulation> Make(std::shared_ptr<const scene::Scene> scene,
+                                       const Services& services = {});
   /// One more of the same model.
   static base::Result<Simulation> Make(std::shared_ptr<const SimulationModel> model,
                                        const Services& services = {});
@@ -76,17 +74,17 @@ class Simulation {
 
   /// One tick, of Scene::tick_seconds: see docs/step.md.
   /// \note No lock or file. Allocates only in a tick in which a blade parts an organ, a duct or a vessel.
-  void Step(const Input& input) noexcept;
+  void Step(const scene::Input& input) noexcept;
   /// One tick in which nothing is judged or published: the world is the same after it, the snapshot that of before.
-  void StepWorld(const Input& input) noexcept;
+  void StepWorld(const scene::Input& input) noexcept;
   /// Back to the first tick.
   void Reset();
 
-  const Scene& GetScene() const;
+  const scene::Scene& GetScene() const;
   /// Organs, then tubes; constant.
-  std::span<const SurfaceInfo> Surfaces() const;
+  std::span<const scene::SurfaceInfo> Surfaces() const;
   /// Strands that dissection divides, constant; empty where the scene is no operation.
-  std::span<const StrandInfo> Strands() const;
+  std::span<const scene::StrandInfo> Strands() const;
   /// Snapshot that Make, Step, Restore or Reset has published last; overwritten by the next of them.
   const Snapshot& GetSnapshot() const;
   /// How the operation stands; nothing where the scene is none.
@@ -116,7 +114,7 @@ class Simulation {
 
   /// Cuts out the tissue around one tool for the haptic loop, after a Step.
   /// \note Real-time safe: no allocation, lock or throw.
-  void CutPatch(Hand hand, tissue::LocalPatch& patch) noexcept;
+  void CutPatch(instrument::Hand hand, tissue::LocalPatch& patch) noexcept;
   /// Name of the device that solves; empty when the processor does.
   std::string_view DeviceName() const;
   /// Why the device that was asked for does not solve, from the tick in which it failed; else nullptr.

@@ -19,25 +19,18 @@
 
 namespace trocar::simulation {
 
-using instrument::IsInView;
-using scene::Event;
-using scene::ObjectSnapshot;
-using scene::TaskSnapshot;
-
-using math::Pose;
-using math::Vec3;
-
 /// One instrument after a tick.
 struct InstrumentSnapshot {
-  Pose X_world_tool;  ///< of the tool that is seen: stays outside of the tissue; frame of instrument/tool.h
+  math::Pose
+      X_world_tool;  ///< of the tool that is seen: stays outside of the tissue; frame of instrument/tool.h
   instrument::TrocarJoints joints;  ///< of the hand, after limits
-  Vec3 force;                       ///< of tissue and the other tool on the tool, world frame [N]
+  math::Vec3 force;                 ///< of tissue and the other tool on the tool, world frame [N]
   bool is_grasping = false;
   bool is_touching = false;
   /// Index into Simulation::Surfaces() of what is grasped or touched (Patient::organs first, then its tubes), or
   /// -1.
   std::int32_t organ = -1;
-  Pose X_world_device;            ///< where the hand is: may lie in the tissue that it presses
+  math::Pose X_world_device;      ///< where the hand is: may lie in the tissue that it presses
   double pinch = 0;               ///< of the jaws on what they hold [N]
   double overlap = 0;             ///< of the tool that is seen with tissue, what is left of it [m]
   bool is_touching_tool = false;  ///< the other instrument
@@ -85,24 +78,24 @@ struct Snapshot {
   std::uint64_t tick = 0;
   double time = 0;  ///< tick * tick_seconds [s]
   /// (nodes) organ after organ as in Patient::organs, then the centre-line nodes of tube after tube [m]
-  std::vector<Vec3> positions;
-  std::array<InstrumentSnapshot, kHandCount> instruments;
+  std::vector<math::Vec3> positions;
+  std::array<InstrumentSnapshot, instrument::kHandCount> instruments;
   std::vector<OrganSnapshot> organs;  ///< (organs) as in Patient::organs
   OperationSnapshot operation;
-  std::vector<ObjectSnapshot> objects;  ///< (Scene::objects)
-  TaskSnapshot task;
+  std::vector<scene::ObjectSnapshot> objects;  ///< (Scene::objects)
+  scene::TaskSnapshot task;
   std::array<surgery::Dent, surgery::kDentCount> dents;  ///< that tools have pressed into Patient::neighbours
   instrument::TrocarJoints laparoscope;                  ///< after limits
-  Pose X_world_laparoscope;          ///< origin at the lens, looking along -z, +y up in the picture
+  math::Pose X_world_laparoscope;    ///< origin at the lens, looking along -z, +y up in the picture
   double residual = 0;               ///< largest node residual, relative: see tissue/solver_settings.h [-]
   int iterations = 0;                ///< of the solver in this tick
   std::size_t contacts = 0;          ///< contact springs of this tick
   std::size_t dropped_contacts = 0;  ///< beyond the capacity
-  Vec3 gravity;                      ///< world frame [m/s^2]
+  math::Vec3 gravity;                ///< world frame [m/s^2]
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]
   std::uint64_t event_count = 0;                    ///< since the start; the newest are in `events`
-  std::array<Event, kEventRing> events{};           ///< ring: event n at n % kEventRing
+  std::array<scene::Event, kEventRing> events{};    ///< ring: event n at n % kEventRing
 };
 
 }  // namespace trocar::simulation

@@ -13,9 +13,6 @@
 
 namespace trocar::surgery {
 
-using math::Pose;
-using math::Vec3;
-
 enum class BladeKind : std::uint8_t {
   kScissors,  ///< cut while they close, from the hinge to the tip
   kHook       ///< cuts with its toe while it has power
@@ -47,7 +44,7 @@ struct BladeMove {
 /// \param has_power  of the hook; ignored for scissors
 /// \return the move, or nothing while it does not cut
 /// \note Real-time safe.
-std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const Pose& X_world_tool, double jaw,
+std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const math::Pose& X_world_tool, double jaw,
                                    bool has_power, const BladeSettings& settings, BladeState& state) noexcept;
 
 /// Finds the intact strands that a move crosses.

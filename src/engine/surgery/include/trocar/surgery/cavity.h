@@ -22,7 +22,7 @@ inline constexpr int kCavityParts = 3;
 /// Distance of a point to one part, and the way back inside.
 struct CavityClearance {
   double distance = 0;  ///< > 0 inside of the cavity [m]
-  Vec3 inwards;         ///< unit
+  math::Vec3 inwards;   ///< unit
 };
 
 /// Made by FitCavity; a part that does not exist is infinitely far.
@@ -41,7 +41,7 @@ struct Cavity {
   bool has_floor = false;
 
   /// \note Real-time safe. Distances to the two domes are of first order: height over slope, right near them.
-  std::array<CavityClearance, kCavityParts> FindClearances(const Vec3& p) const noexcept;
+  std::array<CavityClearance, kCavityParts> FindClearances(const math::Vec3& p) const noexcept;
 };
 
 /// Front wall through the ports (least squares of its height; its curvatures are those of the standard four ports of a
@@ -52,7 +52,8 @@ struct Cavity {
 /// \param diaphragm  points of the liver's diaphragmatic face [m]; fewer than kLeastDomePoints, or a face that is no dome:
 ///                   no diaphragm
 /// \param organs     every node of every organ [m]; empty: no floor
-Cavity FitCavity(std::span<const Vec3> ports, std::span<const Vec3> diaphragm, std::span<const Vec3> organs);
+Cavity FitCavity(std::span<const math::Vec3> ports, std::span<const math::Vec3> diaphragm,
+                 std::span<const math::Vec3> organs);
 inline constexpr std::size_t kLeastDomePoints = 24;
 
 struct CavityContactSettings {
@@ -74,13 +75,13 @@ void VisitState(base::StateArchive& archive, CavityContact& contact);
 /// \param positions  (n) of the whole system, at rest [m]
 /// \param is_fixed   (n) held at rest by anatomy
 CavityContact MakeCavityContact(const Cavity& cavity, std::span<const OrganSurface> organs,
-                                std::span<const Vec3> positions, std::span<const std::uint8_t> is_fixed,
+                                std::span<const math::Vec3> positions, std::span<const std::uint8_t> is_fixed,
                                 std::uint8_t organ, const CavityContactSettings& settings);
 
 /// After a cut of the organ: new vertices may lie where they are.
 /// \note Not real-time safe: allocates.
 void UpdateTopology(const Cavity& cavity, std::span<const OrganSurface> organs,
-                    std::span<const Vec3> positions, const CavityContactSettings& settings,
+                    std::span<const math::Vec3> positions, const CavityContactSettings& settings,
                     CavityContact& contact);
 
 /// Adds the springs of one organ's vertices against the parts that they are at; links carry kNoHand.
@@ -88,7 +89,7 @@ void UpdateTopology(const Cavity& cavity, std::span<const OrganSurface> organs,
 /// \param positions_before  (n) before the last solve [m]: springs are made as far ahead as a vertex went outwards in it
 /// \note Real-time safe.
 void FindCavityContacts(const Cavity& cavity, std::span<const OrganSurface> organs,
-                        std::span<const Vec3> positions, std::span<const Vec3> positions_before,
+                        std::span<const math::Vec3> positions, std::span<const math::Vec3> positions_before,
                         const CavityContactSettings& settings, const CavityContact& contact,
                         ContactSet& contacts) noexcept;
 

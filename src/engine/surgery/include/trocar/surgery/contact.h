@@ -23,8 +23,6 @@
 
 namespace trocar::surgery {
 
-using math::Pose;
-
 struct ContactSettings {
   double stiffness = 300.0;  ///< of one spring, along the normal and along the surface [N/m]
   double margin =
@@ -39,7 +37,7 @@ inline constexpr int kToolBodyCount = 3;
 
 /// Capsules of both jaws and of the whole shaft in the world.
 std::array<collision::Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool, double jaw,
-                                                              const Pose& X_world_tool) noexcept;
+                                                              const math::Pose& X_world_tool) noexcept;
 
 /// Whether the tool opens and closes. A hook, a tube or a bag is one rod before its shaft: its kUpperJaw.
 bool HasJaws(const instrument::Tool& tool) noexcept;
@@ -53,15 +51,15 @@ bool ClosesAroundTubes(const instrument::Tool& tool) noexcept;
 /// Whether a jaw that pushes tissue along `normal` pushes it towards the other jaw: tissue between the jaws, which
 /// does not push the tool away.
 /// \note Real-time safe.
-bool IsPinch(const instrument::Tool& tool, ToolBody body, const Pose& X_world_tool,
-             const Vec3& normal) noexcept;
+bool IsPinch(const instrument::Tool& tool, ToolBody body, const math::Pose& X_world_tool,
+             const math::Vec3& normal) noexcept;
 
 /// Tissue that a tool may touch. Surfaces are counted as organs first, then tubes.
 struct ContactCandidates {
   std::span<const OrganSurface> organs;
-  const TubeSet* tubes = nullptr;          ///< or nullptr for none
-  std::span<const Vec3> positions;         ///< (n) of the whole system, now [m]
-  std::span<const Vec3> positions_before;  ///< (n) before the last solve [m]
+  const TubeSet* tubes = nullptr;                ///< or nullptr for none
+  std::span<const math::Vec3> positions;         ///< (n) of the whole system, now [m]
+  std::span<const math::Vec3> positions_before;  ///< (n) before the last solve [m]
   std::span<const double> surface_motion;  ///< (organs + 1) farthest that a node went in it; last: tubes [m]
 };
 
@@ -72,9 +70,9 @@ struct ContactLink {
   std::uint8_t surface = 0;  ///< organ, or organs + tube
   bool is_friction = false;  ///< the spring runs along the surface; its normal contact stands before it
   bool is_pinch = false;     ///< of a jaw's inner side
-  Vec3 p_device;             ///< point of the device's axis that presses [m]
+  math::Vec3 p_device;       ///< point of the device's axis that presses [m]
   double held_back = 0;      ///< how much farther the device's surface is than the spring pushes [m]
-  Vec3 p_tool_stuck;         ///< point of the tool that sticks to the tissue, tool frame [m]
+  math::Vec3 p_tool_stuck;   ///< point of the tool that sticks to the tissue, tool frame [m]
   double normal_force = 0;   ///< after the solve [N]
 };
 
@@ -96,9 +94,9 @@ void VisitState(base::StateArchive& archive, ContactSet& contacts);
 struct ToolMotion {
   const instrument::Tool* tool = nullptr;
   std::uint8_t hand = 0;
-  Pose X_world_proxy_before, X_world_proxy;  ///< before the last solve, and now: outside of the tissue
-  Pose X_world_device;                       ///< where the hand is
-  double jaw_before = 0, jaw = 0;            ///< at the proxy's poses, and now [rad]
+  math::Pose X_world_proxy_before, X_world_proxy;  ///< before the last solve, and now: outside of the tissue
+  math::Pose X_world_device;                       ///< where the hand is
+  double jaw_before = 0, jaw = 0;                  ///< at the proxy's poses, and now [rad]
   /// Surface in the tool's jaws, whose tissue lies between them and is left to the grasp; or -1.
   std::int32_t grasped_surface = -1;
 };
@@ -112,14 +110,14 @@ void FindContacts(const ToolMotion& motion, const ContactCandidates& candidates,
 
 /// Reaction of one hand's contacts after the solve.
 struct ContactReaction {
-  Vec3 force;                 ///< of the tissue on the tool [N]
+  math::Vec3 force;           ///< of the tissue on the tool [N]
   std::int32_t surface = -1;  ///< pressed most, or -1
   double deepest = 0;         ///< largest depth of a spring [m]
 };
 
 /// Also keeps each contact's normal force, which limits the next tick's friction.
 /// \note Real-time safe.
-ContactReaction CalcContactReaction(std::uint8_t hand, std::span<const Vec3> positions,
+ContactReaction CalcContactReaction(std::uint8_t hand, std::span<const math::Vec3> positions,
                                     ContactSet& contacts) noexcept;
 
 }  // namespace trocar::surgery

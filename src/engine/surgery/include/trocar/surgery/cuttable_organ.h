@@ -43,7 +43,7 @@ class CuttableOrgan {
   /// \param[in,out] change  gets what the cut changes in the system; within the capacity that ReserveFor gives it
   /// \note Real-time safe: no allocation within the capacity of `change`.
   geometry::CutReport Cut(const geometry::BladeEdge& before, const geometry::BladeEdge& now,
-                          std::span<const Vec3> position, geometry::CutFront& front,
+                          std::span<const math::Vec3> position, geometry::CutFront& front,
                           TopologyChange& change) noexcept;
 
   /// Reserves what any cut of this organ can change.
@@ -67,7 +67,7 @@ class CuttableOrgan {
   geometry::SurfaceCutter cutter_;
   CuttableOrganSettings settings_;
   std::size_t given_count_ = 0;
-  std::vector<Vec3> positions_;          // (nv)
+  std::vector<math::Vec3> positions_;    // (nv)
   std::vector<geometry::Edge> pairs_;    // vertices whose spring may have changed
   std::vector<std::uint32_t> vertices_;  // whose mass and foundation may have changed
 };

@@ -23,7 +23,7 @@ class CuttableTubes {
 
   /// \param first_node  of the tube's points, in order along it
   /// \param points, radii  (n) n >= 2 [m]
-  void AddTube(std::uint32_t first_node, std::span<const Vec3> points, std::span<const double> radii);
+  void AddTube(std::uint32_t first_node, std::span<const math::Vec3> points, std::span<const double> radii);
 
   std::uint32_t Node(std::uint32_t p) const { return nodes_[p]; }
   const geometry::CentreLineGraph& Graph() const { return graph_; }
@@ -37,7 +37,7 @@ class CuttableTubes {
   /// \return how many cuts
   /// \note Real-time safe within the capacity of `change`.
   std::size_t Cut(const BladeMove& move, const tissue::TissueDefinition& definition,
-                  std::span<const Vec3> position, TopologyChange& change,
+                  std::span<const math::Vec3> position, TopologyChange& change,
                   std::span<geometry::CentreLineCut> cuts) noexcept;
 
   /// Most cuts in one tick.

@@ -20,9 +20,6 @@
 
 namespace trocar::surgery {
 
-using instrument::kHandCount;
-using math::Pose;
-
 class GallstoneSpill {
  public:
   static constexpr std::size_t kMostOthers = VesselActs::kMostClips;  ///< of Move
@@ -47,8 +44,8 @@ class GallstoneSpill {
   /// Falling, sliding, lying; those that are held move with their tools.
   /// \param ground  without the omentum, which is this one's
   /// \param others  lost clips, which fall as stones do, before them; without an omentum they stay where they are
-  void Move(StoneGround ground, std::span<const Pose> X_world_tools, std::span<LooseStone* const> others,
-            double seconds) noexcept;
+  void Move(StoneGround ground, std::span<const math::Pose> X_world_tools,
+            std::span<LooseStone* const> others, double seconds) noexcept;
   /// The triangles of organs have changed.
   void ForgetSupports() noexcept;
 
@@ -56,7 +53,7 @@ class GallstoneSpill {
   /// \param jaw_before, jaw  before and after this tick's movement [rad]
   /// \param can_take  the tool has jaws to hold, and they hold nothing else
   /// \return the jaws' opening that the stone allows [rad]
-  double StopJaw(int hand, const instrument::Tool& tool, const Pose& X_world_tool, double jaw_before,
+  double StopJaw(int hand, const instrument::Tool& tool, const math::Pose& X_world_tool, double jaw_before,
                  double jaw, bool can_take) noexcept;
   /// Index of the stone, or -1.
   std::int32_t HeldBy(int hand) const noexcept { return held_[static_cast<std::size_t>(hand)]; }
@@ -64,9 +61,9 @@ class GallstoneSpill {
 
   // Retrieval of stones; each function returns how many
   /// \param bore  diameter of the sucker's bore [m]
-  int Aspirate(const Vec3& p_world_tip, double bore) noexcept;
+  int Aspirate(const math::Vec3& p_world_tip, double bore) noexcept;
   /// Catches the stones that fall into the open bag because they were let go over it.
-  int CatchInBag(const Pose& X_world_bag) noexcept;
+  int CatchInBag(const math::Pose& X_world_bag) noexcept;
   /// The stone that a hand holds leaves through its trocar.
   int TakeOut(int hand) noexcept;
   /// Stones that lie on an organ go with it.
@@ -86,7 +83,7 @@ class GallstoneSpill {
     LooseStone body;
     StonePlace place = StonePlace::kInside;
     double opening = 0;  // of the jaws that hold it [rad]
-    Vec3 p_tool;         // while held [m]
+    math::Vec3 p_tool;   // while held [m]
     void VisitState(base::StateArchive& archive);
   };
   /// The omentum, constant.
@@ -101,8 +98,8 @@ class GallstoneSpill {
   std::vector<Stone> stones_;
   std::vector<LooseStone*> loose_;  // scratch
   std::shared_ptr<const Bed> bed_;  // shared by copies, which differ in state alone
-  std::array<std::int32_t, kHandCount> held_{-1, -1};
-  std::array<bool, kHandCount> has_taken_{};
+  std::array<std::int32_t, instrument::kHandCount> held_{-1, -1};
+  std::array<bool, instrument::kHandCount> has_taken_{};
   double carried_ = 0;  // part of a stone that has come to the hole
 };
 

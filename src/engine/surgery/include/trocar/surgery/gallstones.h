@@ -46,17 +46,17 @@ double CalcStoneOutflow(double leaked, double content, std::size_t fitting) noex
 
 /// Part of a tool that pushes stones aside.
 struct StonePusher {
-  Vec3 a, b;          ///< ends of its axis, world frame [m]
+  math::Vec3 a, b;    ///< ends of its axis, world frame [m]
   double radius = 0;  ///< [m]
 };
 
 /// Surroundings of loose stones: the surfaces on which they fall, gravity, and the tools that push them.
 struct StoneGround {
   std::span<const OrganSurface> organs;
-  std::span<const Vec3> positions;      ///< (n) of the nodes under the organs [m]
-  const OrganSurface* bed = nullptr;    ///< the fixed sheet below the organs, or nullptr
-  std::span<const Vec3> bed_positions;  ///< (bed) [m]
-  Vec3 gravity;                         ///< [m/s^2]
+  std::span<const math::Vec3> positions;      ///< (n) of the nodes under the organs [m]
+  const OrganSurface* bed = nullptr;          ///< the fixed sheet below the organs, or nullptr
+  std::span<const math::Vec3> bed_positions;  ///< (bed) [m]
+  math::Vec3 gravity;                         ///< [m/s^2]
   std::span<const StonePusher> pushers;
   double deepest = -1;  ///< z below which nothing falls [m]
 };
@@ -65,16 +65,16 @@ struct StoneGround {
 struct LooseStone {
   static constexpr std::int32_t kOnNothing = -1, kOnBed = -2, kOnFloor = -3;
 
-  double radius = 0;  ///< [m], > 0
-  Vec3 position;      ///< of its centre, world frame [m]
-  Vec3 velocity;      ///< [m/s]
+  double radius = 0;    ///< [m], > 0
+  math::Vec3 position;  ///< of its centre, world frame [m]
+  math::Vec3 velocity;  ///< [m/s]
   /// Surface on which it lies: an index of StoneGround::organs, or one of the constants above.
   std::int32_t support = kOnNothing;
   std::uint32_t triangle = 0;       ///< of the support
   std::array<double, 3> weights{};  ///< barycentric, of the point under it
-  Vec3 offset;         ///< from that point, along the triangle's first edge, across it, and up [m]
+  math::Vec3 offset;   ///< from that point, along the triangle's first edge, across it, and up [m]
   double upright = 0;  ///< cosine of the slope on which it came to lie [-]
-  Vec3 anchor;         ///< where it has been for `still_seconds`, nearly [m]
+  math::Vec3 anchor;   ///< where it has been for `still_seconds`, nearly [m]
   double still_seconds = 0;
 
   bool IsLying() const { return support != kOnNothing; }

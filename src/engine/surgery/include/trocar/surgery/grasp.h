@@ -15,8 +15,6 @@
 
 namespace trocar::surgery {
 
-using math::Pose;
-
 /// How jaws grip. Harder closing pinches harder; tissue slips out when pulled harder than friction holds it, and is
 /// damaged when pinched harder than its bite bears.
 /// Defaults: domain facts, section 6.2 (thresholds) and 3.3 (against a pull of 5 N, 3.0 N of pinch are needed and
@@ -38,12 +36,12 @@ struct Grasp {
       true;  ///< by the two thresholds; a tool starts closed and has to open before it can grasp
   std::int32_t surface = -1;  ///< organ, or organs + tube; -1 while nothing is held
   std::size_t count = 0;
-  std::array<std::uint32_t, kCapacity> nodes{};  ///< of the whole system
-  std::array<Vec3, kCapacity> p_tool_node{};     ///< where each is held in the tool frame [m]
-  double jaw_at_closing = 0;                     ///< [rad]
-  double pinch = 0;                              ///< of the jaws on what they hold [N]
-  double damage_pinch = 0;                       ///< that this bite bears [N]
-  bool is_damaged = false;                       ///< it has been pinched harder
+  std::array<std::uint32_t, kCapacity> nodes{};     ///< of the whole system
+  std::array<math::Vec3, kCapacity> p_tool_node{};  ///< where each is held in the tool frame [m]
+  double jaw_at_closing = 0;                        ///< [rad]
+  double pinch = 0;                                 ///< of the jaws on what they hold [N]
+  double damage_pinch = 0;                          ///< that this bite bears [N]
+  bool is_damaged = false;                          ///< it has been pinched harder
   int ticks_over_limit = 0;
 
   bool IsHolding() const { return count > 0; }
@@ -64,10 +62,10 @@ enum class GraspChange { kNone, kGrasped, kMissed, kReleased, kSlipped, kDamaged
 /// \param[in,out] state  conditions and positions of the held nodes
 /// \return kGrasped, kMissed (closed on nothing), kReleased, kDamaged (pinched too hard, once a bite) or kNone
 /// \note Real-time safe.
-GraspChange UpdateGrasp(const instrument::Tool& tool, const Pose& X_world_tool, const Pose& X_world_device,
-                        double jaw, std::span<const OrganSurface> organs, const TubeSet* tubes,
-                        const tissue::TissueModel& model, const GraspSettings& settings, Grasp& grasp,
-                        tissue::TissueState& state) noexcept;
+GraspChange UpdateGrasp(const instrument::Tool& tool, const math::Pose& X_world_tool,
+                        const math::Pose& X_world_device, double jaw, std::span<const OrganSurface> organs,
+                        const TubeSet* tubes, const tissue::TissueModel& model, const GraspSettings& settings,
+                        Grasp& grasp, tissue::TissueState& state) noexcept;
 
 /// Lets go when the pull was stronger than the grip for too long: pull > friction * pinch.
 /// \param pull  reaction of the held nodes [N]

@@ -30,11 +30,11 @@ struct NeighbourSurface {
 /// Where one tool has pressed a neighbour in.
 struct Dent {
   std::int32_t neighbour = -1;  ///< or -1: nowhere
-  Vec3 centre;                  ///< [m]
-  Vec3 push;                    ///< of the surface there [m]
+  math::Vec3 centre;            ///< [m]
+  math::Vec3 push;              ///< of the surface there [m]
 
   /// How far a point of that neighbour's surface at rest is shifted; smooth, none from kDentRadius on [m].
-  Vec3 ShiftOf(const Vec3& p) const noexcept;
+  math::Vec3 ShiftOf(const math::Vec3& p) const noexcept;
 };
 inline constexpr double kDentRadius = 0.030;  ///< [m]
 inline constexpr int kDentCount = 2;          ///< one for each hand
@@ -53,7 +53,7 @@ class NeighbourContact {
   /// Forces of the contacts, and the dents that they make. \param is_good  false: of a tick that was taken back
   void Press(bool is_good) noexcept;
   /// On the tool of that hand [N].
-  const Vec3& ForceOn(int hand) const { return forces_[static_cast<std::size_t>(hand)]; }
+  const math::Vec3& ForceOn(int hand) const { return forces_[static_cast<std::size_t>(hand)]; }
   void AddLimits(int hand, ProxyLimits& limits) const noexcept;
   /// For AddOverlapLimits.
   ContactCandidates Candidates() const noexcept;
@@ -66,7 +66,7 @@ class NeighbourContact {
 
   // constant
   std::vector<double> compliance_, deepest_;  // (neighbours) [m/N], [m]
-  std::vector<Vec3> rest_;                    // (n) of all of them [m]
+  std::vector<math::Vec3> rest_;              // (n) of all of them [m]
   ContactSettings settings_;
 
   // state
@@ -75,10 +75,10 @@ class NeighbourContact {
 
   // scratch
   std::vector<OrganSurface> surfaces_;  // (neighbours)
-  std::vector<Vec3> positions_, positions_before_;
+  std::vector<math::Vec3> positions_, positions_before_;
   std::vector<double> motion_;           // (neighbours + 1)
   std::vector<std::uint8_t> is_dented_;  // (neighbours)
-  std::array<Vec3, kDentCount> forces_;
+  std::array<math::Vec3, kDentCount> forces_;
 };
 
 }  // namespace trocar::surgery

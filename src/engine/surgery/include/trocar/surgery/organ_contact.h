@@ -34,7 +34,7 @@ struct OrganContactSettings {
 
 /// Where a vertex lay when it was last looked at, outside and clear of the surface.
 struct ClearVertex {
-  Vec3 position;  ///< [m]
+  math::Vec3 position;  ///< [m]
   /// It cannot have come near the surface while its own way and the surface's travel are together less than this [m].
   double until = 0;
 };
@@ -65,11 +65,11 @@ void VisitState(base::StateArchive& archive, OrganPair& pair);
 
 /// \param positions  (n) of the whole system, at rest [m]
 /// \param bound      nodes of the first organ that strands hold to the other
-OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const math::Vec3> positions,
                         std::uint8_t vertices_of, std::uint8_t surface_of,
                         std::span<const std::uint32_t> bound, const OrganContactSettings& settings);
 /// \param surface  of the tube: organs + tube
-OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const math::Vec3> positions,
                        const TubeSurface& tube, std::uint8_t surface, std::uint8_t surface_of,
                        const OrganContactSettings& settings);
 
@@ -82,13 +82,13 @@ void ResetPair(OrganPair& pair) noexcept;
 
 /// Adds the springs of one pair; links carry kNoHand.
 /// \note Real-time safe.
-void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const math::Vec3> positions,
                        const OrganContactSettings& settings, OrganPair& pair, ContactSet& contacts) noexcept;
 
 /// After the solve: keeps what presses each spring as the initial guess of its force in the next tick (warm start).
 /// \param positions  (n) after it [m]
 /// \note Real-time safe.
-void KeepWarmStartForces(std::span<const Vec3> positions, const ContactSet& contacts,
+void KeepWarmStartForces(std::span<const math::Vec3> positions, const ContactSet& contacts,
                          OrganPair& pair) noexcept;
 
 /// After a solve that was taken back.

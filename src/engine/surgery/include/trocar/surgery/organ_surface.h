@@ -15,8 +15,6 @@
 
 namespace trocar::surgery {
 
-using math::Vec3;
-
 /// One closed organ inside the system of nodes. Indices in triangles, tree and rows count from
 /// first_node.
 struct OrganSurface {
@@ -25,14 +23,14 @@ struct OrganSurface {
   geometry::Rows vertex_triangles;
   std::vector<double> vertex_areas;  ///< (node_count) at rest [m^2]
   collision::TriangleTree tree;
-  geometry::Box box;                 ///< of the nodes at the last update [m]
-  std::vector<Vec3> last_positions;  ///< (node_count) at the last update [m]
+  geometry::Box box;                       ///< of the nodes at the last update [m]
+  std::vector<math::Vec3> last_positions;  ///< (node_count) at the last update [m]
   double travel = 0;  ///< sum over all updates of how far the node that moved most has gone [m]
   /// Pinch that damages: of the smallest bite, and of one that fills the jaws [N].
   /// Source: domain facts, section 3.3 (Heijnsdijk 2004: 15 to 37 N as the contact area grows).
   double damage_pinch_small = 15.0, damage_pinch_full = 37.0;
 
-  std::span<const Vec3> Nodes(std::span<const Vec3> positions) const {
+  std::span<const math::Vec3> Nodes(std::span<const math::Vec3> positions) const {
     return positions.subspan(first_node, node_count);
   }
 };
@@ -40,12 +38,12 @@ struct OrganSurface {
 /// \param positions  (n) of the whole system [m]
 /// \param mesh       of the organ; its vertices are the nodes from first_node on
 /// \return kMeshInvalid
-base::Result<OrganSurface> MakeOrganSurface(std::span<const Vec3> positions, std::uint32_t first_node,
+base::Result<OrganSurface> MakeOrganSurface(std::span<const math::Vec3> positions, std::uint32_t first_node,
                                             const geometry::TriangleMesh& mesh);
 
 /// Refits tree and box to the nodes, and adds to the travel.
 /// \note Real-time safe.
-void UpdateOrganSurface(OrganSurface& surface, std::span<const Vec3> positions) noexcept;
+void UpdateOrganSurface(OrganSurface& surface, std::span<const math::Vec3> positions) noexcept;
 
 /// One duct or vessel as a chain of capsules between its centre-line nodes.
 struct TubeSurface {
@@ -63,6 +61,6 @@ struct TubeSet {
 /// \param positions  (n) of the whole system [m]
 /// \param tubes      may be empty
 /// \return kMeshInvalid
-base::Result<TubeSet> MakeTubeSet(std::span<const Vec3> positions, std::vector<TubeSurface> tubes);
+base::Result<TubeSet> MakeTubeSet(std::span<const math::Vec3> positions, std::vector<TubeSurface> tubes);
 
 }  // namespace trocar::surgery

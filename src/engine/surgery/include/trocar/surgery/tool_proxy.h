@@ -19,14 +19,14 @@ namespace trocar::surgery {
 
 /// Where an instrument passes the abdominal wall, and where the hand wants it.
 struct ToolDrive {
-  Vec3 p_world_port;                ///< [m]
+  math::Vec3 p_world_port;          ///< [m]
   instrument::TrocarJoints device;  ///< after limits
 };
 
 /// The tool's axis at `point` must stay on this side: normal . (x - point) <= clearance.
 struct ProxyLimit {
-  Vec3 point;            ///< of the device's axis [m]
-  Vec3 normal;           ///< unit, into what is touched
+  math::Vec3 point;      ///< of the device's axis [m]
+  math::Vec3 normal;     ///< unit, into what is touched
   double clearance = 0;  ///< [m]; negative: the device lies this deep
 };
 
@@ -43,7 +43,7 @@ struct ProxyLimits {
 
 /// Adds the limits that one hand's contacts set after the solve; tissue between the jaws sets none.
 /// \note Real-time safe.
-void AddContactLimits(std::uint8_t hand, const ContactSet& contacts, std::span<const Vec3> positions,
+void AddContactLimits(std::uint8_t hand, const ContactSet& contacts, std::span<const math::Vec3> positions,
                       ProxyLimits& limits) noexcept;
 
 /// Joints of the proxy: nearest to the device's within the limits.
@@ -62,8 +62,8 @@ instrument::TrocarJoints FindProxy(const ToolDrive& drive, const instrument::Tro
 /// \param grasped_surface  left out for the jaws, or -1
 /// \return greatest overlap of a body's surface with the tissue [m], 0 for none
 /// \note Real-time safe.
-double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy, const Pose& X_world_device,
-                        double jaw, const ContactCandidates& candidates, std::int32_t grasped_surface,
-                        ProxyLimits& limits) noexcept;
+double AddOverlapLimits(const instrument::Tool& tool, const math::Pose& X_world_proxy,
+                        const math::Pose& X_world_device, double jaw, const ContactCandidates& candidates,
+                        std::int32_t grasped_surface, ProxyLimits& limits) noexcept;
 
 }  // namespace trocar::surgery

@@ -13,8 +13,8 @@ inline constexpr double kToolsStiffness = 1000.0;
 
 /// How two tools met in a tick.
 struct ToolsContact {
-  std::array<Vec3, 2> force;  ///< on each tool, equal and opposite [N]
-  bool is_touching = false;   ///< the devices overlap, or would have passed through each other
+  std::array<math::Vec3, 2> force;  ///< on each tool, equal and opposite [N]
+  bool is_touching = false;         ///< the devices overlap, or would have passed through each other
 };
 
 /// Follows both tools from proxy to device, adds a limit to each proxy where they meet (each gives way by half),

@@ -16,8 +16,6 @@
 
 namespace trocar::surgery {
 
-using math::Vec3;
-
 /// A node with its new constants. A new one says what it is made of.
 struct NodeChange {
   std::uint32_t node = 0;
@@ -25,7 +23,7 @@ struct NodeChange {
   std::array<std::uint32_t, 3> from = {geometry::kNone, geometry::kNone,
                                        geometry::kNone};  ///< nodes; kNone where fewer
   std::array<double, 3> weights = {0, 0, 0};              ///< sum 1 [-]
-  Vec3 rest, position;                                    ///< of a new one [m]
+  math::Vec3 rest, position;                              ///< of a new one [m]
   double mass = 0;                                        ///< [kg]
   double shape_stiffness = 0;                             ///< [N/m]
 };

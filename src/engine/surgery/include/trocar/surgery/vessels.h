@@ -19,8 +19,6 @@
 
 namespace trocar::surgery {
 
-using math::Pose;
-
 /// Where along a tube something is.
 struct TubePlace {
   std::uint32_t tube = 0;
@@ -41,19 +39,19 @@ struct ClipResult {
 /// A hand that holds a duct or vessel.
 struct ClipPull {
   std::span<const std::uint32_t> nodes;  ///< that it holds
-  Vec3 force;                            ///< with which it pulls, world frame [N]
+  math::Vec3 force;                      ///< with which it pulls, world frame [N]
 };
 
 struct SlippedClip {
   TubePlace place;
-  Vec3 position;  ///< where it fell off, world frame [m]
+  math::Vec3 position;  ///< where it fell off, world frame [m]
 };
 
 /// A duct or artery at rest.
 struct VesselTube {
-  std::uint32_t first_node = 0;   ///< of its points, in order along it
-  std::span<const Vec3> points;   ///< (n) [m]
-  std::span<const double> radii;  ///< (n) outside [m]
+  std::uint32_t first_node = 0;        ///< of its points, in order along it
+  std::span<const math::Vec3> points;  ///< (n) [m]
+  std::span<const double> radii;       ///< (n) outside [m]
 };
 
 /// The ducts and arteries of one operation. Points of the graph of CuttableTubes are points here.
@@ -69,7 +67,7 @@ class Vessels {
   const VesselActs& Acts() const { return acts_; }
   const CuttableTubes& Tubes() const { return tubes_; }
   /// Where a place was at rest, world frame [m].
-  Vec3 RestPoint(const TubePlace& place) const noexcept;
+  math::Vec3 RestPoint(const TubePlace& place) const noexcept;
   std::uint32_t TubeOf(std::uint32_t point) const { return tube_of_[point]; }
   double ArcOf(std::uint32_t point) const { return arc_of_[point]; }
   void ReserveFor(TopologyChange& change) const { tubes_.ReserveFor(change); }
@@ -79,7 +77,7 @@ class Vessels {
   /// \return how many
   /// \note Real-time safe within the capacity of `change`.
   std::size_t Cut(const BladeMove& move, const tissue::TissueDefinition& definition,
-                  std::span<const Vec3> position, TopologyChange& change,
+                  std::span<const math::Vec3> position, TopologyChange& change,
                   std::span<TubePlace> places) noexcept;
 
   /// A place of a vessel between the legs of a clip.
@@ -92,19 +90,19 @@ class Vessels {
   };
   /// Finds the place of a vessel that lies between open jaws; nothing where there is none.
   /// \note Real-time safe.
-  std::optional<Caught> Catch(const instrument::Tool& tool, const Pose& X_world_tool, double jaw,
-                              std::span<const Vec3> position) const noexcept;
+  std::optional<Caught> Catch(const instrument::Tool& tool, const math::Pose& X_world_tool, double jaw,
+                              std::span<const math::Vec3> position) const noexcept;
   /// Closes a clip around what was caught when the jaws began to close.
   /// \note Real-time safe.
-  ClipResult Clip(const instrument::Tool& tool, const Pose& X_world_tool, const std::optional<Caught>& caught,
-                  std::span<const Vec3> position) noexcept;
+  ClipResult Clip(const instrument::Tool& tool, const math::Pose& X_world_tool,
+                  const std::optional<Caught>& caught, std::span<const math::Vec3> position) noexcept;
 
   /// Clips slip towards the end of a stump where pressure or pull is more than they withstand: see surgery/clip_hold.h.
   /// After Flow, whose pressures it takes.
   /// \param[out] slipped  that fell off; others have to wait for the next tick
   /// \return how many
   /// \note Real-time safe.
-  std::size_t Slip(double seconds, std::span<const ClipPull> pulls, std::span<const Vec3> position,
+  std::size_t Slip(double seconds, std::span<const ClipPull> pulls, std::span<const math::Vec3> position,
                    std::span<SlippedClip> slipped) noexcept;
   /// Adds the lost clips, which fall as stones do, up to the capacity of `loose`.
   void FindLooseClips(std::vector<LooseStone*>& loose) noexcept;
@@ -114,7 +112,7 @@ class Vessels {
   bool MakeHole(std::uint32_t node, double area, TubePlace& place) noexcept;
 
   /// Seals openings within `reach` of a point by `share` of their size each [-]; only vessels that are narrow enough.
-  void Seal(const Vec3& p, double reach, double share, std::span<const Vec3> position) noexcept;
+  void Seal(const math::Vec3& p, double reach, double share, std::span<const math::Vec3> position) noexcept;
 
   /// One tick of flow.
   /// \param[in,out] conserved  pressure of the hollow organ, which loses what runs out of its duct
@@ -130,10 +128,12 @@ class Vessels {
   // Visible state; each function fills the span as far as it goes and returns how many.
   /// \param first_surface  index of the first tube's surface in the scene
   std::size_t PublishPieces(std::size_t first_surface, std::span<TubePiece> pieces) const noexcept;
-  std::size_t PublishClips(std::span<const Vec3> position, std::span<ClipSnapshot> clips) const noexcept;
+  std::size_t PublishClips(std::span<const math::Vec3> position,
+                           std::span<ClipSnapshot> clips) const noexcept;
   /// Where at rest tubes were cut through, world frame [m].
-  std::size_t PublishCuts(std::span<Vec3> cuts) const noexcept;
-  std::size_t PublishLeaks(std::span<const Vec3> position, std::span<LeakSnapshot> leaks) const noexcept;
+  std::size_t PublishCuts(std::span<math::Vec3> cuts) const noexcept;
+  std::size_t PublishLeaks(std::span<const math::Vec3> position,
+                           std::span<LeakSnapshot> leaks) const noexcept;
 
   /// The lines with their cuts, and what else is joined to what. Before VisitState.
   void VisitTopology(base::StateArchive& archive);
@@ -144,7 +144,7 @@ class Vessels {
   struct Clipped {
     std::uint32_t a = 0, b = 0;  // points of the edge
     double t = 0;                // from a to b
-    Vec3 legs;                   // direction in which it was put on, world frame at that time
+    math::Vec3 legs;             // direction in which it was put on, world frame at that time
     double gap = 0;              // [m]
     bool is_lost = false, is_crossed = false;
     double closure = 0;
@@ -169,18 +169,18 @@ class Vessels {
     void VisitState(base::StateArchive& archive);
   };
   void MoveClips(const geometry::CentreLineCut& cut) noexcept;
-  double CalcPull(const Clipped& clip, const Stump& stump, std::span<const Vec3> position,
+  double CalcPull(const Clipped& clip, const Stump& stump, std::span<const math::Vec3> position,
                   std::span<const ClipPull> pulls) const noexcept;
   void FindEdge(Clipped& clip) noexcept;
   std::size_t SlipStump(const Stump& stump, double seconds, std::span<const ClipPull> pulls,
-                        std::span<const Vec3> position, std::span<SlippedClip> slipped) noexcept;
+                        std::span<const math::Vec3> position, std::span<SlippedClip> slipped) noexcept;
 
   VesselSettings settings_;
   VesselMap map_;
   CuttableTubes tubes_;
-  std::vector<std::uint32_t> tube_of_;   // (points)
-  std::vector<double> arc_of_;           // (points) [m]
-  std::vector<std::vector<Vec3>> rest_;  // (tubes)(points) [m]
+  std::vector<std::uint32_t> tube_of_;         // (points)
+  std::vector<double> arc_of_;                 // (points) [m]
+  std::vector<std::vector<math::Vec3>> rest_;  // (tubes)(points) [m]
   VesselActs acts_;
   std::vector<Clipped> clips_;
   std::vector<OpeningEnds> ends_;  // of acts_.openings

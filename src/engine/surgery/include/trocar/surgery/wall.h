@@ -11,8 +11,6 @@
 
 namespace trocar::surgery {
 
-using math::Vec3;
-
 /// Material of a wall, by area.
 struct WallMaterial {
   double membrane_modulus = 0;  ///< E t, Young's modulus times thickness [N/m]

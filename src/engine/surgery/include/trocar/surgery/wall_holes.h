@@ -12,13 +12,11 @@
 
 namespace trocar::surgery {
 
-using math::Vec3;
-
 /// A way out.
 struct WallHole {
-  Vec3 position;   ///< of its middle, world frame [m]
-  Vec3 outwards;   ///< unit
-  double rim = 0;  ///< its length [m]; 0: there is no hole
+  math::Vec3 position;  ///< of its middle, world frame [m]
+  math::Vec3 outwards;  ///< unit
+  double rim = 0;       ///< its length [m]; 0: there is no hole
 };
 
 /// Holes of one organ: what was burnt or torn through, node by node, and what was cut open. Nodes side by side make one
@@ -37,7 +35,7 @@ class WallHoles {
   /// \param organ, positions  of the whole system
   /// \param mesh  of the organ, with its cuts
   /// \note Real-time safe.
-  WallHole FindLargest(const surgery::OrganSurface& organ, std::span<const Vec3> positions,
+  WallHole FindLargest(const surgery::OrganSurface& organ, std::span<const math::Vec3> positions,
                        const geometry::EditableMesh& mesh) const noexcept;
 
  private:

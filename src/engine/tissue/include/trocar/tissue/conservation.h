@@ -34,7 +34,7 @@ struct ConservationSettings {
   std::vector<std::uint8_t> strand_binds;  ///< see FindFreeRegions; empty: all bind
   /// Gravity in which the rest shape was imaged [m/s^2]. A piece that hangs free feels its whole weight, not
   /// the difference to this.
-  Vec3 imaging_gravity;
+  math::Vec3 imaging_gravity;
 };
 
 /// Volume of one organ. Sealed: volume = target at any pressure. Perforated: pressure >= 0, and target +
@@ -51,21 +51,21 @@ struct OrganVolume {
 /// Displacement of the tissue by a pressure of 1 Pa in each organ, at rest, with the links and scales of now. Computed over
 /// several ticks after these changed; meanwhile the old one steers the projections well enough.
 struct VolumeResponses {
-  std::vector<std::vector<Vec3>> displacement;  ///< (organs)(n) in the rest frame [m/Pa]
-  double stiffness_scale = 1, shape_scale = 1;  ///< of the load for which they were computed
-  bool is_settled = false;                      ///< computed to the end
-  bool has_new_topology = false;                ///< a cut was made since the last Enforce
-  int ticks_waited = 0;                         ///< ticks without time that left them to a later one
+  std::vector<std::vector<math::Vec3>> displacement;  ///< (organs)(n) in the rest frame [m/Pa]
+  double stiffness_scale = 1, shape_scale = 1;        ///< of the load for which they were computed
+  bool is_settled = false;                            ///< computed to the end
+  bool has_new_topology = false;                      ///< a cut was made since the last Enforce
+  int ticks_waited = 0;                               ///< ticks without time that left them to a later one
 };
 
 /// Part of the conservation's state that every tick changes. A tick that went wrong is undone by copying it back.
 struct ConservationTick {
   std::vector<OrganVolume> organs;
   FreeRegions regions;
-  std::array<Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
-  std::uint64_t intact_links = 0;                  ///< strands and springs, for which `regions` hold
-  std::vector<Vec3> last_position;                 ///< (n) after the last PredictRigidMotion or Enforce [m]
-  std::vector<Vec3> last_motion;                   ///< (n) how far the last tick's solve moved each node [m]
+  std::array<math::Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
+  std::uint64_t intact_links = 0;                        ///< strands and springs, for which `regions` hold
+  std::vector<math::Vec3> last_position;  ///< (n) after the last PredictRigidMotion or Enforce [m]
+  std::vector<math::Vec3> last_motion;    ///< (n) how far the last tick's solve moved each node [m]
 };
 
 /// All that the conservation remembers from tick to tick, beside TissueState: saved and restored by copying.
@@ -117,18 +117,18 @@ class Conservation {
   /// \param load  scales; its external_force, if any, is added
   /// \return (n) [N], valid until the next call: give it to the solver as load.external_force
   /// \note Real-time safe.
-  std::span<const Vec3> CalcForce(const TissueState& tissue, const TissueLoad& load,
-                                  ConservationState& state) noexcept;
+  std::span<const math::Vec3> CalcForce(const TissueState& tissue, const TissueLoad& load,
+                                        ConservationState& state) noexcept;
 
   /// Between iterations: one projection of the volumes, with the pressures that go with it; the force of
   /// CalcForce follows.
   /// \param before  see ConstraintSet::Project
   ///
   /// \note Real-time safe.
-  void KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
+  void KeepVolumes(TissueState& tissue, std::span<math::Vec3> before, ConservationState& state) noexcept;
 
   /// Gradient of each node's organ's volume where it was last evaluated, (n) [m^2].
-  std::span<const Vec3> VolumeGradient() const { return gradient_; }
+  std::span<const math::Vec3> VolumeGradient() const { return gradient_; }
   std::span<const ConstraintSet::NodeRange> OrganNodes() const { return organ_nodes_; }
   /// False for an organ out of which fluid runs freely.
   static bool IsSealed(const OrganVolume& organ) noexcept {
@@ -170,18 +170,19 @@ class Conservation {
                      const ConservationState& state) noexcept;
   double MeasureVolume(std::size_t organ, const TissueState& tissue) const noexcept;
   double MeasureGradient(std::size_t organ, const TissueState& tissue,
-                         std::span<Vec3> gradient) const noexcept;
+                         std::span<math::Vec3> gradient) const noexcept;
   bool TakeMeasuredAhead(ConservationState& state) noexcept;
   bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
   bool CalcCompliance(const TissueState& tissue, ConservationState& state) noexcept;
   /// Whether every volume was at its target, or the state moved, or moved and came back but for rounding.
   enum class Projection { kNone, kDone, kTakenBack };
-  Projection ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
+  Projection ProjectOnce(TissueState& tissue, std::span<math::Vec3> before,
+                         ConservationState& state) noexcept;
   void SetPressureForce(const ConservationState& state) noexcept;
   void Leak(double dt, ConservationState& state) const noexcept;
   void FitFrames(const TissueLoad& load, const TissueState& tissue, ConservationState& state) const noexcept;
   bool IsHeld(std::uint32_t region, const TissueState& tissue, const ConservationState& state) const noexcept;
-  std::span<Vec3> OrganPart(std::size_t organ, std::span<Vec3> nodes) const noexcept;
+  std::span<math::Vec3> OrganPart(std::size_t organ, std::span<math::Vec3> nodes) const noexcept;
 
   const TissueModel* model_;
   ConservationSettings settings_;
@@ -189,14 +190,14 @@ class Conservation {
   TissueState rest_;  // with the strands and spring factors of linear_
   double linear_stiffness_scale_ = 1, linear_shape_scale_ = 1;  // of linear_
   bool has_stiffness_ = false;  // linear_ has the stiffness of rest_ under these scales
-  std::vector<std::vector<Vec3>>
-      shifts_;                  // (organs)(n) the responses where nodes are now; zero where they are held
-  std::vector<Vec3> gradient_;  // (n) of each node's organ; zero elsewhere
-  std::vector<Vec3> ahead_gradient_;  // (n) the same as AreVolumesInReach() found it, and the volumes
+  std::vector<std::vector<math::Vec3>>
+      shifts_;  // (organs)(n) the responses where nodes are now; zero where they are held
+  std::vector<math::Vec3> gradient_;        // (n) of each node's organ; zero elsewhere
+  std::vector<math::Vec3> ahead_gradient_;  // (n) the same as AreVolumesInReach() found it, and the volumes
   std::array<double, kMaxClosedOrgans> ahead_volume_{};
-  bool has_ahead_ = false;        // for the next KeepVolumes()
-  std::vector<Vec3> base_force_;  // (n) without pressure
-  std::vector<Vec3> force_;       // (n)
+  bool has_ahead_ = false;              // for the next KeepVolumes()
+  std::vector<math::Vec3> base_force_;  // (n) without pressure
+  std::vector<math::Vec3> force_;       // (n)
   std::vector<ConstraintSet::NodeRange> organ_nodes_;
   SmallMatrix compliance_{};  // dV_i by one pascal in organ j, of this tick [m^3/Pa]
   bool has_compliance_ = false;

@@ -68,7 +68,7 @@ class ConstraintSet {
   ///
   /// \param previous  (n) positions of the iteration before, where the solver extrapolates from them, else empty. What
   ///                  shifts the present has to shift the past alike, or the extrapolation repeats the shift.
-  virtual void Project(TissueState& state, std::span<Vec3> previous) noexcept = 0;
+  virtual void Project(TissueState& state, std::span<math::Vec3> previous) noexcept = 0;
   virtual int Interval() const noexcept { return 1; }
 
   // For solvers whose steps are too long to leave the constraints to Project(): their steps stay on the linearised
@@ -77,7 +77,7 @@ class ConstraintSet {
   /// The nodes of each constraint, at most kMaxConstraints; empty where only Project() knows them.
   virtual std::span<const NodeRange> Nodes() const noexcept { return {}; }
   /// (n) of each node's constraint.
-  virtual std::span<const Vec3> Gradient() const noexcept { return {}; }
+  virtual std::span<const math::Vec3> Gradient() const noexcept { return {}; }
   virtual bool IsActive(std::size_t /*constraint*/) const noexcept { return true; }
   /// The closed surface whose volume a constraint keeps, its nodes counted from first_node; empty where it keeps something
   /// else. The multiplier is then the pressure [Pa].
@@ -133,14 +133,14 @@ class EquilibriumSolver {
   /// \note Real-time safe after Prepare(): no allocation, lock or throw of ours; bounded by the settings' counts.
   virtual SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
                             ConstraintSet* constraints = nullptr,
-                            std::span<const Vec3> extrapolation = {}) noexcept;
+                            std::span<const math::Vec3> extrapolation = {}) noexcept;
 
   /// True where the model is a structured mesh and runs as a stencil.
   bool IsStructured() const noexcept;
 
   /// Force of the tissue on whatever prescribes each node of the list, summed; valid after Solve [N].
-  Vec3 CalcReaction(const TissueLoad& load, const TissueState& state,
-                    std::span<const std::uint32_t> nodes) const noexcept;
+  math::Vec3 CalcReaction(const TissueLoad& load, const TissueState& state,
+                          std::span<const std::uint32_t> nodes) const noexcept;
 
   struct Content;
 

@@ -41,15 +41,15 @@ class LinearResponse {
   /// \param tolerance  on |f - K u| / |f| [-]
   /// \param[in,out] response  (n) in: a first guess; out: u [m]
   /// \note Real-time safe: no allocation; serial, so that results do not depend on threads.
-  LinearReport Solve(std::span<const Vec3> force, int max_iterations, double tolerance,
-                     std::span<Vec3> response) noexcept;
+  LinearReport Solve(std::span<const math::Vec3> force, int max_iterations, double tolerance,
+                     std::span<math::Vec3> response) noexcept;
 
  private:
-  void Apply(std::span<const Vec3> u, std::span<Vec3> product) const noexcept;
+  void Apply(std::span<const math::Vec3> u, std::span<math::Vec3> product) const noexcept;
   void SetOwnBlock(std::uint32_t node, const TissueState& state, const TissueLoad& load) noexcept;
 
   struct Link {
-    Vec3 along;            // sqrt(k (1 - across)) times the direction
+    math::Vec3 along;      // sqrt(k (1 - across)) times the direction
     double isotropic = 0;  // k times the share that acts across
   };
   const TissueModel* model_ = nullptr;
@@ -59,7 +59,7 @@ class LinearResponse {
   std::vector<std::uint8_t> is_free_;
   // (n) what springs alone hold a node with, and the inverse of all that holds it: xx, xy, xz, yy, yz, zz
   std::vector<std::array<double, 6>> spring_block_, inverse_;
-  std::vector<Vec3> residual_, preconditioned_, direction_, product_;
+  std::vector<math::Vec3> residual_, preconditioned_, direction_, product_;
 };
 
 }  // namespace trocar::tissue

@@ -14,9 +14,6 @@
 
 namespace trocar::tissue {
 
-using math::Pose;
-using math::Vec3;
-
 /// Three rows of a 3 x 3 matrix.
 using Matrix3Rows = std::array<math::Vec3, 3>;
 

@@ -11,8 +11,6 @@
 
 namespace trocar::tissue {
 
-using math::Vec3;
-
 /// Stiffness of each edge so that the net acts as a membrane of modulus E t (Poisson's ratio 1/3):
 /// k_c = E t sum_T area(T) / |c|^2 over the triangles T at edge c.
 ///
@@ -22,7 +20,7 @@ using math::Vec3;
 /// \return (ne) [N/m]
 /// Source: van Gelder, "Approximate simulation of elastic membranes by triangulated spring meshes", JGT 3(2),
 /// 1998.
-std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions,
+std::vector<double> CalcEdgeStiffness(std::span<const math::Vec3> positions,
                                       std::span<const geometry::Triangle> triangles,
                                       std::span<const geometry::Edge> edges, double membrane_modulus);
 
@@ -39,7 +37,7 @@ struct BendingSpring {
 ///
 /// \param membrane_modulus  E t times the share [N/m], >= 0
 /// \return ascending by a, then b; one for each pair of corners
-std::vector<BendingSpring> CalcBendingSprings(std::span<const Vec3> positions,
+std::vector<BendingSpring> CalcBendingSprings(std::span<const math::Vec3> positions,
                                               std::span<const geometry::Triangle> triangles,
                                               double membrane_modulus);
 

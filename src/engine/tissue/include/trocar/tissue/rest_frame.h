@@ -18,23 +18,20 @@
 
 namespace trocar::tissue {
 
-using math::Pose;
-using math::Quaternion;
-
 /// Weighted sums over pairs (rest point, present point), from which the rigid motion follows. Sums are taken
 /// about the first pair, so that organs far from the origin lose no digits.
 struct MotionMoments {
   double weight = 0;
-  Vec3 rest_origin, origin;       ///< the first pair [m]
-  Vec3 rest_sum, sum;             ///< weighted, about the origins
-  std::array<double, 9> outer{};  ///< sum w x r^T, row by row, about the origins
+  math::Vec3 rest_origin, origin;  ///< the first pair [m]
+  math::Vec3 rest_sum, sum;        ///< weighted, about the origins
+  std::array<double, 9> outer{};   ///< sum w x r^T, row by row, about the origins
 
   /// Counts |x - (R r + t)|^2 with `w`.
   ///
   /// \param w  [N/m], >= 0
-  void AddPoint(double w, const Vec3& rest, const Vec3& position) noexcept;
+  void AddPoint(double w, const math::Vec3& rest, const math::Vec3& position) noexcept;
   /// Counts |d - R o|^2 with `w`: an offset that turns with the piece but does not place it.
-  void AddOffset(double w, const Vec3& rest_offset, const Vec3& offset) noexcept;
+  void AddOffset(double w, const math::Vec3& rest_offset, const math::Vec3& offset) noexcept;
 };
 
 /// Rigid motion X with the smallest sum of w |x - X r|^2, by the largest eigenvector of Horn's symmetric 4 x
@@ -50,7 +47,7 @@ struct MotionMoments {
 ///
 /// \note Real-time safe.
 /// Source: Horn, "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4(4), 1987.
-Pose FitRigidMotion(const MotionMoments& moments, const Quaternion& previous) noexcept;
+math::Pose FitRigidMotion(const MotionMoments& moments, const math::Quaternion& previous) noexcept;
 
 /// Region of nodes that anatomy holds in place.
 inline constexpr std::uint32_t kPinnedRegion = std::numeric_limits<std::uint32_t>::max();

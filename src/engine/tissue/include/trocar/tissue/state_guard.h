@@ -50,7 +50,7 @@ class StateGuard {
  private:
   const TissueModel* model_;
   double max_displacement_;
-  std::vector<Vec3> good_;
+  std::vector<math::Vec3> good_;
   int bad_in_a_row_ = 0;
 };
 

@@ -19,8 +19,6 @@ class StateArchive;
 
 namespace trocar::tissue {
 
-using math::Vec3;
-
 /// Stiffening, damage and failure of a spring beyond Hooke's law. Strains are eps = (|x_b - x_a| - l) / l. See spring_law.h.
 struct SpringLaw {
   double stiffening = 0;           ///< beta: growth of the stiffness with strain [-], >= 0; 0 is Hooke's law
@@ -60,7 +58,7 @@ enum class NodeCondition : std::uint8_t {
 
 /// Description of a system, checked once by MakeTissueModel.
 struct TissueDefinition {
-  std::vector<Vec3> rest;               ///< (n) [m]
+  std::vector<math::Vec3> rest;         ///< (n) [m]
   std::vector<double> mass;             ///< (n) [kg], >= 0
   std::vector<double> shape_stiffness;  ///< (n) k_virtual of the spring to the rest position [N/m], >= 0
   std::vector<std::uint32_t> fixed;     ///< nodes held at rest by anatomy
@@ -80,7 +78,7 @@ void VisitState(base::StateArchive& archive, TissueDefinition& definition);
 /// Constant while running. Half-springs are stored with each of their two nodes, so that a node gathers its
 /// force without writing to another: the result does not depend on the number of threads.
 struct TissueModel {
-  std::vector<Vec3> rest;               ///< (n) [m]
+  std::vector<math::Vec3> rest;         ///< (n) [m]
   std::vector<double> mass;             ///< (n) [kg]
   std::vector<double> shape_stiffness;  ///< (n) [N/m]
   std::vector<std::uint8_t> is_fixed;   ///< (n)
@@ -114,7 +112,7 @@ TissueModel MakeTissueModel(const TissueDefinition& definition);
 
 /// State of the tissue: all that a tick changes.
 struct TissueState {
-  std::vector<Vec3> position;                  ///< (n) [m]
+  std::vector<math::Vec3> position;            ///< (n) [m]
   std::vector<NodeCondition> condition;        ///< (n)
   std::vector<std::uint8_t> strand_is_intact;  ///< (strands)
   /// (springs) on each spring's stiffness [-]: 1 intact, 0 cut or torn, between them weakened; >= 0. May change
@@ -133,7 +131,7 @@ TissueState MakeRestState(const TissueModel& model);
 struct ContactSpring {
   std::array<std::uint32_t, 3> nodes{};
   std::array<double, 3> weights{};  ///< barycentric
-  Vec3 normal;                      ///< direction in which tissue is pushed, unit
+  math::Vec3 normal;                ///< direction in which tissue is pushed, unit
   double offset = 0;                ///< the tool's surface along the normal [m]
   double stiffness = 0;             ///< [N/m]
 };
@@ -146,11 +144,11 @@ struct TissueLoad {
   /// Gravity now minus gravity in which the rest shape was imaged [m/s^2]: organs are photographed under
   /// their own weight, so only the difference moves them. For the paper's own experiments, the whole of
   /// gravity.
-  Vec3 gravity;
-  double stiffness_scale = 1;               ///< on structural springs and strands [-]
-  double shape_scale = 1;                   ///< on virtual springs [-]
-  std::span<const ContactSpring> contacts;  ///< at most kMaxContacts
-  std::span<const Vec3> external_force;     ///< (n) or empty [N]
+  math::Vec3 gravity;
+  double stiffness_scale = 1;                  ///< on structural springs and strands [-]
+  double shape_scale = 1;                      ///< on virtual springs [-]
+  std::span<const ContactSpring> contacts;     ///< at most kMaxContacts
+  std::span<const math::Vec3> external_force;  ///< (n) or empty [N]
 };
 
 /// Force of every spring, strand, load and contact on each node: the residual of the balance (domain facts
@@ -158,12 +156,12 @@ struct TissueLoad {
 /// \param[out] residual  (n) [N]
 /// \note Straightforward and slow: the reference for the solvers' own evaluation.
 void CalcResidual(const TissueModel& model, const TissueState& state, const TissueLoad& load,
-                  std::span<Vec3> residual);
+                  std::span<math::Vec3> residual);
 
 /// Stored energy whose negative gradient is CalcResidual [J].
 double CalcEnergy(const TissueModel& model, const TissueState& state, const TissueLoad& load);
 
 /// Depth of a contact, offset - normal . x, positive when the tool presses [m].
-double CalcContactDepth(const ContactSpring& contact, std::span<const Vec3> position) noexcept;
+double CalcContactDepth(const ContactSpring& contact, std::span<const math::Vec3> position) noexcept;
 
 }  // namespace trocar::tissue

@@ -15,8 +15,6 @@
 
 namespace trocar::tissue {
 
-using math::Vec3;
-
 /// Volume and its gradient with respect to each node, g_a = dV/dx_a = 1/6 sum over triangles (a, b, c) of
 /// (x_b - x_a) x (x_c - x_a). Pressure P pushes node a with P g_a.
 ///
@@ -25,12 +23,12 @@ using math::Vec3;
 /// \return volume [m^3], positive when the triangles face outwards
 /// \pre the triangles form a closed surface
 /// \note Real-time safe.
-double CalcVolumeGradient(std::span<const Vec3> position, std::span<const geometry::Triangle> triangles,
-                          std::span<Vec3> gradient) noexcept;
+double CalcVolumeGradient(std::span<const math::Vec3> position, std::span<const geometry::Triangle> triangles,
+                          std::span<math::Vec3> gradient) noexcept;
 
 /// Volume alone, about the first node, so that organs far from the origin lose no digits [m^3].
 /// \note Real-time safe.
-double CalcClosedVolume(std::span<const Vec3> position,
+double CalcClosedVolume(std::span<const math::Vec3> position,
                         std::span<const geometry::Triangle> triangles) noexcept;
 
 /// Fluid that leaves a closed sac through an opening within one tick.

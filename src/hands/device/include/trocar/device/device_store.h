@@ -19,9 +19,9 @@ namespace trocar::device {
 struct TrackerEntry {
   int baud = 115200;                                 ///< of its serial line [bit/s]
   std::array<int, kChannelCount> stations{1, 2, 0};  ///< of left, right, laparoscope; 0 for none
-  Vec3 source_right{0, 1, 0};  ///< the person's right, source frame; see FindSourceRotation()
-  Vec3 source_up{0, 0, -1};    ///< up, source frame
-  Vec3 hemisphere{1, 0, 0};    ///< from the source to the hands, source frame
+  math::Vec3 source_right{0, 1, 0};  ///< the person's right, source frame; see FindSourceRotation()
+  math::Vec3 source_up{0, 0, -1};    ///< up, source frame
+  math::Vec3 hemisphere{1, 0, 0};    ///< from the source to the hands, source frame
   std::array<HandCalibration, kChannelCount> hands;
 
   friend bool operator==(const TrackerEntry&, const TrackerEntry&) = default;

@@ -36,7 +36,7 @@ HandSamples CalcHandMotion(double time) noexcept;
 HandSamples CalcRest(double time) noexcept;
 
 /// One sensor's pose at a time: what a tracker measures.
-using SensorMotion = std::function<Pose(int channel, double time)>;
+using SensorMotion = std::function<math::Pose(int channel, double time)>;
 /// Sensors on instruments that move so.
 SensorMotion MoveHands(const TrackedHandsSettings& settings, HandMotion motion);
 /// The tip stands in a dimple and the rest swings about it: for pivot calibration.
@@ -82,7 +82,7 @@ SpaceMouseState CalcCapMotion(double time) noexcept;
 std::unique_ptr<Emulator> MakeSpaceMouseEmulator(CapMotion motion);
 
 /// Where the cursors of a haptic device are at a time; device frame of force_driver.h [m].
-using CursorMotion = std::function<Vec3(int device, double time)>;
+using CursorMotion = std::function<math::Vec3(int device, double time)>;
 struct HaplyEmulation {
   int devices = 1;  ///< 1 or 2
   CursorMotion position;
@@ -91,7 +91,7 @@ struct HaplyEmulation {
 };
 /// Forces that a driver last sent to the emulated service.
 struct HaplyForces {
-  std::array<Vec3, 2> newtons;  ///< device frame [N]
+  std::array<math::Vec3, 2> newtons;  ///< device frame [N]
   std::uint64_t messages = 0;
 };
 /// The service of Haply's Inverse3: WebSocket, a state for every message of forces.

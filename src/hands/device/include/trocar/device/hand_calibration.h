@@ -15,10 +15,6 @@
 
 namespace trocar::device {
 
-using math::Pose;
-using math::Quaternion;
-using math::Vec3;
-
 /// Farther than this from its sensor no instrument has its tip [m]: the longest are 450 mm, and a handle.
 inline constexpr double kMostTipDistance = 0.6;
 /// Reach of any tracker here, and so of a trocar from its source [m].
@@ -26,11 +22,12 @@ inline constexpr double kMostTrocarDistance = 5.0;
 
 /// One instrument with a sensor on it. The defaults fit no instrument in particular; they let an uncalibrated one move.
 struct HandCalibration {
-  Vec3 p_sensor_tip{0.25, 0, 0};  ///< tip in the sensor's frame [m]
-  Vec3 axis_sensor{1, 0, 0};      ///< unit vector along the shaft towards the tip, sensor frame
-  Vec3 up_sensor{0, 0, -1};  ///< unit vector along which the jaws open at spin 0; perpendicular to the axis
-  Vec3 p_source_trocar{0.3, 0, 0};  ///< trocar point in the frame of the tracker's source [m]
-  bool is_measured = false;         ///< by a fit, not the defaults
+  math::Vec3 p_sensor_tip{0.25, 0, 0};  ///< tip in the sensor's frame [m]
+  math::Vec3 axis_sensor{1, 0, 0};      ///< unit vector along the shaft towards the tip, sensor frame
+  math::Vec3 up_sensor{0, 0,
+                       -1};  ///< unit vector along which the jaws open at spin 0; perpendicular to the axis
+  math::Vec3 p_source_trocar{0.3, 0, 0};  ///< trocar point in the frame of the tracker's source [m]
+  bool is_measured = false;               ///< by a fit, not the defaults
 
   friend bool operator==(const HandCalibration&, const HandCalibration&) = default;
 };
@@ -39,19 +36,19 @@ struct HandCalibration {
 ///
 /// \param R_world_source  turns the source's frame into the world's
 /// \note Real-time safe.
-void SetJoints(const HandCalibration& calibration, const Quaternion& R_world_source,
-               const Pose& X_source_sensor, HandSample& sample) noexcept;
+void SetJoints(const HandCalibration& calibration, const math::Quaternion& R_world_source,
+               const math::Pose& X_source_sensor, HandSample& sample) noexcept;
 
 /// Pose of the sensor that gives these joints: the other way round, for emulators and tests.
-Pose CalcSensorPose(const HandCalibration& calibration, const Quaternion& R_world_source,
-                    const HandSample& joints) noexcept;
+math::Pose CalcSensorPose(const HandCalibration& calibration, const math::Quaternion& R_world_source,
+                          const HandSample& joints) noexcept;
 
 /// Rotation from two directions that the person can see on the source.
 ///
 /// \param right  unit vector to the person's right in the source's frame: world x
 /// \param up     upwards, away from the patient's back, in the source's frame: world z
 /// \return R_world_source; the error kDeviceSettings where the two are not at right angles within 10 degrees
-base::Result<Quaternion> FindSourceRotation(const Vec3& right, const Vec3& up);
+base::Result<math::Quaternion> FindSourceRotation(const math::Vec3& right, const math::Vec3& up);
 
 // --- fits
 
@@ -80,8 +77,8 @@ inline constexpr double kMinFitMotion = 0.05;
 inline constexpr double kMaxFitUncertainty = 0.005;
 
 struct PivotFit {
-  Vec3 p_sensor_pivot;  ///< the point that stood still, sensor frame [m]
-  Vec3 p_source_pivot;  ///< the same in the source's frame [m]
+  math::Vec3 p_sensor_pivot;  ///< the point that stood still, sensor frame [m]
+  math::Vec3 p_source_pivot;  ///< the same in the source's frame [m]
   FitQuality quality;
 };
 
@@ -90,12 +87,12 @@ struct PivotFit {
 /// \param poses  (n) X_source_sensor, n >= kMinFitPoses, about one fixed point
 /// \return kCalibrationPoor with the remedy: too few, too little turning, turned about one axis only, the point did not
 ///         stand still or came out too far away
-base::Result<PivotFit> FitPivot(std::span<const Pose> poses);
+base::Result<PivotFit> FitPivot(std::span<const math::Pose> poses);
 
 struct TrocarFit {
-  Vec3 p_source_trocar;  ///< where all shafts pass, source frame [m]
-  Vec3 axis_sensor;      ///< direction of the shaft towards the tip, sensor frame
-  FitQuality quality;    ///< distances of the trocar point from the shafts
+  math::Vec3 p_source_trocar;  ///< where all shafts pass, source frame [m]
+  math::Vec3 axis_sensor;      ///< direction of the shaft towards the tip, sensor frame
+  FitQuality quality;          ///< distances of the trocar point from the shafts
 };
 
 /// The point where the shaft passes the wall, and the shaft's direction, from moving the instrument in its trocar:
@@ -103,6 +100,6 @@ struct TrocarFit {
 ///
 /// \param p_sensor_tip  from FitPivot [m]
 /// \return kCalibrationPoor as above; also where it was not moved in and out nor turned about its shaft
-base::Result<TrocarFit> FitTrocar(std::span<const Pose> poses, const Vec3& p_sensor_tip);
+base::Result<TrocarFit> FitTrocar(std::span<const math::Pose> poses, const math::Vec3& p_sensor_tip);
 
 }  // namespace trocar::device

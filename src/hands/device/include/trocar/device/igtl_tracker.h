@@ -25,7 +25,7 @@ class IgtlTracker : public PoseDriver {
   /// \param clock  outlives the driver
   IgtlTracker(const IgtlSettings& settings, TransportOpener opener, Clock& clock);
 
-  const Pose* GetSensorPose(int channel) const noexcept override { return hands_.GetPose(channel); }
+  const math::Pose* GetSensorPose(int channel) const noexcept override { return hands_.GetPose(channel); }
   PoseCounts GetPoseCounts() const noexcept override { return hands_.Counts(); }
   std::vector<std::string> DescribeHeldBack() const override { return reader_.DescribeRefused(); }
   std::string DescribeReceived() const override { return reader_.DescribeReceived(); }

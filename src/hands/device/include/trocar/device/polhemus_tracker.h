@@ -29,7 +29,7 @@ class PolhemusTracker : public PoseDriver {
   /// \param clock  outlives the driver
   PolhemusTracker(const PolhemusSettings& settings, TransportOpener opener, Clock& clock);
 
-  const Pose* GetSensorPose(int channel) const noexcept override { return hands_.GetPose(channel); }
+  const math::Pose* GetSensorPose(int channel) const noexcept override { return hands_.GetPose(channel); }
   PoseCounts GetPoseCounts() const noexcept override { return hands_.Counts(); }
   const FramerCounts& GetFramerCounts() const noexcept { return framer_.Counts(); }
   /// Records in which the tracker itself reported an error, and records of stations that no hand uses.

@@ -10,7 +10,7 @@ namespace trocar::device {
 class PoseDriver : public Driver {
  public:
   /// The last good pose of a hand's sensor in the source's frame; null before the first since Activate().
-  virtual const Pose* GetSensorPose(int channel) const noexcept = 0;
+  virtual const math::Pose* GetSensorPose(int channel) const noexcept = 0;
   virtual PoseCounts GetPoseCounts() const noexcept = 0;
 
  protected:

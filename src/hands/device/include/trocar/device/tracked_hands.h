@@ -14,8 +14,8 @@ namespace trocar::device {
 
 struct TrackedHandsSettings {
   std::array<HandCalibration, kChannelCount> calibrations;
-  Quaternion R_world_source;         ///< see FindSourceRotation()
-  Vec3 hemisphere{1, 0, 0};          ///< unit vector from the source to where the hands are, source frame
+  math::Quaternion R_world_source;   ///< see FindSourceRotation()
+  math::Vec3 hemisphere{1, 0, 0};    ///< unit vector from the source to where the hands are, source frame
   bool has_hemisphere_doubt = true;  ///< the tracker may report -x for x; false for optical ones
   double max_speed = 2.0;            ///< of a sensor; what is faster is a glitch [m/s], > 0
   double max_turn_rate = 25.0;       ///< of a sensor; what is faster is a glitch [rad/s], > 0
@@ -40,24 +40,24 @@ class TrackedHands {
   void Reset() noexcept;
   /// A pose has come in.
   /// \param time  [s], not falling
-  void Accept(int channel, const Pose& X_source_sensor, double time) noexcept;
+  void Accept(int channel, const math::Pose& X_source_sensor, double time) noexcept;
   /// Writes all hands.
   /// \return true if anything is new, a hand that went out of sight included
   bool Collect(double now, std::span<HandSample> samples) noexcept;
 
   /// The last good pose of a channel's sensor, hemisphere put right; null before the first.
-  const Pose* GetPose(int channel) const noexcept;
+  const math::Pose* GetPose(int channel) const noexcept;
   const PoseCounts& Counts() const noexcept { return counts_; }
 
  private:
   struct Hand {
-    Pose X_source_sensor;
+    math::Pose X_source_sensor;
     double time = 0;  // of that pose [s]
     bool has_pose = false;
     int bad_in_row = 0;
     HandSample sample;
   };
-  bool Gate(Hand& hand, Pose& pose, double time) noexcept;
+  bool Gate(Hand& hand, math::Pose& pose, double time) noexcept;
 
   TrackedHandsSettings settings_;
   std::array<Hand, kChannelCount> hands_;

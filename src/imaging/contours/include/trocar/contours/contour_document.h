@@ -49,25 +49,25 @@ class ContourDocument {
   /// Contours of a structure in a slice; empty where there are none.
   const SliceContours& At(int structure, int slice) const;
   /// Points of a contour; empty when there is no such contour.
-  std::span<const Vec2> Find(const ContourId& id) const;
+  std::span<const math::Vec2> Find(const ContourId& id) const;
   /// Slices of a structure with a closed contour, ascending.
   std::vector<int> ContouredSlices(int structure) const;
   /// The file's text; ParseControlPoints with kDraft reads it back unchanged.
   std::string Text() const { return FormatControlPoints(points_); }
 
   // the contour that is being drawn: one a structure and slice
-  base::Status AddPoint(int structure, int slice, const Vec2& p);
+  base::Status AddPoint(int structure, int slice, const math::Vec2& p);
   /// Appends the points of a path, as intelligent scissors find it.
-  base::Status AddPath(int structure, int slice, std::span<const Vec2> path);
+  base::Status AddPath(int structure, int slice, std::span<const math::Vec2> path);
   base::Status CloseContour(int structure, int slice, bool is_hole = false);
   /// Takes back the newest point of the open contour.
   base::Status RemoveLastPoint(int structure, int slice);
   base::Status DropOpenContour(int structure, int slice);
 
   // closed contours
-  base::Status MovePoint(const ContourId& id, std::size_t point, const Vec2& to);
+  base::Status MovePoint(const ContourId& id, std::size_t point, const math::Vec2& to);
   /// \param before  index that the new point gets, 0 to size
-  base::Status InsertPoint(const ContourId& id, std::size_t before, const Vec2& p);
+  base::Status InsertPoint(const ContourId& id, std::size_t before, const math::Vec2& p);
   /// Refused where three different points would not remain.
   base::Status DeletePoint(const ContourId& id, std::size_t point);
   /// A slice without any contour loses its holes too.
@@ -75,8 +75,8 @@ class ContourDocument {
   /// Makes a contour a hole and a hole a contour.
   base::Status ToggleHole(const ContourId& id);
   /// Replaces all closed contours and holes of a slice, as propagation does; the open one stays.
-  base::Status SetContours(int structure, int slice, std::vector<std::vector<Vec2>> contours,
-                           std::vector<std::vector<Vec2>> holes, std::string_view what);
+  base::Status SetContours(int structure, int slice, std::vector<std::vector<math::Vec2>> contours,
+                           std::vector<std::vector<math::Vec2>> holes, std::string_view what);
   base::Status ClearSlice(int structure, int slice);
 
   // organs
@@ -135,7 +135,7 @@ class ContourDocument {
   base::Status CheckStructure(int structure) const;
   base::Status CheckPlace(int structure, int slice) const;
   base::Status CheckContour(const ContourId& id) const;
-  base::Result<Vec2> Keep(const Vec2& p) const;
+  base::Result<math::Vec2> Keep(const math::Vec2& p) const;
   /// Checks the new content of a slice, then does and records it.
   base::Status EditSlice(int structure, int slice, SliceContours after, std::string_view what);
   void Record(Edit edit, EditPlace place);

@@ -11,8 +11,6 @@
 
 namespace trocar::contours {
 
-using math::Vec2;
-
 /// Marks the pixels whose centres lie inside a closed polyline.
 ///
 /// Fills from a corner of the mask, which is outside. The walls are the places where the polyline passes
@@ -22,10 +20,10 @@ using math::Vec2;
 /// \param[in,out] mask  pixels inside become 1, the others keep their value; the
 /// contour must lie inside the rectangle
 /// \pre a border of one pixel of the mask is outside the contour (TROCAR_ASSERT)
-void FillContour(std::span<const Vec2> contour, images::Mask& mask);
+void FillContour(std::span<const math::Vec2> contour, images::Mask& mask);
 
 /// Union of the contours without the holes.
-images::Mask FillArea(const std::vector<std::vector<Vec2>>& contours,
-                      const std::vector<std::vector<Vec2>>& holes);
+images::Mask FillArea(const std::vector<std::vector<math::Vec2>>& contours,
+                      const std::vector<std::vector<math::Vec2>>& holes);
 
 }  // namespace trocar::contours

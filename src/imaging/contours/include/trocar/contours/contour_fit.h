@@ -28,7 +28,7 @@ std::string_view FitProblemText(FitProblem problem);
 /// A part of the contour that does not fit.
 struct FitNote {
   FitProblem problem = FitProblem::kNoEdge;
-  Vec2 at;               ///< middle of the part, on the curve [pixels]
+  math::Vec2 at;         ///< middle of the part, on the curve [pixels]
   double length_px = 0;  ///< of the part, along the curve [pixels]
 };
 
@@ -42,10 +42,11 @@ struct ContourFitSettings {
 
 /// A contour through its stages, Fig. 2 of the paper.
 struct ContourFit {
-  std::vector<Vec2> adapted;   ///< (clicked) each clicked point where it was moved to, same order [pixels]
-  std::vector<Vec2> inserted;  ///< points that were added on the edge, in the contour's order [pixels]
-  std::vector<Vec2> spline;    ///< closed polyline through both, about half a pixel a step [pixels]
-  std::vector<FitNote> notes;  ///< empty: the curve lies on an edge all around
+  std::vector<math::Vec2>
+      adapted;  ///< (clicked) each clicked point where it was moved to, same order [pixels]
+  std::vector<math::Vec2> inserted;  ///< points that were added on the edge, in the contour's order [pixels]
+  std::vector<math::Vec2> spline;    ///< closed polyline through both, about half a pixel a step [pixels]
+  std::vector<FitNote> notes;        ///< empty: the curve lies on an edge all around
 };
 
 /// Moves the clicked points to the edge, draws the closed spline, and divides it by points on the edge until
@@ -60,11 +61,11 @@ struct ContourFit {
 /// \param field    of the slice, blurred by settings.adaption.blur_px
 /// \param clicked  (n) n >= 3 points of a closed contour [pixels], of any sense of rotation
 /// \pre n >= 3 distinct points (TROCAR_ASSERT)
-ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> clicked,
+ContourFit FitContourToEdges(const EdgeField& field, std::span<const math::Vec2> clicked,
                              const ContourFitSettings& settings = {});
 
 /// As above, for an image that is used once.
-ContourFit FitContourToEdges(const images::ColorImage& image, std::span<const Vec2> clicked,
+ContourFit FitContourToEdges(const images::ColorImage& image, std::span<const math::Vec2> clicked,
                              const ContourFitSettings& settings = {});
 
 }  // namespace trocar::contours

@@ -13,14 +13,12 @@
 
 namespace trocar::contours {
 
-using math::Vec2;
-
 /// Points of one contour beside the points of another that they belong to.
 struct ContourMatch {
-  std::vector<std::array<Vec2, 2>> pairs;  ///< closed, in the order of both contours
+  std::vector<std::array<math::Vec2, 2>> pairs;  ///< closed, in the order of both contours
 
   /// Contour at the given part of the way from the first to the second [-].
-  std::vector<Vec2> At(double part) const;
+  std::vector<math::Vec2> At(double part) const;
 };
 
 /// Matches two closed contours in order, so that near points with like normals belong together.
@@ -28,6 +26,6 @@ struct ContourMatch {
 /// A thin lobe that moves sideways by more than its thickness from slice to slice keeps its length in
 /// between.
 /// \param a, b  closed polylines [pixels], n >= 3, of any sense of rotation
-ContourMatch MatchContours(std::span<const Vec2> a, std::span<const Vec2> b);
+ContourMatch MatchContours(std::span<const math::Vec2> a, std::span<const math::Vec2> b);
 
 }  // namespace trocar::contours

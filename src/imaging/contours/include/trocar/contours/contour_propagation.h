@@ -27,7 +27,7 @@ struct PropagationSettings {
 };
 
 struct PropagatedContour {
-  std::vector<Vec2> points;        ///< (n) in the other slice [pixels]
+  std::vector<math::Vec2> points;  ///< (n) in the other slice [pixels]
   std::vector<double> confidence;  ///< (n) 1: the picture looks alike there, 0: it does not [-]
 };
 
@@ -35,8 +35,10 @@ struct PropagatedContour {
 /// \param points    (n) n >= 3 control points in `from` [pixels]
 /// \pre equal sizes, n >= 3 (TROCAR_ASSERT)
 PropagatedContour PropagateContour(const images::ColorImage& from, const images::ColorImage& to,
-                                   std::span<const Vec2> points, const PropagationSettings& settings = {});
-PropagatedContour PropagateContour(const EdgeField& from, const EdgeField& to, std::span<const Vec2> points,
+                                   std::span<const math::Vec2> points,
+                                   const PropagationSettings& settings = {});
+PropagatedContour PropagateContour(const EdgeField& from, const EdgeField& to,
+                                   std::span<const math::Vec2> points,
                                    const PropagationSettings& settings = {});
 
 }  // namespace trocar::contours

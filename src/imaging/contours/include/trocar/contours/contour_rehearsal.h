@@ -33,8 +33,8 @@ struct ClickSettings {
 /// direction drawn evenly from the full circle. A polygon that crosses itself is drawn anew, up to 100 times.
 /// \param count  >= 3
 /// \return `count` points inside the picture [pixels]
-std::vector<Vec2> SimulateClicks(const Outline& outline, int count, double noise_px,
-                                 const ControlPoints& series, math::Random& random);
+std::vector<math::Vec2> SimulateClicks(const Outline& outline, int count, double noise_px,
+                                       const ControlPoints& series, math::Random& random);
 
 /// One structure of the series clicked anew: every n-th slice from a random first one.
 ///

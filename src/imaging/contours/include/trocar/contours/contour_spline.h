@@ -11,8 +11,6 @@
 
 namespace trocar::contours {
 
-using math::Vec2;
-
 /// How far a spline may swing out between two control points.
 struct ContourSplineSettings {
   double max_bulge = 0.35;  ///< distance from the chord, as part of the chord's length [-]
@@ -20,11 +18,11 @@ struct ContourSplineSettings {
 };
 
 /// Whether two sides of a closed polygon that are no neighbours touch or cross. O(n^2).
-bool CrossesItself(std::span<const Vec2> polygon);
+bool CrossesItself(std::span<const math::Vec2> polygon);
 
 /// Closed polyline along a spline.
 struct ContourCurve {
-  std::vector<Vec2> points;  ///< (m) [pixels]
+  std::vector<math::Vec2> points;  ///< (m) [pixels]
   std::vector<std::size_t>
       segment;  ///< (m) the control point that each follows; each control point is on the curve
   std::vector<std::size_t> divided;  ///< control points after which the spline had to be divided, ascending
@@ -38,9 +36,10 @@ struct ContourCurve {
 /// \param points  (n) n >= 3 distinct points [pixels]
 /// \return closed polyline [pixels]; crosses itself only if the points' own polygon does
 /// \pre n >= 3 (TROCAR_ASSERT)
-std::vector<Vec2> FitContour(std::span<const Vec2> points, const ContourSplineSettings& settings = {});
+std::vector<math::Vec2> FitContour(std::span<const math::Vec2> points,
+                                   const ContourSplineSettings& settings = {});
 
 /// As FitContour, with the control point that each point of the curve follows.
-ContourCurve FitContourCurve(std::span<const Vec2> points, const ContourSplineSettings& settings = {});
+ContourCurve FitContourCurve(std::span<const math::Vec2> points, const ContourSplineSettings& settings = {});
 
 }  // namespace trocar::contours

@@ -83,7 +83,7 @@ class ContourWorkspace {
 
   /// Copy of what GrowOrgan needs for a click into an organ, for use in a thread.
   /// \pre the structure is there (TROCAR_ASSERT)
-  GrowthRequest MakeGrowthRequest(int structure, int slice, const Vec2& click) const;
+  GrowthRequest MakeGrowthRequest(int structure, int slice, const math::Vec2& click) const;
 
   /// Carries the contours of a slice into another one, through the slices between them.
   /// \param is_replacing  contours that stand there already go; else they are left and the command refused
@@ -92,14 +92,14 @@ class ContourWorkspace {
 
   /// Path along edges from the last point of the open contour to `target` [pixels]; a straight line where
   /// nothing is open. Cheap while the last point stays.
-  base::Result<std::vector<Vec2>> FindScissorsPath(int structure, int slice, const Vec2& target);
+  base::Result<std::vector<math::Vec2>> FindScissorsPath(int structure, int slice, const math::Vec2& target);
   /// Adds that path to the open contour, with as few points as follow it within a pixel.
-  base::Status FollowEdge(int structure, int slice, const Vec2& target);
+  base::Status FollowEdge(int structure, int slice, const math::Vec2& target);
 
   /// Borders of the reference's labels in a slice, in pixels of the picture: pairs of ends, by label.
   struct ReferenceLines {
     int label = 0;
-    std::vector<std::array<Vec2, 2>> lines;
+    std::vector<std::array<math::Vec2, 2>> lines;
   };
   /// Shows this map from now on, or none.
   /// \param labels  a voxel a pixel, as images::AlignLabels makes it
@@ -120,11 +120,11 @@ class ContourWorkspace {
   // scissors, ready for the slice and seed that were last asked for
   std::unique_ptr<IntelligentScissors> scissors_;
   int scissors_slice_ = 0;
-  std::optional<Vec2> scissors_seed_;
+  std::optional<math::Vec2> scissors_seed_;
 };
 
 /// Place of a pixel in the patient, LPS [mm], when the series says where it lies; else nothing.
 std::optional<std::array<double, 3>> FindPatientPlace(const images::ImageSeriesInfo& series, int slice,
-                                                      const Vec2& p);
+                                                      const math::Vec2& p);
 
 }  // namespace trocar::contours

@@ -17,9 +17,9 @@ namespace trocar::contours {
 /// Control points of one structure in one slice, closed polygons in pixels (pixel centres at whole numbers).
 struct SliceContours {
   int slice = 0;
-  std::vector<std::vector<Vec2>> contours;  ///< each >= 3 points
-  std::vector<std::vector<Vec2>> holes;     ///< cut out of the contours
-  std::vector<Vec2> open;                   ///< points of a contour that is not closed yet; drafts only
+  std::vector<std::vector<math::Vec2>> contours;  ///< each >= 3 points
+  std::vector<std::vector<math::Vec2>> holes;     ///< cut out of the contours
+  std::vector<math::Vec2> open;                   ///< points of a contour that is not closed yet; drafts only
 
   friend bool operator==(const SliceContours&, const SliceContours&) = default;
 };
@@ -38,7 +38,7 @@ struct Structure {
 /// One point of a duct or vessel.
 struct TubePoint {
   double slice = 0;
-  Vec2 pixel;
+  math::Vec2 pixel;
   double radius_mm = 0;
 };
 
@@ -54,7 +54,7 @@ struct TubePoints {
 struct LandmarkPoint {
   std::string name;
   double slice = 0;
-  Vec2 pixel;
+  math::Vec2 pixel;
 };
 
 /// Everything a person placed, and how the pictures lie in the body.

@@ -15,8 +15,6 @@
 
 namespace trocar::contours {
 
-using math::Vec2;
-
 /// How far and how willingly points move.
 struct EdgeAdaptionSettings {
   double max_shift_px = 4.0;  ///< no point moves further [pixels], 0 switches the adaption off
@@ -41,11 +39,11 @@ struct EdgeAdaptionSettings {
 /// would cross
 ///         itself moves by half, a quarter ... or not at all
 /// \pre n >= 3 (TROCAR_ASSERT)
-std::vector<Vec2> AdaptToEdges(const images::ColorImage& image, std::span<const Vec2> contour,
-                               const EdgeAdaptionSettings& settings);
+std::vector<math::Vec2> AdaptToEdges(const images::ColorImage& image, std::span<const math::Vec2> contour,
+                                     const EdgeAdaptionSettings& settings);
 
 /// As above, on a prepared edge field, whose own blur takes the place of settings.blur_px.
-std::vector<Vec2> AdaptToEdges(const EdgeField& field, std::span<const Vec2> contour,
-                               const EdgeAdaptionSettings& settings);
+std::vector<math::Vec2> AdaptToEdges(const EdgeField& field, std::span<const math::Vec2> contour,
+                                     const EdgeAdaptionSettings& settings);
 
 }  // namespace trocar::contours

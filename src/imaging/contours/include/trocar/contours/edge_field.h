@@ -10,8 +10,6 @@
 
 namespace trocar::contours {
 
-using math::Vec2;
-
 /// Red, green and blue [grey levels]; the fourth number is 0 and lets the compiler work on all at once.
 using Colour = std::array<float, 4>;
 
@@ -29,9 +27,9 @@ class EdgeField {
   const Colour& At(int x, int y) const { return pixels_[static_cast<std::size_t>(y) * width_ + x]; }
   /// Colour between pixels, bilinear; beyond the picture its border repeats.
   /// \param p  finite [pixels]
-  Colour Sample(const Vec2& p) const;
+  Colour Sample(const math::Vec2& p) const;
   /// As Sample, from the original image without the blur.
-  Colour SampleSharp(const Vec2& p) const;
+  Colour SampleSharp(const math::Vec2& p) const;
 
  private:
   int width_, height_;

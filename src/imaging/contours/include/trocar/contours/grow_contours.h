@@ -23,7 +23,7 @@ struct GrowthRequest {
   ControlPoints points;          ///< as they are now: geometry, and where the other organs lie
   int structure = 0;             ///< index of the organ to grow
   int slice = 0;                 ///< of the click
-  Vec2 click;                    ///< [pixels]
+  math::Vec2 click;              ///< [pixels]
   std::vector<int> slices;       ///< of the series, ascending in equal steps
   images::DisplayWindow window;  ///< that `read` shows the greys through
   bool is_hounsfield = false;    ///< the greys are CT numbers
@@ -34,7 +34,7 @@ struct GrowthRequest {
 /// \param series     the pictures; a copy is kept
 /// \param structure  index (TROCAR_ASSERT)
 GrowthRequest MakeGrowthRequest(const images::ImageSeries& series, const ControlPoints& points, int structure,
-                                int slice, const Vec2& click);
+                                int slice, const math::Vec2& click);
 
 /// Whether an organ of that name can grow from a click: liver and gallbladder can.
 bool CanGrow(std::string_view organ);
@@ -68,6 +68,7 @@ base::Status ApplyGrowth(ContourDocument& document, const GrownOrgan& grown);
 /// \param tolerance_px  the spline comes this near to each place of the outline, unless `most` points do not reach
 /// \return 4 to `most` of its points, in order
 /// \pre at least 4 points, most >= 4 (TROCAR_ASSERT)
-std::vector<Vec2> ChooseFewPoints(const std::vector<Vec2>& outline, double tolerance_px, int most);
+std::vector<math::Vec2> ChooseFewPoints(const std::vector<math::Vec2>& outline, double tolerance_px,
+                                        int most);
 
 }  // namespace trocar::contours

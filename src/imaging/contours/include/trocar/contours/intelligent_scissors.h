@@ -12,8 +12,6 @@
 
 namespace trocar::contours {
 
-using math::Vec2;
-
 struct ScissorsSettings {
   double blur_px = 1.5;  ///< standard deviation of the Gaussian before the gradient [pixels], > 0
   int reach_px =
@@ -32,12 +30,12 @@ class IntelligentScissors {
 
   /// Finds the paths to all pixels within reach.
   /// \param seed  moved into the picture if outside [pixels]
-  void SetSeed(const Vec2& seed);
+  void SetSeed(const math::Vec2& seed);
 
   /// \param target  [pixels]; beyond reach, the path runs to the nearest pixel within reach and straight on
   /// \return from the seed's to the target's pixel, neighbouring pixels; empty before SetSeed
   /// \note a walk along the path: microseconds
-  std::vector<Vec2> PathTo(const Vec2& target) const;
+  std::vector<math::Vec2> PathTo(const math::Vec2& target) const;
 
  private:
   void CalcCosts(const images::ColorImage& image);
@@ -58,6 +56,6 @@ class IntelligentScissors {
 /// Source: Douglas and Peucker, "Algorithms for the reduction of the number of points", 1973.
 ///
 /// \param path  (n) open polyline [pixels]; fewer than three points come back unchanged
-std::vector<Vec2> SimplifyPath(std::span<const Vec2> path, double tolerance_px = 1.0);
+std::vector<math::Vec2> SimplifyPath(std::span<const math::Vec2> path, double tolerance_px = 1.0);
 
 }  // namespace trocar::contours

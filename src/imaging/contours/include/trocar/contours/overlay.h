@@ -13,24 +13,22 @@
 
 namespace trocar::contours {
 
-using math::Vec2;
-
 /// The stages of one contour.
 struct ContourStages {
-  std::vector<Vec2> placed;    ///< control points, red squares
-  std::vector<Vec2> adapted;   ///< after the edge adaption, yellow squares
-  std::vector<Vec2> curve;     ///< closed spline, green line
-  std::vector<Vec2> inserted;  ///< added on the edge, cyan squares
-  std::string structure;       ///< whose contour it is
-  std::size_t notes = 0;       ///< places where the curve does not fit, see contour_fit.h
+  std::vector<math::Vec2> placed;    ///< control points, red squares
+  std::vector<math::Vec2> adapted;   ///< after the edge adaption, yellow squares
+  std::vector<math::Vec2> curve;     ///< closed spline, green line
+  std::vector<math::Vec2> inserted;  ///< added on the edge, cyan squares
+  std::string structure;             ///< whose contour it is
+  std::size_t notes = 0;             ///< places where the curve does not fit, see contour_fit.h
 };
 
 /// Everything that is drawn on one slice.
 struct Overlay {
   std::vector<ContourStages> contours;
-  std::vector<images::Mask> areas;           ///< tinted
-  std::vector<Vec2> tube_points;             ///< blue crosses
-  std::vector<std::vector<Vec2>> reference;  ///< closed outlines to compare with, magenta lines
+  std::vector<images::Mask> areas;                 ///< tinted
+  std::vector<math::Vec2> tube_points;             ///< blue crosses
+  std::vector<std::vector<math::Vec2>> reference;  ///< closed outlines to compare with, magenta lines
 };
 
 /// The part of the photograph around the contours, enlarged, with the overlay.

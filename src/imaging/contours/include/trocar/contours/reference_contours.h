@@ -23,8 +23,8 @@ base::Result<std::array<double, 3>> FindLabelStep(const images::LabelVolume& lab
 
 /// A closed outline: contours run clockwise as the picture is seen, holes the other way round.
 struct Outline {
-  std::vector<Vec2> points;  ///< closed polyline [pixels]
-  double area_px = 0;        ///< > 0: contour; < 0: hole [pixels^2]
+  std::vector<math::Vec2> points;  ///< closed polyline [pixels]
+  double area_px = 0;              ///< > 0: contour; < 0: hole [pixels^2]
   double length_px = 0;
 };
 
@@ -38,6 +38,6 @@ std::vector<Outline> TraceLabel(const images::LabelVolume& labels, const Control
 
 /// Distance of a point to the nearest outline [pixels].
 /// \pre at least one outline (TROCAR_ASSERT)
-double DistanceToOutlines(const Vec2& p, std::span<const Outline> outlines);
+double DistanceToOutlines(const math::Vec2& p, std::span<const Outline> outlines);
 
 }  // namespace trocar::contours

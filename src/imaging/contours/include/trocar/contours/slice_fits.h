@@ -23,8 +23,8 @@ struct SliceFit {
   std::vector<std::shared_ptr<const ContourFit>> contours, holes;
 
   /// Curves only.
-  std::vector<std::vector<Vec2>> ContourCurves() const;
-  std::vector<std::vector<Vec2>> HoleCurves() const;
+  std::vector<std::vector<math::Vec2>> ContourCurves() const;
+  std::vector<std::vector<math::Vec2>> HoleCurves() const;
 };
 
 /// How much work a fit is worth.
@@ -53,7 +53,7 @@ class SliceFits {
 
  private:
   struct Source {
-    std::vector<std::vector<Vec2>> contours, holes;
+    std::vector<std::vector<math::Vec2>> contours, holes;
     EdgeAdaptionSettings adaption;
     std::shared_ptr<const SliceFit> fit;
   };

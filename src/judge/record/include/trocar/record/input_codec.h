@@ -12,30 +12,28 @@
 
 namespace trocar::record {
 
-using scene::Input;
-
 /// Joints of both hands and of the laparoscope.
-inline constexpr std::size_t kJointCount = 5 * (scene::kHandCount + 1);
+inline constexpr std::size_t kJointCount = 5 * (instrument::kHandCount + 1);
 
 /// The joints in the order of a file: left hand, right hand, laparoscope; pan, tilt, spin, depth, jaw of each.
-std::array<double, kJointCount> ListJoints(const Input& input) noexcept;
+std::array<double, kJointCount> ListJoints(const scene::Input& input) noexcept;
 
 /// Rounds every joint to a multiple of 2^-30 rad or m (about a nanometre): far below what any hand or tracker resolves, and
 /// a third of the bytes in a recording. For inputs of people and devices, before the tick that uses them.
 /// \note Real-time safe. What is not finite is left as it is.
-void RoundJoints(Input& input) noexcept;
+void RoundJoints(scene::Input& input) noexcept;
 
 /// Encodes inputs one after the other. A joint costs two bits where it rests, about three bytes where it moves on the grid of
 /// RoundJoints, about five elsewhere, at most nine; feet, tools and settings cost only where they change.
 class InputEncoder {
  public:
   /// Appends one tick.
-  void Encode(const Input& input, std::vector<std::byte>& bytes);
+  void Encode(const scene::Input& input, std::vector<std::byte>& bytes);
   /// The next input is encoded as the first of a row.
   void Reset() { *this = {}; }
 
  private:
-  Input last_;
+  scene::Input last_;
   std::array<double, kJointCount> before_last_{}, third_last_{};
 };
 
@@ -44,11 +42,11 @@ class InputDecoder {
  public:
   /// Takes the next tick's input off the front of `bytes`.
   /// \return false where the bytes are no input; then nothing further can be decoded
-  [[nodiscard]] bool Decode(std::span<const std::byte>& bytes, Input& input);
+  [[nodiscard]] bool Decode(std::span<const std::byte>& bytes, scene::Input& input);
   void Reset() { *this = {}; }
 
  private:
-  Input last_;
+  scene::Input last_;
   std::array<double, kJointCount> before_last_{}, third_last_{};
 };
 

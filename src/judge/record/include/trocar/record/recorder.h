@@ -63,7 +63,7 @@ class Recorder {
 
   /// After every Step. \param input  with which it was made
   /// \note No lock, no file. A hash costs one Simulation::Hash, a keyframe one Simulation::Save, each at its interval.
-  void Add(const Input& input, const simulation::Simulation& simulation) noexcept;
+  void Add(const scene::Input& input, const simulation::Simulation& simulation) noexcept;
   /// Somebody's remark at the newest tick that was added.
   void Mark(std::string text);
   RecorderStatus Status() const;

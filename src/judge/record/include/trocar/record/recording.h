@@ -19,8 +19,6 @@
 
 namespace trocar::record {
 
-using scene::Input;
-
 /// Identity of a recording: the scene it is made from and who played it.
 struct Description {
   /// How `name` is read: a scene's file, a task or an operation.
@@ -97,7 +95,8 @@ class Recording {
 
   Description description;
   std::uint64_t file_id = 0;  ///< random: tells files apart that are of the same
-  std::vector<Input> inputs;  ///< input i belongs to the tick that makes description.first_tick + i + 1 ticks
+  std::vector<scene::Input>
+      inputs;  ///< input i belongs to the tick that makes description.first_tick + i + 1 ticks
   std::vector<HashMark> hashes;
   std::vector<EventMark> events;
   std::vector<TextMark> marks;

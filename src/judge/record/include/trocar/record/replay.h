@@ -77,7 +77,7 @@ class Replay {
   const std::optional<Divergence>& GetDivergence() const { return divergence_; }
 
   /// Sees each state that is computed, the first one with the inputs of nobody.
-  using Watch = std::function<void(const simulation::Snapshot&, const Input&)>;
+  using Watch = std::function<void(const simulation::Snapshot&, const scene::Input&)>;
   /// From the first tick to the last, comparing hashes, keyframes and outcome. Uses no kept state.
   /// \param progress  told the share done, 0 to 1; false gives up; may be empty
   /// \return kCancelled where progress gave up; a keyframe's error

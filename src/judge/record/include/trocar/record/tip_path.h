@@ -14,9 +14,9 @@ namespace trocar::record {
 
 /// Where the hands held the tips, as the inputs say: within tissue, or faster than a tool may move, the tip itself stays behind.
 struct TipPath {
-  double first_time = 0;                                          ///< of the first point [s]
-  double step = 0;                                                ///< between two points [s]
-  std::array<std::vector<math::Vec3>, scene::kHandCount> points;  ///< world frame [m]
+  double first_time = 0;                                               ///< of the first point [s]
+  double step = 0;                                                     ///< between two points [s]
+  std::array<std::vector<math::Vec3>, instrument::kHandCount> points;  ///< world frame [m]
 
   /// The points between two times, at least one where the path has any. \param hand  scene::Hand
   std::span<const math::Vec3> Between(std::size_t hand, double from, double until) const;

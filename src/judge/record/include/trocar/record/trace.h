@@ -28,7 +28,7 @@ class TraceBuilder {
   /// \param controls  that were given to the tick; of the first snapshot nothing
   /// \note Not real-time safe: allocates. A tick never calls it: whoever runs the simulation does, between ticks.
   void Add(const simulation::Snapshot& snapshot,
-           const std::array<scene::HandControls, scene::kHandCount>& controls = {});
+           const std::array<scene::HandControls, instrument::kHandCount>& controls = {});
 
   /// The attempt so far, as if it ended here.
   training::AttemptTrace Calc() const;

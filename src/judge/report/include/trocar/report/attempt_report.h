@@ -84,8 +84,8 @@ struct GoalRow {
 
 /// For the plots: what a hand did, thinned out.
 struct HandSeries {
-  std::vector<Vec2> force;  ///< time [s], [N]
-  std::vector<Vec2> from_front,
+  std::vector<math::Vec2> force;  ///< time [s], [N]
+  std::vector<math::Vec2> from_front,
       from_head;  ///< [mm]: to the patient's left and the head; to the left and the front
 };
 

@@ -12,8 +12,6 @@
 
 namespace trocar::report {
 
-using math::Vec2;
-
 /// Meaning of a shape's colour; the back-ends choose the colour itself, for a light or a dark page.
 enum class Ink : std::uint8_t {
   kNone,
@@ -40,14 +38,14 @@ std::string_view NameOf(Ink ink) noexcept;
 enum class Dash : std::uint8_t { kSolid, kDashed, kDotted };
 
 struct Line {
-  std::vector<Vec2> points;  ///< [px]; a point that is not finite breaks the line
+  std::vector<math::Vec2> points;  ///< [px]; a point that is not finite breaks the line
   Ink ink = Ink::kText;
   double width = 1;  ///< [px]
   Dash dash = Dash::kSolid;
 };
 
 struct Area {
-  std::vector<Vec2> points;  ///< of its outline [px]
+  std::vector<math::Vec2> points;  ///< of its outline [px]
   Ink ink = Ink::kPanel;
   double opacity = 1;  ///< 0 to 1
   std::string tip;     ///< shown when the pointer rests on it; may be empty
@@ -57,7 +55,7 @@ struct Area {
 enum class MarkKind : std::uint8_t { kDot, kSquare, kTriangle, kDiamond };
 
 struct Mark {
-  Vec2 at;
+  math::Vec2 at;
   MarkKind kind = MarkKind::kDot;
   Ink ink = Ink::kText;
   double radius = 4;  ///< [px]
@@ -67,7 +65,7 @@ struct Mark {
 enum class Anchor : std::uint8_t { kStart, kMiddle, kEnd };
 
 struct Label {
-  Vec2 at;  ///< of the base line [px]
+  math::Vec2 at;  ///< of the base line [px]
   std::string text;
   Ink ink = Ink::kText;
   Anchor anchor = Anchor::kStart;
@@ -87,9 +85,9 @@ struct Drawing {
 };
 
 /// The outline of a rectangle.
-std::vector<Vec2> MakeRectangle(double left, double top, double width, double height);
+std::vector<math::Vec2> MakeRectangle(double left, double top, double width, double height);
 /// Corners of a mark other than a dot.
-std::vector<Vec2> MakeMarkOutline(const Mark& mark);
+std::vector<math::Vec2> MakeMarkOutline(const Mark& mark);
 /// About how wide a text is [px]: what is too wide for its place is cut.
 double GuessTextWidth(std::string_view text, double size);
 /// `text`, or its beginning with "…" where it is wider than `width` [px]; empty where not even that fits.
@@ -98,7 +96,7 @@ std::string CutToWidth(std::string_view text, double size, double width);
 /// A length or place in SVG, to a tenth [px].
 std::string FormatPixels(double value);
 /// Commands of an SVG path through the points [px]; a gap where a point is not finite.
-std::string FormatPath(const std::vector<Vec2>& points);
+std::string FormatPath(const std::vector<math::Vec2>& points);
 
 /// SVG element with title and description; colours by class, see html_page.h.
 /// \param id  unique in the page

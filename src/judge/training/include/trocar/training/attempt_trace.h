@@ -19,16 +19,14 @@
 
 namespace trocar::training {
 
-using math::Vec3;
-
 /// One tool at one tick.
 struct ToolSample {
-  Vec3 tip;              ///< [m], world frame
-  Vec3 axis{0, 0, -1};   ///< unit vector along the shaft, towards the tip
-  double insertion = 0;  ///< depth along the shaft from the trocar [m]
-  double spin = 0;       ///< about the shaft [rad]; may wrap
-  double jaw = 0;        ///< opening [rad]
-  double force = 0;      ///< magnitude on the tool [N], >= 0
+  math::Vec3 tip;             ///< [m], world frame
+  math::Vec3 axis{0, 0, -1};  ///< unit vector along the shaft, towards the tip
+  double insertion = 0;       ///< depth along the shaft from the trocar [m]
+  double spin = 0;            ///< about the shaft [rad]; may wrap
+  double jaw = 0;             ///< opening [rad]
+  double force = 0;           ///< magnitude on the tool [N], >= 0
   double press =
       0;  ///< how far the hand is pressed into what it touches, past the tool that is seen [m], >= 0
   double duct_distance =
@@ -45,19 +43,19 @@ struct ToolSample {
 
 /// The laparoscope at one tick.
 struct CameraSample {
-  Vec3 lens;                 ///< [m], world frame
-  Vec3 direction{0, 0, -1};  ///< unit vector of sight
-  double roll = 0;           ///< how far the picture's horizontal leans towards the patient's head [rad]
+  math::Vec3 lens;                 ///< [m], world frame
+  math::Vec3 direction{0, 0, -1};  ///< unit vector of sight
+  double roll = 0;  ///< how far the picture's horizontal leans towards the patient's head [rad]
 };
 
 /// Something that happened.
 struct AttemptEvent {
-  double time = 0;               ///< since the attempt's first tick [s]
-  std::string kind;              ///< scene::EventName, the name of an operation's error, or of a task's rule
-  int hand = -1;                 ///< instrument::Hand, or -1
-  int organ = -1;                ///< AttemptTrace::organ_names, or -1
-  double force = 0;              ///< [N], 0 where it means nothing
-  std::optional<Vec3> position;  ///< world frame [m]
+  double time = 0;   ///< since the attempt's first tick [s]
+  std::string kind;  ///< scene::EventName, the name of an operation's error, or of a task's rule
+  int hand = -1;     ///< instrument::Hand, or -1
+  int organ = -1;    ///< AttemptTrace::organ_names, or -1
+  double force = 0;  ///< [N], 0 where it means nothing
+  std::optional<math::Vec3> position;  ///< world frame [m]
   bool is_error = false;
   cholecystectomy::Severity severity = cholecystectomy::Severity::kMinor;  ///< of an error
   bool is_rule =

@@ -11,8 +11,6 @@
 
 namespace trocar::agent {
 
-using math::Vec3;
-
 /// How able a hand is.
 struct HandSkill {
   double speed = 0.12;     ///< greatest of a reach [m/s], > 0
@@ -30,22 +28,22 @@ struct HandSkill {
 /// One tool in its trocar. Verbs begin something; Step goes on with it.
 class HandMotion {
  public:
-  HandMotion(const Vec3& p_world_port, const instrument::TrocarJoints& start, const HandSkill& skill,
+  HandMotion(const math::Vec3& p_world_port, const instrument::TrocarJoints& start, const HandSkill& skill,
              std::uint64_t seed);
 
   /// Straight reach, from where the tip is now. \param hurry  times the skill's speed
-  void MoveTo(const Vec3& p_world_tip, double hurry = 1);
+  void MoveTo(const math::Vec3& p_world_tip, double hurry = 1);
   /// Turns about the shaft; the nearest of the angles a whole turn apart.
   void Turn(double spin);
   void SetJaw(double jaw);
 
   bool IsMoving() const;
   bool IsTurning() const;
-  Vec3 Tip() const { return tip_; }  ///< where the hand means to be, without tremor
-  Vec3 BehindTip(double way) const;  ///< on the shaft, `way` towards the port [m]
+  math::Vec3 Tip() const { return tip_; }  ///< where the hand means to be, without tremor
+  math::Vec3 BehindTip(double way) const;  ///< on the shaft, `way` towards the port [m]
   double Spin() const { return spin_; }
   double Jaw() const { return jaw_; }
-  const Vec3& Port() const { return p_world_port_; }
+  const math::Vec3& Port() const { return p_world_port_; }
 
   void VisitState(base::StateArchive& archive);
   /// \param dt  [s], > 0 \return joints after it
@@ -56,17 +54,17 @@ class HandMotion {
   struct Sine {
     double frequency, phase;
   };
-  Vec3 CalcTremor() const;
-  void BeginReach(const Vec3& to, double speed);
+  math::Vec3 CalcTremor() const;
+  void BeginReach(const math::Vec3& to, double speed);
 
-  Vec3 p_world_port_;
+  math::Vec3 p_world_port_;
   HandSkill skill_;
   std::uint64_t random_;
   std::array<std::array<Sine, kSines>, 3> tremor_;
   double time_ = 0;
-  Vec3 from_, to_, tip_;
-  Vec3 aim_;              // where the reach ends that first went past it
-  Vec3 bulge_;            // of the path, in its middle [m]
+  math::Vec3 from_, to_, tip_;
+  math::Vec3 aim_;        // where the reach ends that first went past it
+  math::Vec3 bulge_;      // of the path, in its middle [m]
   double speed_ = 0;      // of the reach [m/s]
   bool is_past_ = false;  // on the way past the aim
   double reach_time_ = 0, reach_duration_ = 0;
@@ -74,12 +72,14 @@ class HandMotion {
 };
 
 /// Spin with which the jaws of a tool at `p_world_tip` open as nearly as can be along `across`.
-double FindSpin(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& across) noexcept;
+double FindSpin(const math::Vec3& p_world_port, const math::Vec3& p_world_tip,
+                const math::Vec3& across) noexcept;
 
 /// Change of spin that turns what a tool at `p_world_tip` holds about an axis: as much of the turn as lies along the shaft.
 /// \param axis   unit
 /// \param angle  [rad]
 /// \return [rad]
-double FindRoll(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& axis, double angle) noexcept;
+double FindRoll(const math::Vec3& p_world_port, const math::Vec3& p_world_tip, const math::Vec3& axis,
+                double angle) noexcept;
 
 }  // namespace trocar::agent

@@ -70,10 +70,10 @@ SurgeonSkill SampleSkill(const SurgeonSkill& around, double spread, std::uint64_
 /// A surgeon of that skill for a task or an operation. On patients, anticipation, wrong plans, pressing and early pedals
 /// are not used: the operation has plans of its own.
 /// \return kUnknownName where the scene is nothing that a scripted surgeon can do
-base::Result<std::unique_ptr<Surgeon>> MakeSkilledSurgeon(std::shared_ptr<const Scene> scene,
+base::Result<std::unique_ptr<Surgeon>> MakeSkilledSurgeon(std::shared_ptr<const scene::Scene> scene,
                                                           const SurgeonSkill& skill, std::uint64_t seed);
 
 /// Whether the weakness can show in a scene: no pedal without an electrode, no idle hand where the rules name both.
-bool CanShow(Weakness weakness, const Scene& scene) noexcept;
+bool CanShow(Weakness weakness, const scene::Scene& scene) noexcept;
 
 }  // namespace trocar::agent

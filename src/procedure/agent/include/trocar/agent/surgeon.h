@@ -16,18 +16,13 @@
 
 namespace trocar::agent {
 
-using scene::Input;
-using scene::Scene;
-using scene::VisitState;
-using simulation::Snapshot;
-
 /// A pair of hands with a mind. The same scene, seed and snapshots give the same inputs.
 class Surgeon {
  public:
   virtual ~Surgeon() = default;
   /// Acts of hands, feet and the assistant in the next tick.
   /// \param seen  after the last tick
-  virtual Input Act(const Snapshot& seen) = 0;
+  virtual scene::Input Act(const simulation::Snapshot& seen) = 0;
   /// Nothing is left to do, or the surgeon has given up.
   virtual bool HasFinished() const = 0;
   /// Its memory: the plan, timers, random streams. Restored into a surgeon made from the same entry, scene and seed, it
@@ -48,15 +43,16 @@ struct SurgeonEntry {
   const char* about;  ///< one line
   /// ErrorRule::name (or an operation's error) that this one commits; "" for the able ones.
   const char* error;
-  bool (*suits)(const Scene& scene);
-  std::unique_ptr<Surgeon> (*make)(std::shared_ptr<const Scene> scene, std::uint64_t seed);
+  bool (*suits)(const scene::Scene& scene);
+  std::unique_ptr<Surgeon> (*make)(std::shared_ptr<const scene::Scene> scene, std::uint64_t seed);
 };
 
 /// Every kind there is.
 std::vector<SurgeonEntry> ListSurgeons();
 
 /// \return kUnknownName with those that suit the scene
-base::Result<std::unique_ptr<Surgeon>> MakeSurgeon(std::string_view name, std::shared_ptr<const Scene> scene,
+base::Result<std::unique_ptr<Surgeon>> MakeSurgeon(std::string_view name,
+                                                   std::shared_ptr<const scene::Scene> scene,
                                                    std::uint64_t seed);
 
 }  // namespace trocar::agent

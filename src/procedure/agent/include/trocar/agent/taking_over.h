@@ -9,7 +9,8 @@ namespace trocar::agent {
 /// One whose hands and laparoscope begin where they are, and whose plan begins with what is seen next.
 /// \param seen  as the last tick left it
 /// \return as MakeSurgeon
-base::Result<std::unique_ptr<Surgeon>> MakeSurgeonTakingOver(std::string_view name, const Scene& scene,
-                                                             const Snapshot& seen, std::uint64_t seed);
+base::Result<std::unique_ptr<Surgeon>> MakeSurgeonTakingOver(std::string_view name, const scene::Scene& scene,
+                                                             const simulation::Snapshot& seen,
+                                                             std::uint64_t seed);
 
 }  // namespace trocar::agent

@@ -10,8 +10,6 @@
 
 namespace trocar::cholecystectomy {
 
-using math::Vec3;
-
 /// A level sheet that is held at its border, with a circle drawn round its middle.
 struct PatternSheet {
   math::Vec3 centre;  ///< world frame [m]

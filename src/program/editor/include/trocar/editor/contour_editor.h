@@ -54,22 +54,22 @@ class ContourEditor {
   CanvasSize size;
 
   // the pointer, on the canvas [pixels of the window]
-  void Press(const Vec2& at, bool is_double);
-  void Drag(const Vec2& at);
+  void Press(const math::Vec2& at, bool is_double);
+  void Drag(const math::Vec2& at);
   void Release();
   /// The right button: deletes the point under the pointer, or the last one of the open contour.
-  void SecondaryPress(const Vec2& at);
-  void Hover(const std::optional<Vec2>& at);
+  void SecondaryPress(const math::Vec2& at);
+  void Hover(const std::optional<math::Vec2>& at);
   bool IsDragging() const { return is_dragging_; }
   /// Place of the pointer [pixels of the picture]; nothing when it is elsewhere.
-  const std::optional<Vec2>& Pointer() const { return pointer_; }
+  const std::optional<math::Vec2>& Pointer() const { return pointer_; }
   /// Fit of the slice that is shown; the quick one while a point of it is dragged.
   base::Result<std::shared_ptr<const contours::SliceFit>> Fit() {
     return workspace_->Fit(structure_, slice_,
                            is_dragging_ ? contours::FitEffort::kQuick : contours::FitEffort::kWhole);
   }
   /// From the open contour's last point to the pointer, as a click would add it; empty when nothing is open.
-  std::vector<Vec2> RubberLine();
+  std::vector<math::Vec2> RubberLine();
 
   /// Does what needs no window.
   /// \return false when the action is the window's affair
@@ -80,7 +80,7 @@ class ContourEditor {
   /// A command did something worth a line: "Carried 2 contours to slice 481".
   std::function<void(const std::string&)> on_event;
   /// The organ has been pointed into [pixels of the picture].
-  std::function<void(const Vec2&)> on_place;
+  std::function<void(const math::Vec2&)> on_place;
 
   /// A slice away from this one with closed contours, in the direction given; nothing when there is none.
   std::optional<int> FindContoured(int direction) const;
@@ -91,7 +91,7 @@ class ContourEditor {
   void GoTo(const std::optional<contours::EditPlace>& place, const std::string& verb);
   void GoTo(const std::optional<int>& slice);
   void GoToContoured(bool is_last);
-  void PointTo(const Vec2& place);
+  void PointTo(const math::Vec2& place);
   void CloseContour();
   void Cancel();
   void DeleteChosen();
@@ -106,15 +106,15 @@ class ContourEditor {
   void FitOrgan();
   void Zoom(double factor);
   void ToggleMirror();
-  std::optional<ContourChoice> FindPoint(const Vec2& at);
-  bool InsertOnCurve(const Vec2& at);
+  std::optional<ContourChoice> FindPoint(const math::Vec2& at);
+  bool InsertOnCurve(const math::Vec2& at);
 
   contours::ContourWorkspace* workspace_;
   int structure_ = 0, slice_ = 0, slice_step_ = 1;
   bool is_scissors_ = false, is_dragging_ = false, is_pointing_ = false;
-  Vec2 grip_;  // from the pointer to the dragged point [pixels of the picture]
+  math::Vec2 grip_;  // from the pointer to the dragged point [pixels of the picture]
   std::optional<ContourChoice> choice_;
-  std::optional<Vec2> pointer_;
+  std::optional<math::Vec2> pointer_;
 };
 
 }  // namespace trocar::editor

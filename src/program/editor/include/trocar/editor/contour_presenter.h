@@ -160,7 +160,7 @@ class ContourPresenter {
   void ChooseAndBuild();
   void CloseAnyway();
   void ToggleGrowMode();
-  void StartGrowth(const contours::Vec2& place);
+  void StartGrowth(const math::Vec2& place);
   void RequestSurfaces(bool is_all);
   void PrefetchNeighbours();
   void Refresh();

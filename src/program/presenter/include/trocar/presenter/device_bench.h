@@ -86,7 +86,7 @@ class DeviceBench {
   CalibrationStep step_ = CalibrationStep::kTip;
   device::Channel hand_ = device::kLeftHand;
   double begin_ = 0, end_ = 0;  // of the measurement [s]; end_ <= begin_: none
-  std::vector<device::Pose> poses_;
+  std::vector<math::Pose> poses_;
   std::vector<int> closed_, open_;
   Result result_;
 };

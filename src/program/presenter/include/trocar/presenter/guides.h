@@ -39,6 +39,7 @@ std::vector<view::Trail> MakeGuides(const scene::Scene& scene, std::span<const s
                                     const simulation::Snapshot& snapshot);
 
 /// "open", "closed", "holds ring 1", "holds the gallbladder"; empty for a tool without jaws that holds nothing.
-std::string DescribeJaws(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand);
+std::string DescribeJaws(const scene::Scene& scene, const simulation::Snapshot& snapshot,
+                         instrument::Hand hand);
 
 }  // namespace trocar::presenter

@@ -19,7 +19,7 @@ struct ScenePage {
   bool has_patient = false;
   std::string patient_name, patient_organs, patient_source;
   bool has_tools = false;  ///< some hand has several to choose from
-  std::array<std::vector<std::string>, scene::kHandCount> trays;
+  std::array<std::vector<std::string>, instrument::kHandCount> trays;
 };
 
 /// One hand's force, and what it meets.
@@ -30,12 +30,12 @@ struct HandPage {
   ForceLevel level = ForceLevel::kCalm;
   bool is_chosen = false;  ///< mouse and keys move it
 };
-using HandPages = std::array<HandPage, scene::kHandCount>;
+using HandPages = std::array<HandPage, instrument::kHandCount>;
 
 /// Tools, liquids and the assistant.
 struct OperationPage {
-  std::array<std::string, scene::kHandCount> hands;    ///< "1  Left grasper"
-  std::array<std::size_t, scene::kHandCount> asked{};  ///< place in the tray; the exchange follows later
+  std::array<std::string, instrument::kHandCount> hands;    ///< "1  Left grasper"
+  std::array<std::size_t, instrument::kHandCount> asked{};  ///< place in the tray; the exchange follows later
   std::string clips, blood, bile, stones, assistant;
   bool has_assistant = false;
   scene::AssistantCommand command{};
@@ -85,7 +85,7 @@ class PanelPresenter {
   void ShowTimes(const simulation::Snapshot& snapshot, const session::RunnerStatistics& statistics,
                  const StageMeter& stages, double picture_rate);
 
-  void ChooseTool(scene::Hand hand, std::size_t place);
+  void ChooseTool(instrument::Hand hand, std::size_t place);
   void CommandAssistant(std::size_t command);
   void SetSetting(std::size_t row, double position);
   void ChooseSolver(std::size_t choice);

@@ -51,13 +51,13 @@ std::string HandLabel(const scene::Scene& scene, std::int32_t hand);
 /// "clip applier"
 std::string ToolName(const instrument::Tool& tool);
 /// Name of the tool that a hand has in use, with spaces: "clip applier, 12 clips", "hook".
-std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand);
+std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot, instrument::Hand hand);
 /// "4.2 mL"
 std::string FormatMillilitres(double volume);
 /// Volume of a fluid that has left the vessels and organs, and of it what still lies there: "12.0 mL, 3.5 mL in the abdomen".
 std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid);
 /// Gallstones outside of the gallbladder: "none spilled", "3 in the abdomen, 2 retrieved".
-std::string DescribeStones(std::span<const simulation::StoneSnapshot> stones);
+std::string DescribeStones(std::span<const surgery::StoneSnapshot> stones);
 /// "waits", "retracts the fundus", ...
 std::string DescribeAssistant(scene::AssistantCommand command, bool is_holding);
 

@@ -99,7 +99,7 @@ class SessionControl {
   bool HasCameraHolder() const { return input_.settings.holds_camera; }
   bool IsLaparoscopeHeld() const { return device_.GetChosen() == device::kLaparoscope; }
   /// Asks for a tool of a hand's tray; a place that the tray does not have is ignored.
-  void ChooseTool(scene::Hand hand, std::size_t place);
+  void ChooseTool(instrument::Hand hand, std::size_t place);
   /// The next tool of the chosen hand, or with -1 the one before, round the tray.
   void StepTool(int step);
   /// Of the chosen hand. Only one hand has pedals at a time: choosing the other releases them. Pedals of devices are apart.

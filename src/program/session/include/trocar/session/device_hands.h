@@ -11,48 +11,42 @@
 
 namespace trocar::session {
 
-using scene::AssistantCommand;
-using scene::Hand;
-using scene::Input;
-using scene::kHandCount;
-using scene::Scene;
-
 using DeviceSamples = std::array<device::HandSample, device::kChannelCount>;
-using DeviceActs = std::array<device::HandActs, kHandCount>;
-static_assert(static_cast<std::size_t>(kHandCount) == device::kButtonHands);
+using DeviceActs = std::array<device::HandActs, instrument::kHandCount>;
+static_assert(static_cast<std::size_t>(instrument::kHandCount) == device::kButtonHands);
 
 /// Takes every hand that the device sees; the others stay as they are. A hand's numbers go through the same limits of
 /// joints and speed as any other input.
-void ApplyHands(const DeviceSamples& samples, Input& input) noexcept;
+void ApplyHands(const DeviceSamples& samples, scene::Input& input) noexcept;
 
 /// Presses the pedals that a device holds down. Adds to the input; lifts none that somebody else holds.
-void PressPedals(const DeviceActs& acts, Input& input) noexcept;
+void PressPedals(const DeviceActs& acts, scene::Input& input) noexcept;
 
 /// Command that the next press of the assistant's button gives: retract, relax, release, wait, and again.
-AssistantCommand NextCommand(AssistantCommand now) noexcept;
+scene::AssistantCommand NextCommand(scene::AssistantCommand now) noexcept;
 
 /// Hands and buttons of one device, with what its buttons leave behind: the tool in each hand, a frozen hand, and the way
 /// between hand and tool after a clutch.
 /// \note Real-time safe: no allocation, lock or throw.
 class DeviceHands {
  public:
-  explicit DeviceHands(const Scene& scene) noexcept;
+  explicit DeviceHands(const scene::Scene& scene) noexcept;
 
   /// The first tick again, or another device: nothing is frozen, tools stand where the hands are.
   void Restart() noexcept;
 
   /// Acts on every press since the last look: tool, assistant, freeze. Each press counts once.
   /// \param[in,out] input  where the tool and the assistant stand
-  void Step(const DeviceActs& acts, Input& input) noexcept;
+  void Step(const DeviceActs& acts, scene::Input& input) noexcept;
   /// Forgets the presses since the last look: while nothing runs, buttons do nothing.
   void Ignore(const DeviceActs& acts) noexcept { seen_ = acts; }
   /// As ApplyHands(); a hand that is frozen or whose clutch is held stands still, jaws included, and goes on from there.
-  void Move(const DeviceSamples& samples, const DeviceActs& acts, Input& input) noexcept;
+  void Move(const DeviceSamples& samples, const DeviceActs& acts, scene::Input& input) noexcept;
 
   /// A clutch or freeze that is not a button of the device: a key or a foot pedal.
-  void SetClutch(Hand hand, bool is_held) noexcept { hands_[hand].has_other_clutch = is_held; }
-  void ToggleFreeze(Hand hand) noexcept { hands_[hand].is_frozen = !hands_[hand].is_frozen; }
-  bool IsFrozen(Hand hand) const noexcept { return hands_[hand].is_frozen; }
+  void SetClutch(instrument::Hand hand, bool is_held) noexcept { hands_[hand].has_other_clutch = is_held; }
+  void ToggleFreeze(instrument::Hand hand) noexcept { hands_[hand].is_frozen = !hands_[hand].is_frozen; }
+  bool IsFrozen(instrument::Hand hand) const noexcept { return hands_[hand].is_frozen; }
 
  private:
   struct HeldHand {
@@ -63,9 +57,9 @@ class DeviceHands {
     bool has_joints = false;
   };
 
-  std::array<std::size_t, kHandCount> tray_sizes_{};
+  std::array<std::size_t, instrument::kHandCount> tray_sizes_{};
   DeviceActs seen_;
-  std::array<HeldHand, kHandCount> hands_;
+  std::array<HeldHand, instrument::kHandCount> hands_;
 };
 
 }  // namespace trocar::session

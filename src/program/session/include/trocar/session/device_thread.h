@@ -17,7 +17,7 @@
 namespace trocar::session {
 
 /// Tells a device that knows motion only where the scene's instruments start. Call it before the device is used.
-void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept;
+void PlaceAtHome(const scene::Scene& scene, device::Driver& driver) noexcept;
 
 /// State of a device.
 struct DeviceReport {

@@ -23,18 +23,13 @@
 
 namespace trocar::session {
 
-using math::Pose;
-using math::Vec3;
-using scene::kLeft;
-using scene::kRight;
-
 /// One channel of the device and the hand it stands for.
 struct HapticHand {
-  Hand hand = kRight;
-  Vec3 p_world_port;                ///< trocar point [m]
+  instrument::Hand hand = instrument::kRight;
+  math::Vec3 p_world_port;          ///< trocar point [m]
   double max_jaw = 1.0;             ///< of the tool [rad]
   haptics::DeviceMap map;           ///< device frame into the patient's
-  Vec3 p_device_check;              ///< check pose, device frame [m]
+  math::Vec3 p_device_check;        ///< check pose, device frame [m]
   std::uint32_t dead_man_mask = 1;  ///< buttons of which one must be held; 0: the pedal
 };
 
@@ -45,12 +40,13 @@ using CountAllocations = std::uint64_t (*)() noexcept;
 /// person are the picture's, and the middle of the device's workspace is the tool's home.
 /// \param X_world_laparoscope  as in a snapshot
 /// \param scale                newtons in the hand for a newton at the tool [-], > 0
-HapticHand MakeHapticHand(const Scene& scene, const Pose& X_world_laparoscope, Hand hand, double scale = 1.0);
+HapticHand MakeHapticHand(const scene::Scene& scene, const math::Pose& X_world_laparoscope,
+                          instrument::Hand hand, double scale = 1.0);
 
 /// State of the hands, from the haptic loop to the simulation.
 struct HapticHands {
-  std::array<bool, kHandCount> is_driven{};
-  std::array<instrument::TrocarJoints, kHandCount> joints;
+  std::array<bool, instrument::kHandCount> is_driven{};
+  std::array<instrument::TrocarJoints, instrument::kHandCount> joints;
   DeviceActs
       acts;  ///< of the styluses' buttons behind safety switch and jaws; up where a device is lost or silent
 };
@@ -84,8 +80,8 @@ struct HapticStatus {
   bool is_real_time = false;                               ///< SCHED_FIFO was granted
   bool is_supervised = false;
   haptics::CheckPoseState check_pose = haptics::CheckPoseState::kUnconfirmed;
-  Hand asked = kLeft;  ///< whose device the check pose waits for
-  std::array<HapticHandStatus, kHandCount> hands;
+  instrument::Hand asked = instrument::kLeft;  ///< whose device the check pose waits for
+  std::array<HapticHandStatus, instrument::kHandCount> hands;
 };
 /// One line for a person, for example "Force 1000 Hz: left armed 0.8 N, right off: nobody holds the safety switch (hold
 /// the button or pedal and switch force on again)".
@@ -96,8 +92,8 @@ std::string FormatHapticsJson(const HapticStatus& status);
 /// Mailboxes between the simulation's thread and the loop's; neither waits for the other.
 struct HapticLink {
   std::atomic<bool> is_used{false};  ///< a loop runs: the simulation cuts patches only then
-  std::array<host::NewestSlot<tissue::LocalPatch>, kHandCount> patches;  ///< simulation to loop
-  host::NewestSlot<HapticHands> hands;                                   ///< loop to simulation
+  std::array<host::NewestSlot<tissue::LocalPatch>, instrument::kHandCount> patches;  ///< simulation to loop
+  host::NewestSlot<HapticHands> hands;                                               ///< loop to simulation
 };
 
 /// The simulation's end of the link: hands and pedals of the haptic devices take the place of the input's.
@@ -108,7 +104,7 @@ class HapticHandsReader {
 
   /// Call it once a tick. Does nothing while no loop runs.
   /// \note Real-time safe.
-  void Take(HapticLink& link, Input& input) noexcept;
+  void Take(HapticLink& link, scene::Input& input) noexcept;
 
  private:
   int silent_ticks_ = 0;
@@ -127,8 +123,9 @@ struct HapticLoopSettings {
 /// \param X_world_laparoscope  as in a snapshot
 /// \param buttons              of the styluses, behind safety switch and jaws
 /// \return kDeviceSettings where the device has more channels than a person has hands
-base::Result<HapticLoopSettings> MakeHapticSettings(const device::ForceDriver& driver, const Scene& scene,
-                                                    const Pose& X_world_laparoscope,
+base::Result<HapticLoopSettings> MakeHapticSettings(const device::ForceDriver& driver,
+                                                    const scene::Scene& scene,
+                                                    const math::Pose& X_world_laparoscope,
                                                     const device::ButtonMap& buttons);
 
 /// Owns the driver and the thread.

@@ -57,7 +57,7 @@ struct HapticSummary {
   double rate = 0, lowest_rate = 0;    ///< mean, and of the worst whole second [1/s]
   double period_max = 0, cpu_max = 0;  ///< of the worst tick [s]
   bool is_real_time = false, is_supervised = false;
-  std::array<HapticHandSummary, kHandCount> hands;
+  std::array<HapticHandSummary, instrument::kHandCount> hands;
 };
 /// One JSON object: times in seconds (_s) or microseconds (_us), forces in newtons, reasons by name and code.
 std::string FormatSummaryJson(const HapticSummary& summary);
@@ -92,7 +92,7 @@ class HapticRecord {
   struct Sample {
     double time = 0;
     float rate = 0, period_p50 = 0, period_p999 = 0, period_max = 0, cpu_p999 = 0;
-    std::array<HandSample, kHandCount> hands;
+    std::array<HandSample, instrument::kHandCount> hands;
   };
   void Note(double time, HapticEventKind kind, int hand, haptics::Fault reason = haptics::Fault::kNone,
             std::uint64_t count = 1);
@@ -104,7 +104,7 @@ class HapticRecord {
   bool has_last_ = false;
   double first_time_ = 0, last_time_ = 0;  // [s]
   HapticSummary summary_;                  // but what follows from first and last
-  std::array<std::array<double, static_cast<std::size_t>(haptics::Fault::kCount)>, kHandCount>
+  std::array<std::array<double, static_cast<std::size_t>(haptics::Fault::kCount)>, instrument::kHandCount>
       off_time_{};                  // by reason [s]
   double next_ = 0, period_ = 0.1;  // of the samples [s]
   std::vector<Sample> samples_;

@@ -14,11 +14,6 @@
 
 namespace trocar::session {
 
-using scene::StrandInfo;
-using scene::SurfaceInfo;
-using simulation::Simulation;
-using simulation::Snapshot;
-
 /// Counters since the start; the clock decides when a tick runs, never what it computes.
 struct RunnerStatistics {
   std::uint64_t ticks = 0;
@@ -47,14 +42,14 @@ class Runner {
   /// \param haptics     nullptr, or the mailboxes of a haptic loop, which must outlive this: hands that it drives take
   ///                    the place of the input's, and every tick publishes their tissue
   /// \param keeping     nothing, or where each attempt is recorded: from its first tick to the reset or the end of this
-  explicit Runner(Simulation simulation, HapticLink* haptics = nullptr,
+  explicit Runner(simulation::Simulation simulation, HapticLink* haptics = nullptr,
                   std::optional<AttemptKeeping> keeping = {});
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
   /// The newest wish of the person; used from the next tick on until another comes.
-  void SetInput(const Input& input);
+  void SetInput(const scene::Input& input);
   /// true: the scene's script moves the hands and the input's hands are ignored. Where the scene has none, a scripted
   /// expert acts in the place of the input, from the next reset on; the settings stay the input's.
   void SetScripted(bool is_scripted);
@@ -76,13 +71,13 @@ class Runner {
   void EndAttempt();
 
   /// The newest state; the reference stays valid until the next call.
-  const Snapshot& Latest();
+  const simulation::Snapshot& Latest();
   RunnerStatistics Statistics() const;
   /// Of the attempt that runs or ran last; nothing before the first one, or where none are kept.
   std::optional<record::RecorderStatus> RecordingStatus() const;
-  const Scene& GetScene() const;
-  std::span<const SurfaceInfo> Surfaces() const;
-  std::span<const StrandInfo> Strands() const;
+  const scene::Scene& GetScene() const;
+  std::span<const scene::SurfaceInfo> Surfaces() const;
+  std::span<const scene::StrandInfo> Strands() const;
 
  private:
   struct Content;
