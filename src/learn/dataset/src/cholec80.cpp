@@ -4,6 +4,7 @@
 
 #include "class_tables.h"
 #include "layout_set.h"
+#include "trocar/cholecystectomy/hand_acts.h"
 #include "trocar/host/safe_file.h"
 
 namespace trocar::dataset {
@@ -37,7 +38,7 @@ class Cholec80Writer : public VideoWriter {
       if (seen < view::LabelClass::kGrasper || seen > view::LabelClass::kBag) continue;
       const auto kind = static_cast<instrument::ToolKind>(static_cast<int>(seen) -
                                                           static_cast<int>(view::LabelClass::kGrasper));
-      is_there[static_cast<std::size_t>(InstrumentOf(kind))] = true;
+      is_there[static_cast<std::size_t>(cholecystectomy::InstrumentOf(kind))] = true;
     }
     tools_ += std::to_string(frame.number);
     for (const bool there : is_there) tools_ += there ? "\t1" : "\t0";

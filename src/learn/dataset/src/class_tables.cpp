@@ -217,25 +217,4 @@ std::string_view CholecT50Name(cholecystectomy::Phase phase) noexcept {
   return kPhases[static_cast<std::size_t>(phase)];
 }
 
-cholecystectomy::InstrumentKind InstrumentOf(instrument::ToolKind tool) noexcept {
-  using Kind = instrument::ToolKind;
-  switch (tool) {
-    case Kind::kGrasper:
-      return InstrumentKind::kGrasper;
-    case Kind::kDissector:
-      return InstrumentKind::kBipolar;  // the one that carries current between jaws
-    case Kind::kHook:
-      return InstrumentKind::kHook;
-    case Kind::kScissors:
-      return InstrumentKind::kScissors;
-    case Kind::kClipApplier:
-      return InstrumentKind::kClipper;
-    case Kind::kSuctionIrrigator:
-      return InstrumentKind::kIrrigator;
-    case Kind::kBag:
-      return InstrumentKind::kSpecimenBag;
-  }
-  return InstrumentKind::kCount;
-}
-
 }  // namespace trocar::dataset

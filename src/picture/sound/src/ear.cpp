@@ -22,7 +22,7 @@ SoundState Ear::Listen(const scene::Scene& scene, const simulation::Snapshot& sn
   // what is no longer in the ring happened too long ago to be heard
   for (std::uint64_t& seen = seen_events_ = std::max(seen_events_, count - std::min(count, ring));
        seen < count; ++seen) {
-    if (snapshot.events[seen % ring].kind == scene::EventKind::kClipClosed) ++clicks_;
+    if (snapshot.events[seen % ring].kind == surgery::FactKind::kClipClosed) ++clicks_;
   }
   SoundState state;
   state.clicks = clicks_;

@@ -51,8 +51,8 @@ base::Result<std::unique_ptr<Operation>> Operation::Make(const scene::Scene& sce
 
 base::Status Operation::MakeAll() {
   const PatientTissue& tissue = *made_;
-  facts_.liver = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
-  facts_.gallbladder = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
+  anatomy_.liver = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
+  anatomy_.gallbladder = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
   if (const auto status = MakeOrgans(); !status.ok()) return status;
   if (const auto status = MakeTubes(); !status.ok()) return status;
   FindBandStrands();
@@ -60,9 +60,9 @@ base::Status Operation::MakeAll() {
   attachment_ = MakeAttachment(scene_->patient, tissue.surfaces, strands_);
   MakeAssistant();
   const patient::Landmark* neck = scene_->patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
-  facts_.p_pool = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
-  facts_.deepest = kBelowAll;
-  for (const Vec3& p : tissue.definition.rest) facts_.deepest = std::min(facts_.deepest, p.z + kBelowAll);
+  anatomy_.p_pool = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
+  anatomy_.deepest = kBelowAll;
+  for (const Vec3& p : tissue.definition.rest) anatomy_.deepest = std::min(anatomy_.deepest, p.z + kBelowAll);
   stones_.Reset();
   MakeOoze();
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -79,7 +79,7 @@ base::Status Operation::MakeOrgans() {
   for (std::size_t i = 0; i < patient.organs.size(); ++i) {
     surgery::CuttableOrganSettings settings;
     settings.wall = made_->walls[i];
-    settings.cut.has_walls = static_cast<std::int32_t>(i) != facts_.gallbladder && !scene_->model;
+    settings.cut.has_walls = static_cast<std::int32_t>(i) != anatomy_.gallbladder && !scene_->model;
     settings.first_node = made_->surfaces[i].first_node;
     settings.first_spare = made_->first_spare[i];
     settings.spare_count = kSpare.by_organ;
@@ -99,7 +99,7 @@ base::Status Operation::MakeTubes() {
   const scene::OperationParameters& parameters = scene_->operation->parameters;
   auto vessels = scene::MakePatientVessels(patient, parameters.supplies, parameters.fluids);
   if (!vessels.ok()) return vessels.error();
-  facts_.biliary = std::move(vessels->anatomy);
+  anatomy_.biliary = std::move(vessels->anatomy);
   vessels_ = MakeVessels(std::move(vessels->map), patient, *made_, kSpare.tubes, parameters.vessels);
   vessels_->ReserveFor(change_);
   change_.Clear();
@@ -107,9 +107,9 @@ base::Status Operation::MakeTubes() {
     const SurfaceInfo& surface = made_->surfaces[patient.organs.size() + t];
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       const surgery::VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
-      if (cholecystectomy::MayBeDivided(facts_.biliary.roles[place.vessel])) continue;
+      if (cholecystectomy::MayBeDivided(anatomy_.biliary.roles[place.vessel])) continue;
       const bool is_duct = patient.tubes[t].kind == patient::TubeKind::kDuct;
-      (is_duct ? facts_.main_ducts : facts_.main_arteries).push_back(surface.first_node + k);
+      (is_duct ? anatomy_.main_ducts : anatomy_.main_arteries).push_back(surface.first_node + k);
     }
   }
   for (surgery::EnteringTube& tube : FindEnteringTubes(patient, made_->surfaces, strands_)) {
@@ -123,12 +123,12 @@ base::Status Operation::MakeTubes() {
 
 /// Bands of a model are parted one by one.
 void Operation::FindBandStrands() {
-  facts_.band_starts.assign(1, 0);
+  anatomy_.band_starts.assign(1, 0);
   for (std::size_t band = 0; scene_->model && band < scene_->model->bands.size(); ++band) {
     for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-      if (strands_[i].band == static_cast<std::int32_t>(band)) facts_.band_strands.push_back(i);
+      if (strands_[i].band == static_cast<std::int32_t>(band)) anatomy_.band_strands.push_back(i);
     }
-    facts_.band_starts.push_back(static_cast<std::uint32_t>(facts_.band_strands.size()));
+    anatomy_.band_starts.push_back(static_cast<std::uint32_t>(anatomy_.band_strands.size()));
   }
 }
 
@@ -138,13 +138,13 @@ void Operation::MakeAssistant() {
   const Vec3& target = setup.p_world_target;
   assistant_.emplace(setup, target);
   // the landmark moves with the organ: the nearest vertex at rest carries it
-  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(std::max(0, facts_.gallbladder))];
+  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(std::max(0, anatomy_.gallbladder))];
   const auto& rest = made_->definition.rest;
-  facts_.assistant_node = surface.first_node;
+  anatomy_.assistant_node = surface.first_node;
   for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
     if (math::SquaredDistance(rest[node], target) <
-        math::SquaredDistance(rest[facts_.assistant_node], target))
-      facts_.assistant_node = node;
+        math::SquaredDistance(rest[anatomy_.assistant_node], target))
+      anatomy_.assistant_node = node;
   }
 }
 
@@ -155,15 +155,40 @@ void Operation::MakeOoze() {
     const StrandInfo& strand = strands_[i];
     const bool is_bed = strand.kind == StrandInfo::Kind::kBed;
     if (!is_bed && strand.kind != StrandInfo::Kind::kAdhesion) continue;
-    const bool is_b = IsOf(strand.b, facts_.liver);
-    if (is_b || IsOf(strand.a, facts_.liver)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
+    const bool is_b = IsOf(strand.b, anatomy_.liver);
+    if (is_b || IsOf(strand.a, anatomy_.liver)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
   }
   ooze_ = surgery::BedOoze(fibres, CalcPathology(scene_->patient).bed_bleeding,
                            scene_->operation->parameters.bed);
 }
 
-void Operation::Emit(const OperationEvent& event) noexcept {
-  if (emitted_.count < emitted_.events.size()) emitted_.events[emitted_.count++] = event;
+surgery::Fact Operation::FactOf(surgery::FactKind kind, int hand) const noexcept {
+  surgery::Fact fact;
+  fact.kind = kind;
+  fact.hand = static_cast<std::int8_t>(hand);
+  if (hand >= 0) fact.tool = Tool(hand).kind;
+  return fact;
+}
+
+void Operation::AddOfTube(surgery::FactKind kind, int hand, const surgery::TubePlace& place,
+                          const Vec3& position) noexcept {
+  surgery::Fact fact = FactOf(kind, hand);
+  fact.surface = static_cast<std::int32_t>(organs_.size() + place.tube);
+  fact.along = place.arc;
+  fact.amount = static_cast<double>(vessels_->CountCuts(place.tube));
+  fact.position = position;
+  fact.p_rest = vessels_->RestPoint(place);
+  Add(fact);
+}
+
+/// The organ, duct or vessel of a node, or -1: of one that a cut has made.
+std::int32_t Operation::SurfaceOf(std::uint32_t node) const noexcept {
+  for (std::size_t i = 0; i < made_->surfaces.size(); ++i) {
+    const SurfaceInfo& surface = made_->surfaces[i];
+    if (node >= surface.first_node && node < surface.first_node + surface.node_count)
+      return static_cast<std::int32_t>(i);
+  }
+  return -1;
 }
 
 bool Operation::IsOf(std::uint32_t node, std::int32_t organ) const noexcept {
@@ -205,7 +230,7 @@ bool Operation::MoveTool(int hand, const scene::HandControls& controls, bool is_
   state.spread_upper = state.spread_lower = {};
   state.clips = Tool(hand).clips;
   state.has_clip_open = state.was_open = false;
-  acts_.SetExchanged(hand);
+  Add(FactOf(surgery::FactKind::kToolExchanged, hand));
   return true;
 }
 
@@ -215,11 +240,6 @@ double Operation::WidestTool(int hand) const noexcept {
   for (const instrument::Tool& tool : scene_->instruments[hand].tray)
     widest = std::max(widest, 2.0 * tool.shaft_radius);
   return widest;
-}
-
-void Operation::BeginTick() noexcept {
-  emitted_.count = 0;
-  acts_.Clear();
 }
 
 void Operation::Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
@@ -259,7 +279,7 @@ void Operation::Assist(const HandsNow& hands, const TissueNow& tissue, OperatedT
   if (!assistant_) return;
   const scene::AssistantCommand command =
       retrieval_.is_in_bag ? scene::AssistantCommand::kRelease : hands.input->assistant;
-  (void)assistant_->Step(command, tissue.state->position[facts_.assistant_node], hands.seconds, tissue.organs,
+  (void)assistant_->Step(command, tissue.state->position[anatomy_.assistant_node], hands.seconds, tissue.organs,
                          *tissue.model, {}, operated.state);
 }
 
@@ -272,41 +292,6 @@ bool Operation::EndCuts() noexcept {
   ++topology_version_;
   stones_.ForgetSupports();
   return true;
-}
-
-cholecystectomy::Target Operation::TargetOfSurface(std::int32_t surface) const noexcept {
-  using cholecystectomy::Target;
-  if (surface < 0) return Target::kNullTarget;
-  if (surface == facts_.liver) return Target::kLiver;
-  if (surface == facts_.gallbladder) return Target::kGallbladder;
-  const roles::TubeRole tube = made_->surfaces[static_cast<std::size_t>(surface)].tube;
-  if (tube == roles::TubeRole::kCysticDuct) return Target::kCysticDuct;
-  return tube == roles::TubeRole::kCysticArtery ? Target::kCysticArtery : Target::kBloodVessel;
-}
-
-cholecystectomy::Target Operation::TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept {
-  using cholecystectomy::Target;
-  const std::size_t nodes = tissue.definition->rest.size();
-  if (part >= nodes) {
-    switch (strands_[part - nodes].kind) {
-      case StrandInfo::Kind::kBed:
-        return Target::kCysticPlate;
-      case StrandInfo::Kind::kAdhesion:
-        return Target::kAdhesion;
-      case StrandInfo::Kind::kPeritoneum:
-        return Target::kPeritoneum;
-      case StrandInfo::Kind::kTriangle:
-      case StrandInfo::Kind::kEnd:
-      case StrandInfo::Kind::kBand:
-        return Target::kCysticPedicle;
-    }
-  }
-  for (std::size_t i = 0; i < made_->surfaces.size(); ++i) {
-    const SurfaceInfo& surface = made_->surfaces[i];
-    if (part >= surface.first_node && part < surface.first_node + surface.node_count)
-      return TargetOfSurface(static_cast<std::int32_t>(i));
-  }
-  return Target::kNullTarget;
 }
 
 // --- what others see
@@ -333,7 +318,7 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.blanching.assign(nodes, 0.0F);
   snapshot.charring.assign(nodes, 0.0F);
   snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
-  snapshot.band_is_whole.assign(facts_.band_starts.size() - 1, 1);
+  snapshot.band_is_whole.assign(anatomy_.band_starts.size() - 1, 1);
   snapshot.sheets.assign(sheets_.size(), {});
   snapshot.stones.assign(stones_.Size(), {});
   snapshot.topology.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
@@ -362,8 +347,8 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   for (std::size_t i = 0; i < sheets_.size(); ++i) snapshot.sheets[i] = sheets_[i].Now();
   for (std::size_t band = 0; band < snapshot.band_is_whole.size(); ++band) {
     const auto own =
-        std::span(facts_.band_strands)
-            .subspan(facts_.band_starts[band], facts_.band_starts[band + 1] - facts_.band_starts[band]);
+        std::span(anatomy_.band_strands)
+            .subspan(anatomy_.band_starts[band], anatomy_.band_starts[band + 1] - anatomy_.band_starts[band]);
     snapshot.band_is_whole[band] =
         std::all_of(own.begin(), own.end(), [&](std::uint32_t i) { return tissue.strand_is_intact[i] != 0; });
   }
@@ -388,7 +373,7 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   snapshot.flow.ooze_count = ooze_.Publish(tissue.position, snapshot.flow.oozes);
   stones_.Publish(snapshot.stones);
   snapshot.flow.ledger = fluids_;
-  snapshot.flow.p_world_pool = facts_.p_pool;
+  snapshot.flow.p_world_pool = anatomy_.p_pool;
   snapshot.smoke = smoke_;
   snapshot.assistant.is_there = assistant_.has_value();
   if (assistant_) {
@@ -403,7 +388,7 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
 
 void Operation::AddTo(OperationResult& result) const {
   surgery::FlowNetwork network = vessels_->Map().network;
-  result.injuries = cholecystectomy::JudgeInjuries(facts_.biliary, vessels_->Acts(), network);
+  result.injuries = cholecystectomy::JudgeInjuries(anatomy_.biliary, vessels_->Acts(), network);
   result.fluids = fluids_;
   result.bed_blood = ooze_.Lost();
   result.stones = stones_.Count();
@@ -417,25 +402,32 @@ void Operation::AddTo(OperationResult& result) const {
 
 cholecystectomy::OperationJudge Operation::MakeJudge() const {
   const PatientTissue& tissue = *made_;
-  const cholecystectomy::JudgementSettings& settings = Judgement();
-  cholecystectomy::DissectedAnatomy anatomy =
+  const cholecystectomy::JudgementSettings& settings = scene_->operation->parameters.judgement;
+  cholecystectomy::DissectedAnatomy dissected =
       MakeDissectedAnatomy(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest);
-  anatomy.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest, facts_.main_ducts,
-                                        facts_.main_arteries, settings);
-  anatomy.exposable = CalcExposable(anatomy.entering, tissue.definition.rest, facts_.main_ducts,
-                                    facts_.main_arteries, settings);
-  anatomy.sight = MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest,
-                                    anatomy.exposable, settings);
-  return {cholecystectomy::DissectionMonitor(std::move(anatomy), tissue.definition.rest),
-          facts_.gallbladder >= 0, settings};
+  dissected.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest,
+                                          anatomy_.main_ducts, anatomy_.main_arteries, settings);
+  dissected.exposable = CalcExposable(dissected.entering, tissue.definition.rest, anatomy_.main_ducts,
+                                      anatomy_.main_arteries, settings);
+  dissected.sight = MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest,
+                                      dissected.exposable, settings);
+  cholecystectomy::JudgedAnatomy anatomy;
+  anatomy.targets = MakeTargetTable(tissue.surfaces, strands_);
+  anatomy.biliary = anatomy_.biliary;
+  anatomy.main_ducts = anatomy_.main_ducts;
+  anatomy.organ_count = organs_.size();
+  anatomy.has_critical_view = anatomy_.gallbladder >= 0;
+  anatomy.may_cut_organs = scene_->model.has_value();
+  return {std::move(anatomy),
+          cholecystectomy::DissectionMonitor(std::move(dissected), tissue.definition.rest), settings};
 }
 
-cholecystectomy::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,
-                                                         const instrument::Camera& camera) const noexcept {
-  cholecystectomy::OperationObservation now{
+surgery::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,
+                                                 const instrument::Camera& camera) const noexcept {
+  surgery::OperationObservation now{
       hands.time,
       hands.seconds,
-      acts_,
+      facts_->All(),
       {},
       *tissue.state,
       *vessels_,
@@ -444,15 +436,14 @@ cholecystectomy::OperationObservation Operation::Observe(const HandsNow& hands, 
       {retrieval_.is_gallbladder_free, retrieval_.is_in_bag, retrieval_.is_completed},
       fluids_.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
       stones_.Count().spilled,
-      facts_.p_pool};
+      anatomy_.p_pool};
   for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
-    cholecystectomy::ObservedHand& seen = now.hands[hand];
+    surgery::HandObservation& seen = now.hands[hand];
     const surgery::Grasp& grasp = (*hands.grasps)[hand];
     seen.p_world_tip = hands.X_proxy[hand].translation;
     seen.depth = hands.joints[hand].depth;
-    seen.is_retracting = grasp.IsHolding() && Tool(static_cast<int>(hand)).kind != instrument::ToolKind::kBag;
-    seen.is_holding_liver = grasp.surface == facts_.liver;
-    if (seen.is_retracting) seen.held = TargetOfSurface(grasp.surface);
+    seen.is_holding = grasp.IsHolding() && Tool(static_cast<int>(hand)).kind != instrument::ToolKind::kBag;
+    seen.held_surface = grasp.surface;
     seen.change = hands.changes[hand];
   }
   return now;
@@ -523,7 +514,6 @@ void Operation::VisitState(base::StateArchive& archive) {
   archive.Field("is_gallbladder_free", retrieval_.is_gallbladder_free);
   archive.Field("bag_hand", retrieval_.bag_hand);
   if (!archive.IsRestoring() || !archive.ok()) return;
-  BeginTick();
   for (std::size_t hand = 0; hand < active_.size(); ++hand) {
     if (active_[hand] < scene_->instruments[hand].tray.size()) continue;
     active_[hand] = 0;

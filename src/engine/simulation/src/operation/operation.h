@@ -19,8 +19,10 @@
 #include "trocar/surgery/bed_ooze.h"
 #include "trocar/surgery/cuttable_organ.h"
 #include "trocar/surgery/electrosurgery.h"
+#include "trocar/surgery/fact.h"
 #include "trocar/surgery/gallbladder_attachment.h"
 #include "trocar/surgery/gallstone_spill.h"
+#include "trocar/surgery/observation.h"
 #include "trocar/surgery/vessels.h"
 
 namespace trocar::simulation {
@@ -59,14 +61,6 @@ struct OperatedTissue {
   std::array<surgery::Grasp, instrument::kHandCount>& grasps;
 };
 
-/// Something that an operation emits: it becomes an event of the tick.
-struct OperationEvent {
-  scene::EventKind kind = scene::EventKind::kClipClosed;
-  std::int32_t hand = -1;
-  std::int32_t surface = -1;  ///< as in Event::organ
-  math::Vec3 p_rest;          ///< of a clip or a cut: where on its vessel at rest, world frame [m]
-};
-
 class Operation {
  public:
   /// Nodes that cuts may use.
@@ -76,8 +70,9 @@ class Operation {
   static base::Result<std::unique_ptr<Operation>> Make(const scene::Scene& scene,
                                                        std::shared_ptr<const scene::PatientTissue> tissue);
 
-  /// Begins a tick, before all other calls: clears the events and acts of the tick before.
-  void BeginTick() noexcept;
+  /// Begins a tick, before all other calls.
+  /// \param facts  of the tick, to which the stages add; outlives the tick
+  void BeginTick(surgery::FactList& facts) noexcept { facts_ = &facts; }
 
   // --- tools
 
@@ -114,13 +109,10 @@ class Operation {
   /// Loose stones and clips fall, are pushed and carried.
   void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
 
-  /// Observation of this tick for a judge. It refers to the state of the tick, which has to outlive it.
+  /// Observation of this tick so far. It refers to the state of the tick, which has to outlive it.
   /// \param camera  through which the trainee looks
-  cholecystectomy::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
+  surgery::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
                                                 const instrument::Camera& camera) const noexcept;
-  /// Events of this tick.
-  std::span<const OperationEvent> Events() const { return std::span(emitted_.events).first(emitted_.count); }
-
   /// A judge who knows this operation's anatomy.
   cholecystectomy::OperationJudge MakeJudge() const;
 
@@ -169,10 +161,10 @@ class Operation {
   void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
   void CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands, const TissueNow& tissue,
                OperatedTissue& operated, bool cuts_strands) noexcept;
-  void CutStrands(const surgery::BladeMove& move, int hand, cholecystectomy::InstrumentKind kind,
-                  const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  void CutOrgans(const surgery::BladeMove& move, int hand, cholecystectomy::InstrumentKind kind,
-                 const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void CutStrands(const surgery::BladeMove& move, int hand, const TissueNow& tissue,
+                  OperatedTissue& operated) noexcept;
+  void CutOrgans(const surgery::BladeMove& move, int hand, const HandsNow& hands, const TissueNow& tissue,
+                 OperatedTissue& operated) noexcept;
   void Spread(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
   void UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
@@ -184,23 +176,24 @@ class Operation {
   void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
   void EmitRetrieved(int hand, int count) noexcept;
   void RefuseImpossible(int hand, const HandsNow& hands) noexcept;
-  cholecystectomy::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
-  cholecystectomy::Target TargetOfSurface(std::int32_t surface) const noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
-  void Emit(const OperationEvent& event) noexcept;
+  /// A fact of that hand and the tool in it; of no hand: -1.
+  surgery::Fact FactOf(surgery::FactKind kind, int hand) const noexcept;
+  void Add(const surgery::Fact& fact) noexcept { facts_->Add(fact); }
+  void AddOfTube(surgery::FactKind kind, int hand, const surgery::TubePlace& place,
+                 const math::Vec3& position) noexcept;
+  void AddOfStrand(surgery::FactKind kind, int hand, std::uint32_t strand, const TissueNow& tissue) noexcept;
+  std::int32_t SurfaceOf(std::uint32_t node) const noexcept;
   const scene::ElectrodeParameters& Electrode() const noexcept {
     return scene_->operation->parameters.electrode;
   }
   const scene::SuctionParameters& Suction() const noexcept { return scene_->operation->parameters.suction; }
-  const cholecystectomy::JudgementSettings& Judgement() const noexcept {
-    return scene_->operation->parameters.judgement;
-  }
 
   const scene::Scene* scene_;  // outlives this
   std::vector<scene::StrandInfo> strands_;
   std::shared_ptr<const scene::PatientTissue> made_;
   /// Anatomy of the patient that is asked for again and again; constant.
-  struct AnatomyFacts {
+  struct Anatomy {
     std::int32_t liver = -1, gallbladder = -1;
     std::vector<std::uint32_t> main_ducts, main_arteries;  // nodes of those that must stay
     cholecystectomy::BiliaryAnatomy biliary;               // of the vessels
@@ -209,7 +202,7 @@ class Operation {
     std::uint32_t assistant_node = 0;                      // of what the assistant takes
     std::vector<std::uint32_t> band_strands, band_starts;  // (bands) the strands of each, by band_starts
   };
-  AnatomyFacts facts_;
+  Anatomy anatomy_;
   /// Where a duct or artery enters the gallbladder.
   struct TubeEnd {
     std::uint32_t node = 0;              // of the tube
@@ -224,7 +217,6 @@ class Operation {
   std::optional<surgery::Vessels> vessels_;
   surgery::Electrosurgery heat_;
   surgery::GallbladderAttachment attachment_;
-  cholecystectomy::EmittedActs acts_;
   std::optional<Assistant> assistant_;
   surgery::TopologyChange change_;
   surgery::FluidLedger fluids_;
@@ -250,12 +242,7 @@ class Operation {
     std::int32_t bag_hand = -1;
   };
   Retrieval retrieval_;
-  /// Of this tick.
-  struct Emitted {
-    std::array<OperationEvent, 8> events{};
-    std::size_t count = 0;
-  };
-  Emitted emitted_;
+  surgery::FactList* facts_ = nullptr;  // outlives the tick
 };
 
 /// Adds the judge's part: errors, facts of the dissection, critical view and phase.

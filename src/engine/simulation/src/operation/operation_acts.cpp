@@ -9,17 +9,12 @@
 
 namespace trocar::simulation {
 
-using cholecystectomy::EmittedAct;
 using math::Pose;
 using math::Vec3;
-using scene::EventKind;
+using surgery::FactKind;
 using scene::HandControls;
 
 namespace {
-
-using cholecystectomy::InstrumentKind;
-using cholecystectomy::OperationError;
-using cholecystectomy::Verb;
 
 // Clip applier: closed and open again, as shares of its opening
 constexpr double kClipClosed = 0.12, kClipOpen = 0.6;
@@ -34,7 +29,21 @@ geometry::BladeEdge JawEdge(const instrument::Tool& tool, const Pose& X_world_to
   return {X_world_tool * instrument::JawHinge(tool), X_world_tool * instrument::JawTip(tool, jaw, side)};
 }
 
+// most of each in a tick
+constexpr std::size_t kMostStrandsCut = 64, kMostStrandsSpread = 16, kMostHeated = 96, kMostParted = 16;
+// a hand heats and spreads, or heats and cuts; the rest is for organs, stones, clips and what jaws hold
+static_assert(surgery::FactList::kCapacity >=
+              instrument::kHandCount * (kMostHeated + 2 * kMostStrandsSpread + surgery::CuttableTubes::kMostCuts) +
+                  kMostParted + 32);
+
 }  // namespace
+
+void Operation::AddOfStrand(FactKind kind, int hand, std::uint32_t strand, const TissueNow& tissue) noexcept {
+  surgery::Fact fact = FactOf(kind, hand);
+  fact.strand = static_cast<std::int32_t>(strand);
+  fact.position = tissue.state->position[strands_[strand].a];
+  Add(fact);
+}
 
 void Operation::UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue,
                          OperatedTissue& operated) noexcept {
@@ -55,56 +64,44 @@ void Operation::UseBlade(int hand, const HandsNow& hands, const TissueNow& tissu
 
 void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands,
                         const TissueNow& tissue, OperatedTissue& operated, bool cuts_strands) noexcept {
-  const InstrumentKind kind = cuts_strands ? InstrumentKind::kScissors : InstrumentKind::kHook;
-  if (cuts_strands) CutStrands(move, hand, kind, tissue, operated);
+  if (cuts_strands) CutStrands(move, hand, tissue, operated);
   std::array<surgery::TubePlace, surgery::CuttableTubes::kMostCuts> places;
   const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
-  for (const surgery::TubePlace& place : std::span(places).first(tubes)) {
-    const auto surface = static_cast<std::int32_t>(organs_.size() + place.tube);
-    EmittedAct act;
-    act.kind = EmittedAct::Kind::kCut;
-    act.position = hands.X_proxy[static_cast<std::size_t>(hand)].translation;
-    act.hand = hand;
-    act.vessel = cholecystectomy::JudgePlace(facts_.biliary, *vessels_, place);
-    acts_.Add(act);
-    Emit({EventKind::kTubeCut, hand, surface, vessels_->RestPoint(place)});
-    acts_.Add({kind, Verb::kCut, TargetOfSurface(surface)}, hand);
-  }
-  CutOrgans(move, hand, kind, hands, tissue, operated);
+  for (const surgery::TubePlace& place : std::span(places).first(tubes))
+    AddOfTube(FactKind::kTubeCut, hand, place, hands.X_proxy[static_cast<std::size_t>(hand)].translation);
+  CutOrgans(move, hand, hands, tissue, operated);
 }
 
-void Operation::CutStrands(const surgery::BladeMove& move, int hand, InstrumentKind kind,
-                           const TissueNow& tissue, OperatedTissue& operated) noexcept {
-  std::array<std::uint32_t, 64> cut;
+void Operation::CutStrands(const surgery::BladeMove& move, int hand, const TissueNow& tissue,
+                           OperatedTissue& operated) noexcept {
+  std::array<std::uint32_t, kMostStrandsCut> cut;
   const std::size_t count = surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, cut);
   for (const std::uint32_t strand : std::span(cut).first(count)) {
     operated.state.strand_is_intact[strand] = 0;
-    const auto part = static_cast<std::uint32_t>(tissue.definition->rest.size()) + strand;
-    acts_.Add({kind, Verb::kCut, TargetOf(tissue, part)}, hand);
+    AddOfStrand(FactKind::kStrandCut, hand, strand, tissue);
   }
 }
 
-void Operation::CutOrgans(const surgery::BladeMove& move, int hand, InstrumentKind kind,
-                          const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+void Operation::CutOrgans(const surgery::BladeMove& move, int hand, const HandsNow& hands,
+                          const TissueNow& tissue, OperatedTissue& operated) noexcept {
   const auto h = static_cast<std::size_t>(hand);
-  const Vec3& tip = hands.X_proxy[h].translation;
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     const geometry::CutReport report =
         organs_[i].Cut(move.before, move.now, tissue.state->position, hands_[h].fronts[i], change_);
     if (!report.HasChanged()) continue;
-    const auto organ = static_cast<std::int32_t>(i);
-    acts_.Add({kind, Verb::kCut, TargetOfSurface(organ)}, hand);
-    if (scene_->model) continue;  // a sheet is there to be cut
-    if (organ != facts_.gallbladder) {
-      acts_.Report(OperationError::kStructureTorn, tip, hand);
-      continue;
-    }
+    surgery::Fact fact = FactOf(FactKind::kOrganCut, hand);
+    fact.surface = static_cast<std::int32_t>(i);
+    fact.position = hands.X_proxy[h].translation;
+    Add(fact);
+    if (fact.surface != anatomy_.gallbladder) continue;
     std::array<geometry::Opening, 8> openings;
     const std::size_t found = std::min(openings.size(), geometry::FindOpenings(organs_[i].Mesh(), openings));
     double area = 0;
     for (std::size_t k = 0; k < found; ++k) area += openings[k].area;
     if (found == 0) continue;
-    acts_.Report(OperationError::kGallbladderPerforated, tip, hand);
+    fact.kind = FactKind::kOrganOpened;
+    fact.amount = area;
+    Add(fact);
     tissue.conservation->Perforate(i, std::max(Electrode().burnt_hole, area - wall_.open_area),
                                    operated.conserved);
     wall_.open_area = std::max(area, wall_.open_area);
@@ -125,16 +122,14 @@ void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue,
   if (opens && upper && lower) {
     // what a jaw pushes before it as it opens gives way, fibre by fibre
     for (const auto& move : {surgery::BladeMove{*upper, edges[0]}, surgery::BladeMove{*lower, edges[1]}}) {
-      std::array<std::uint32_t, 16> torn;
+      std::array<std::uint32_t, kMostStrandsSpread> torn;
       const std::size_t count =
           surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, torn);
       for (std::size_t i = 0; i < count; ++i) {
         const scene::StrandInfo::Kind kind = strands_[torn[i]].kind;
         if (kind == scene::StrandInfo::Kind::kEnd) continue;  // a duct's end does not give way to a jaw
         operated.state.strand_is_intact[torn[i]] = 0;
-        acts_.Add({InstrumentKind::kGrasper, Verb::kDissect,
-                   TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + torn[i])},
-                  hand);
+        AddOfStrand(FactKind::kStrandSpread, hand, torn[i], tissue);
       }
     }
   }
@@ -161,39 +156,35 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   const scene::CurrentParameters& current = controls.cut ? Electrode().cut : Electrode().coagulate;
   electrode.power = current.power;
   electrode.reach = current.reach;
-  if (!instrument::IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
-    acts_.Report(OperationError::kEnergyOutOfView, X.translation, hand);
-  std::array<surgery::Electrosurgery::Target, 96> targets;
+  std::array<surgery::Electrosurgery::Target, kMostHeated> targets;
   const std::size_t count =
       heat_.FindTargets(electrode, tissue.organs, *tissue.tubes, *tissue.state, targets);
   double& idle = hands_[h].idle_seconds;
-  if (count == 0) {
-    idle += hands.seconds;
-    if (idle > Judgement().idle_seconds)
-      acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
-    return;
-  }
-  idle = 0;
+  idle = count == 0 ? idle + hands.seconds : 0.0;
+  surgery::Fact fact = FactOf(FactKind::kCurrentOn, hand);
+  fact.is_coagulating = !controls.cut;
+  fact.amount = idle;
+  fact.position = X.translation;
+  Add(fact);
+  if (count == 0) return;
   hands_[h].has_current = true;
   heat_.AddPower(electrode, std::span(targets).first(count));
   if (controls.coagulate)
     vessels_->Seal(X.translation, Electrode().seal_reach,
                    electrode.power * hands.seconds / Electrode().seal_heat, tissue.state->position);
-  const InstrumentKind kind =
-      tool.kind == instrument::ToolKind::kHook ? InstrumentKind::kHook : InstrumentKind::kBipolar;
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool is_strand = targets[i].part >= tissue.definition->rest.size();
-    acts_.Add({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)}, hand);
+  fact.kind = FactKind::kCurrentInto;
+  fact.amount = 0;
+  const std::size_t nodes = tissue.definition->rest.size();
+  for (const surgery::Electrosurgery::Target& target : std::span(targets).first(count)) {
+    const bool is_strand = target.part >= nodes;
+    fact.strand = is_strand ? static_cast<std::int32_t>(target.part - nodes) : -1;
+    fact.surface = is_strand ? -1 : SurfaceOf(target.part);
+    Add(fact);
   }
-  const bool is_near =
-      std::any_of(facts_.main_ducts.begin(), facts_.main_ducts.end(), [&](std::uint32_t node) {
-        return math::Distance(tissue.state->position[node], X.translation) < Judgement().near_duct;
-      });
-  if (is_near) acts_.Report(OperationError::kEnergyNearDuct, X.translation, hand);
 }
 
 void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
-  std::array<std::uint32_t, 16> parted;
+  std::array<std::uint32_t, kMostParted> parted;
   const std::size_t count = heat_.Step(hands.seconds, operated.state, parted);
   smoke_ += Electrode().smoke_by_heat * heat_.Power() * hands.seconds;
   std::int32_t hand = -1;
@@ -201,22 +192,20 @@ void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTis
     if (hands_[static_cast<std::size_t>(i)].has_current) hand = i;
   }
   for (const std::uint32_t node : std::span(parted).first(count)) {
-    const Vec3& p = tissue.state->position[node];
+    surgery::Fact fact = FactOf(FactKind::kOrganBurnt, hand);
+    fact.position = tissue.state->position[node];
     surgery::TubePlace place;
-    if (IsOf(node, facts_.gallbladder)) {
-      tissue.conservation->Perforate(static_cast<std::size_t>(facts_.gallbladder), Electrode().burnt_hole,
+    if (IsOf(node, anatomy_.gallbladder)) {
+      tissue.conservation->Perforate(static_cast<std::size_t>(anatomy_.gallbladder), Electrode().burnt_hole,
                                      operated.conserved);
       wall_.holes.Add(node, Electrode().burnt_rim);
-      acts_.Report(OperationError::kGallbladderPerforated, p, hand);
-    } else if (IsOf(node, facts_.liver)) {
-      acts_.Report(OperationError::kLiverBurnt, p, hand);
+      fact.surface = anatomy_.gallbladder;
+      Add(fact);
+    } else if (IsOf(node, anatomy_.liver)) {
+      fact.surface = anatomy_.liver;
+      Add(fact);
     } else if (vessels_->MakeHole(node, Electrode().burnt_hole, place)) {
-      EmittedAct act;
-      act.kind = EmittedAct::Kind::kHole;
-      act.position = p;
-      act.hand = hand;
-      act.vessel = cholecystectomy::JudgePlace(facts_.biliary, *vessels_, place);
-      acts_.Add(act);
+      AddOfTube(FactKind::kTubeBurnt, hand, place, fact.position);
     }
   }
   OpenTubeEnds(tissue);
@@ -231,13 +220,8 @@ void Operation::OpenTubeEnds(const TissueNow& tissue) noexcept {
       continue;
     end.is_off = true;
     surgery::TubePlace place;
-    if (!vessels_->MakeHole(end.node, end.section, place)) continue;
-    EmittedAct act;
-    act.kind = EmittedAct::Kind::kHole;
-    act.position = tissue.state->position[end.node];
-    act.vessel = cholecystectomy::JudgePlace(facts_.biliary, *vessels_, place);
-    // of what is divided already only the gallbladder's side is left
-    if (act.vessel.cuts == 0) acts_.Add(act);
+    if (vessels_->MakeHole(end.node, end.section, place))
+      AddOfTube(FactKind::kTubeTornOff, -1, place, tissue.state->position[end.node]);
   }
 }
 
@@ -261,18 +245,18 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
       vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
   state.caught.reset();
   state.opened = 0;
-  EmittedAct act;
-  act.kind = EmittedAct::Kind::kClip;
-  act.position = hands.X_proxy[h].translation;
-  act.hand = hand;
-  act.clip = clip;
-  if (clip.kind != surgery::ClipResult::Kind::kLost)
-    act.vessel = cholecystectomy::JudgePlace(facts_.biliary, *vessels_, clip.place);
-  acts_.Add(act);
-  if (clip.kind == surgery::ClipResult::Kind::kLost) return;
-  const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
-  acts_.Add({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
-  Emit({EventKind::kClipClosed, hand, surface, vessels_->RestPoint(clip.place)});
+  surgery::Fact fact = FactOf(FactKind::kClipClosed, hand);
+  fact.position = hands.X_proxy[h].translation;
+  fact.is_crossed = clip.is_crossed;
+  fact.is_partial = clip.kind == surgery::ClipResult::Kind::kPartial;
+  if (clip.kind == surgery::ClipResult::Kind::kLost) {
+    fact.kind = FactKind::kClipLost;
+  } else {
+    fact.surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
+    fact.along = clip.place.arc;
+    fact.p_rest = vessels_->RestPoint(clip.place);
+  }
+  Add(fact);
 }
 
 /// Answers what cannot be done, once each time that it is tried.
@@ -290,11 +274,11 @@ void Operation::RefuseImpossible(int hand, const HandsNow& hands) noexcept {
   const bool is_used =
       has_bitten || controls.cut || controls.coagulate || controls.rinse || controls.aspirate;
   const bool is_outside = hands.joints[h].depth < kOutOfTrocar;
-  if (is_used && is_outside && !state.was_outside_emitted) Emit({EventKind::kUsedOutside, hand, -1, {}});
+  if (is_used && is_outside && !state.was_outside_emitted) Add(FactOf(FactKind::kUsedOutside, hand));
   state.was_outside_emitted = is_outside && (is_used || state.was_outside_emitted);
   if (has_bitten && !is_outside && tool.kind == instrument::ToolKind::kClipApplier && state.clips == 0 &&
       !state.has_clip_open)
-    Emit({EventKind::kNoClipsLeft, hand, -1, {}});
+    Add(FactOf(FactKind::kNoClipsLeft, hand));
 }
 
 void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
@@ -302,9 +286,12 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
   const HandControls& controls = hands.input->controls[h];
   hands_[h].is_rinsing = controls.rinse;
   hands_[h].is_aspirating = controls.aspirate;
+  surgery::Fact fact = FactOf(FactKind::kRinse, hand);
+  fact.position = hands.X_proxy[h].translation;
   if (controls.rinse) {
-    fluids_.Rinse(Suction().rinse_rate * hands.seconds);
-    acts_.Add({InstrumentKind::kIrrigator, Verb::kIrrigate, cholecystectomy::Target::kFluid}, hand);
+    fact.amount = Suction().rinse_rate * hands.seconds;
+    fluids_.Rinse(fact.amount);
+    Add(fact);
   }
   if (!controls.aspirate) return;
   smoke_ *= std::max(0.0, 1.0 - Suction().smoke_rate * hands.seconds);
@@ -312,18 +299,19 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
                                        2.0 * instrument::kSuctionBore * Tool(hand).shaft_radius));
   // the pool as a half sphere
   const double radius = math::Cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
-  if (math::Distance(hands.X_proxy[h].translation, facts_.p_pool) > radius + Suction().pool_reach) return;
-  if (fluids_.Aspirate(Suction().aspirate_rate * hands.seconds) > 0.0)
-    acts_.Add({InstrumentKind::kIrrigator, Verb::kAspirate, cholecystectomy::Target::kFluid}, hand);
+  if (math::Distance(hands.X_proxy[h].translation, anatomy_.p_pool) > radius + Suction().pool_reach) return;
+  fact.kind = FactKind::kAspirate;
+  fact.amount = fluids_.Aspirate(Suction().aspirate_rate * hands.seconds);
+  if (fact.amount > 0.0) Add(fact);
 }
 
 void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
                        OperatedTissue& operated) noexcept {
   const auto h = static_cast<std::size_t>(hand);
-  acts_.Add({InstrumentKind::kSpecimenBag, Verb::kPack, cholecystectomy::Target::kGallbladder}, hand);
+  Add(FactOf(FactKind::kBagOpen, hand));
   if (!retrieval_.is_in_bag) EmitRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
-  if (retrieval_.is_in_bag || facts_.gallbladder < 0 || !retrieval_.is_gallbladder_free) return;
-  const scene::SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(facts_.gallbladder)];
+  if (retrieval_.is_in_bag || anatomy_.gallbladder < 0 || !retrieval_.is_gallbladder_free) return;
+  const scene::SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(anatomy_.gallbladder)];
   Vec3 centre;
   for (std::uint32_t i = 0; i < surface.node_count; ++i)
     centre += tissue.state->position[surface.first_node + i] / static_cast<double>(surface.node_count);
@@ -331,12 +319,12 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
   if (math::Distance(centre, X.translation) > kMouth) return;
   // the other hands let go, and the bag closes around it
   for (surgery::Grasp& grasp : operated.grasps) {
-    if (grasp.surface == facts_.gallbladder) surgery::ReleaseGrasp(*tissue.model, grasp, operated.state);
+    if (grasp.surface == anatomy_.gallbladder) surgery::ReleaseGrasp(*tissue.model, grasp, operated.state);
   }
   if (assistant_) surgery::ReleaseGrasp(*tissue.model, assistant_->Held(), operated.state);
   surgery::Grasp& held = operated.grasps[h];
   held = {};
-  held.surface = facts_.gallbladder;
+  held.surface = anatomy_.gallbladder;
   held.pinch = held.damage_pinch = kBagGrip;
   const auto capacity = static_cast<std::uint32_t>(surgery::Grasp::kCapacity);
   const std::uint32_t step = std::max(1U, surface.node_count / capacity);
@@ -347,7 +335,7 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
     held.p_tool_node[held.count++] = X_tool_world * tissue.state->position[node];
     operated.state.condition[node] = tissue::NodeCondition::kPrescribed;
   }
-  EmitRetrieved(hand, stones_.BagWith(facts_.gallbladder));
+  EmitRetrieved(hand, stones_.BagWith(anatomy_.gallbladder));
   retrieval_.is_in_bag = true;
   retrieval_.bag_hand = hand;
 }

@@ -8,11 +8,9 @@
 namespace trocar::simulation {
 
 using instrument::kHandCount;
-using scene::EventKind;
+using surgery::FactKind;
 
 namespace {
-
-using cholecystectomy::OperationError;
 
 constexpr double kTornHole = 1e-6;     // of the wall that a torn spring leaves open at each end [m^2]
 constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m]
@@ -21,7 +19,7 @@ constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m
 
 void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   tissue::OrganVolume* const gallbladder =
-      facts_.gallbladder >= 0 ? &operated.conserved.organs[static_cast<std::size_t>(facts_.gallbladder)]
+      anatomy_.gallbladder >= 0 ? &operated.conserved.organs[static_cast<std::size_t>(anatomy_.gallbladder)]
                               : nullptr;
   if (gallbladder != nullptr) {
     KeepLeaked(*gallbladder);
@@ -29,7 +27,7 @@ void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTis
     if (now > 0.0) fluids_.Leak(surgery::Fluid::kBile, now);
     SpillStones(now, tissue);
   }
-  vessels_->Flow(hands.seconds, facts_.gallbladder, operated.conserved, fluids_);
+  vessels_->Flow(hands.seconds, anatomy_.gallbladder, operated.conserved, fluids_);
   SlipClips(hands, tissue);
   fluids_.Leak(surgery::Fluid::kBlood,
                ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
@@ -48,20 +46,22 @@ void Operation::KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept {
 }
 
 void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
-  if (facts_.gallbladder < 0) return;
+  if (anatomy_.gallbladder < 0) return;
   for (const std::uint32_t i : tissue.torn_springs) {
     const tissue::Spring& spring = tissue.definition->springs[i];
     for (const std::uint32_t node : {spring.a, spring.b}) {
-      if (IsOf(node, facts_.gallbladder)) wall_.holes.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
+      if (IsOf(node, anatomy_.gallbladder)) wall_.holes.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
     }
   }
   if (!(leaked > 0.0) || retrieval_.is_in_bag || !stones_.HasInside()) return;
-  const auto organ = static_cast<std::size_t>(facts_.gallbladder);
+  const auto organ = static_cast<std::size_t>(anatomy_.gallbladder);
   const surgery::WallHole hole =
       wall_.holes.FindLargest(tissue.organs[organ], tissue.state->position, organs_[organ].Mesh());
   if (!(hole.rim > 0.0)) return;
   const int spilled = stones_.Spill(leaked, leaked + tissue.conserved->organs[organ].target, hole);
-  for (int i = 0; i < spilled; ++i) Emit({EventKind::kStoneSpilled, -1, facts_.gallbladder, {}});
+  surgery::Fact fact = FactOf(FactKind::kStoneSpilled, -1);
+  fact.surface = anatomy_.gallbladder;
+  for (int i = 0; i < spilled; ++i) Add(fact);
 }
 
 void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept {
@@ -70,7 +70,7 @@ void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexce
   ground.organs = tissue.organs;
   ground.positions = tissue.state->position;
   ground.gravity = hands.gravity;
-  ground.deepest = facts_.deepest;
+  ground.deepest = anatomy_.deepest;
   std::array<surgery::StonePusher, 2 * kHandCount> pushers;
   std::size_t count = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -86,7 +86,7 @@ void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexce
   vessels_->FindLooseClips(loose_clips_);
   stones_.Move(ground, hands.X_proxy, loose_clips_, hands.seconds);
   for (int hand = 0; hand < kHandCount; ++hand) {
-    if (stones_.HasTaken(hand)) Emit({EventKind::kStoneTaken, hand, -1, {}});
+    if (stones_.HasTaken(hand)) Add(FactOf(FactKind::kStoneTaken, hand));
   }
 }
 
@@ -97,9 +97,7 @@ void Operation::SlipClips(const HandsNow& hands, const TissueNow& tissue) noexce
   std::array<surgery::SlippedClip, 4> slipped;
   const std::size_t count = vessels_->Slip(hands.seconds, pulls, tissue.state->position, slipped);
   for (const surgery::SlippedClip& clip : std::span(slipped).first(count)) {
-    acts_.Report(OperationError::kClipSlipped, clip.position, -1);
-    Emit({EventKind::kClipSlipped, -1, static_cast<std::int32_t>(organs_.size() + clip.place.tube),
-          vessels_->RestPoint(clip.place)});
+    AddOfTube(FactKind::kClipSlipped, -1, clip.place, clip.position);
   }
 }
 
@@ -112,7 +110,7 @@ double Operation::StopJaw(int hand, double jaw_before, double jaw, bool is_holdi
 }
 
 void Operation::EmitRetrieved(int hand, int count) noexcept {
-  for (int i = 0; i < count; ++i) Emit({EventKind::kStoneRetrieved, hand, -1, {}});
+  for (int i = 0; i < count; ++i) Add(FactOf(FactKind::kStoneRetrieved, hand));
 }
 
 }  // namespace trocar::simulation
