@@ -18,8 +18,8 @@ using math::Sin;
 using math::Vec3;
 using scene::CalcLaparoscopePose;
 using scene::ClampSettings;
-using surgery::FactKind;
 using scene::Input;
+using surgery::FactKind;
 
 namespace {
 

@@ -17,7 +17,6 @@ using math::Vec3;
 using scene::Condition;
 using scene::ConditionKind;
 using scene::ErrorRule;
-using surgery::FactKind;
 using scene::Goal;
 using scene::GoalSnapshot;
 using scene::kAnyHand;
@@ -28,6 +27,7 @@ using scene::Task;
 using scene::TaskError;
 using scene::TaskPhase;
 using scene::TaskSnapshot;
+using surgery::FactKind;
 
 namespace {
 

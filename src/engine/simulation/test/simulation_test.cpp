@@ -24,11 +24,11 @@ using instrument::kLeft;
 using instrument::kRight;
 using math::Vec3;
 using scene::CalcScriptInput;
-using surgery::FactKind;
-using surgery::FactName;
 using scene::Input;
 using scene::Scene;
 using scene::SmallScene;
+using surgery::FactKind;
+using surgery::FactName;
 
 namespace {
 

@@ -20,8 +20,8 @@ using instrument::kLeft;
 using instrument::kRight;
 using math::Pose;
 using math::Vec3;
-using surgery::FactKind;
 using scene::Scene;
+using surgery::FactKind;
 using surgery::StonePlace;
 using surgery::StoneSnapshot;
 

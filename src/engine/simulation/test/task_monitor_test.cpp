@@ -10,10 +10,10 @@ using instrument::kLeft;
 using instrument::kRight;
 using scene::Condition;
 using scene::ConditionKind;
-using surgery::FactKind;
 using scene::RegionMark;
 using scene::Task;
 using scene::TaskPhase;
+using surgery::FactKind;
 
 namespace {
 

@@ -21,10 +21,10 @@ namespace {
 
 using cholecystectomy::OperationError;
 using math::Vec3;
-using surgery::FactKind;
 using scene::SurfaceInfo;
 using simulation::InstrumentSnapshot;
 using simulation::Snapshot;
+using surgery::FactKind;
 using training::AttemptTrace;
 
 /// Between samples of what ran out [s].

@@ -373,9 +373,26 @@ base::Result<AttemptTrace> ParseTraceJson(std::string_view text, const std::stri
   AttemptTrace trace;
   if (root.Text("format") != kFormat || root.Integer("version") != kVersion)
     root.Complain("format must be \"trocar-trace\" and version 1");
-  root.AllowOnly({"format", "version", "dt", "ticks", "tool_names", "organ_names", "hands", "camera",
-                  "events", "facts", "phases", "clips", "fluids", "goals", "stones_spilled", "stones_lost",
-                  "critical_view_time", "is_operation", "outcome", "ideal_path"});
+  root.AllowOnly({"format",
+                  "version",
+                  "dt",
+                  "ticks",
+                  "tool_names",
+                  "organ_names",
+                  "hands",
+                  "camera",
+                  "events",
+                  "facts",
+                  "phases",
+                  "clips",
+                  "fluids",
+                  "goals",
+                  "stones_spilled",
+                  "stones_lost",
+                  "critical_view_time",
+                  "is_operation",
+                  "outcome",
+                  "ideal_path"});
   trace.dt = root.Number("dt", {1e-6, 10.0});
   // two hours at 1 kHz
   const auto ticks = static_cast<std::size_t>(root.Integer("ticks", {0, 7.2e6}));

@@ -71,9 +71,9 @@ Triplet ActWatch::ActOf(const simulation::Snapshot& now, std::size_t hand) {
     if (fact.hand != static_cast<int>(hand)) continue;
     if (fact.kind == FactKind::kCurrentInto) current = &fact;
     const auto triplet = cholecystectomy::TripletOf(fact, targets_);
-    const bool is_moment = fact.kind != FactKind::kCurrentInto && triplet &&
-                           (triplet->verb == Verb::kCut || triplet->verb == Verb::kClip ||
-                            triplet->verb == Verb::kDissect);
+    const bool is_moment =
+        fact.kind != FactKind::kCurrentInto && triplet &&
+        (triplet->verb == Verb::kCut || triplet->verb == Verb::kClip || triplet->verb == Verb::kDissect);
     if (is_moment) moments_[hand] = {{act.instrument, triplet->verb, triplet->target}, now.time + kMoment};
   }
   const Moment& moment = moments_[hand];
@@ -89,9 +89,9 @@ Triplet ActWatch::ActOf(const simulation::Snapshot& now, std::size_t hand) {
     act = {act.instrument, Verb::kIrrigate, is_liver ? Target::kLiver : Target::kAbdominalWallCavity};
   } else if (tool.is_grasping && tool.organ >= 0) {
     act.target = targets_.OfSurface(tool.organ);
-    const bool is_packed =
-        act.target == Target::kGallbladder &&
-        std::any_of(facts.begin(), facts.end(), [](const auto& fact) { return fact.kind == FactKind::kBagOpen; });
+    const bool is_packed = act.target == Target::kGallbladder &&
+                           std::any_of(facts.begin(), facts.end(),
+                                       [](const auto& fact) { return fact.kind == FactKind::kBagOpen; });
     const bool is_pulled = math::Norm(tool.force) > kRetraction;
     act.verb = is_packed ? Verb::kPack : is_pulled ? Verb::kRetract : Verb::kGrasp;
   }

@@ -256,7 +256,7 @@ class RulesReader {
   static int ReadEvent(const JsonView& view) {
     const std::string name = view.Text("event");
     std::string known;
-    for (int i = 0; i <= static_cast<int>(scene::kLastEventKind); ++i) {
+    for (int i = 0; surgery::IsEvent(static_cast<surgery::FactKind>(i)); ++i) {
       const auto one = surgery::FactName(static_cast<surgery::FactKind>(i));
       if (one == name) return i;
       known += (i == 0 ? "" : ", ") + std::string(one);

@@ -14,9 +14,9 @@
 namespace trocar::files {
 
 using scene::CalcScriptInput;
-using surgery::FactKind;
 using scene::OrganMaterial;
 using scene::SmallScene;
+using surgery::FactKind;
 namespace {
 
 class MaterialFile : public SmallScene {

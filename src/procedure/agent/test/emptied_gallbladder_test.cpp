@@ -20,14 +20,14 @@ using instrument::kLeft;
 using instrument::kRight;
 using math::Vec3;
 using scene::CalcScriptInput;
-using surgery::FactKind;
-using surgery::FactName;
 using scene::Input;
 using scene::Scene;
 using scene::SurfaceInfo;
 using simulation::OrganSnapshot;
 using simulation::Simulation;
 using simulation::Snapshot;
+using surgery::FactKind;
+using surgery::FactName;
 
 namespace {
 

@@ -36,7 +36,6 @@ using math::Vec3;
 using scene::CalcScriptInput;
 using scene::ConnectiveTissue;
 using scene::Event;
-using surgery::FactKind;
 using scene::Fibre;
 using scene::FibreEnd;
 using scene::Input;
@@ -46,6 +45,7 @@ using simulation::OperationResult;
 using simulation::OperationScene;
 using simulation::Simulation;
 using simulation::Snapshot;
+using surgery::FactKind;
 
 namespace {
 

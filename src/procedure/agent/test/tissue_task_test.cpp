@@ -26,7 +26,6 @@ using scene::CalcScriptInput;
 using scene::Condition;
 using scene::ConditionKind;
 using scene::Event;
-using surgery::FactKind;
 using scene::Input;
 using scene::ModelBand;
 using scene::RegionMark;
@@ -37,6 +36,7 @@ using simulation::OperationSnapshot;
 using simulation::Simulation;
 using simulation::TaskMonitor;
 using surgery::ClipSnapshot;
+using surgery::FactKind;
 
 namespace {
 

@@ -9,7 +9,8 @@ namespace {
 using instrument::ToolKind;
 using surgery::FactKind;
 
-const TargetTable kTargets{{Target::kLiver, Target::kGallbladder, Target::kCysticDuct}, {Target::kCysticPlate}};
+const TargetTable kTargets{{Target::kLiver, Target::kGallbladder, Target::kCysticDuct},
+                           {Target::kCysticPlate}};
 
 surgery::Fact MakeFact(FactKind kind, ToolKind tool, std::int32_t surface, std::int32_t strand = -1) {
   surgery::Fact fact;
@@ -34,10 +35,10 @@ TEST(TripletOf, NamesInstrumentVerbAndTarget) {
   EXPECT_EQ(name(MakeFact(FactKind::kCurrentInto, ToolKind::kDissector, 0)), "bipolar,coagulate,liver");
   EXPECT_EQ(name(MakeFact(FactKind::kClipClosed, ToolKind::kClipApplier, 2)), "clipper,clip,cystic_duct");
   EXPECT_EQ(name(MakeFact(FactKind::kRinse, ToolKind::kSuctionIrrigator, -1)), "irrigator,irrigate,fluid");
-  EXPECT_EQ(name(MakeFact(FactKind::kAspirate, ToolKind::kSuctionIrrigator, -1)),
-            "irrigator,aspirate,fluid");
+  EXPECT_EQ(name(MakeFact(FactKind::kAspirate, ToolKind::kSuctionIrrigator, -1)), "irrigator,aspirate,fluid");
   EXPECT_EQ(name(MakeFact(FactKind::kBagOpen, ToolKind::kBag, -1)), "specimen_bag,pack,gallbladder");
-  for (const FactKind kind : {FactKind::kGrasp, FactKind::kClipLost, FactKind::kCurrentOn, FactKind::kTubeBurnt})
+  for (const FactKind kind :
+       {FactKind::kGrasp, FactKind::kClipLost, FactKind::kCurrentOn, FactKind::kTubeBurnt})
     EXPECT_EQ(name(MakeFact(kind, ToolKind::kHook, 1)), "") << surgery::FactName(kind);
 }
 

@@ -237,6 +237,8 @@ std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) 
     case surgery::FactKind::kVerdict:
       return host::Translate(
           cholecystectomy::ExplanationOf(static_cast<cholecystectomy::OperationError>(event.error)));
+    default:
+      break;  // what goes on tick by tick is no event
   }
   return "";
 }

@@ -279,8 +279,8 @@ void Operation::Assist(const HandsNow& hands, const TissueNow& tissue, OperatedT
   if (!assistant_) return;
   const scene::AssistantCommand command =
       retrieval_.is_in_bag ? scene::AssistantCommand::kRelease : hands.input->assistant;
-  (void)assistant_->Step(command, tissue.state->position[anatomy_.assistant_node], hands.seconds, tissue.organs,
-                         *tissue.model, {}, operated.state);
+  (void)assistant_->Step(command, tissue.state->position[anatomy_.assistant_node], hands.seconds,
+                         tissue.organs, *tissue.model, {}, operated.state);
 }
 
 bool Operation::EndCuts() noexcept {

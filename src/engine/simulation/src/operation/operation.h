@@ -112,7 +112,7 @@ class Operation {
   /// Observation of this tick so far. It refers to the state of the tick, which has to outlive it.
   /// \param camera  through which the trainee looks
   surgery::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
-                                                const instrument::Camera& camera) const noexcept;
+                                        const instrument::Camera& camera) const noexcept;
   /// A judge who knows this operation's anatomy.
   cholecystectomy::OperationJudge MakeJudge() const;
 

@@ -11,8 +11,8 @@ namespace trocar::simulation {
 
 using math::Pose;
 using math::Vec3;
-using surgery::FactKind;
 using scene::HandControls;
+using surgery::FactKind;
 
 namespace {
 
@@ -32,9 +32,9 @@ geometry::BladeEdge JawEdge(const instrument::Tool& tool, const Pose& X_world_to
 // most of each in a tick
 constexpr std::size_t kMostStrandsCut = 64, kMostStrandsSpread = 16, kMostHeated = 96, kMostParted = 16;
 // a hand heats and spreads, or heats and cuts; the rest is for organs, stones, clips and what jaws hold
-static_assert(surgery::FactList::kCapacity >=
-              instrument::kHandCount * (kMostHeated + 2 * kMostStrandsSpread + surgery::CuttableTubes::kMostCuts) +
-                  kMostParted + 32);
+static_assert(surgery::FactList::kCapacity >= instrument::kHandCount * (kMostHeated + 2 * kMostStrandsSpread +
+                                                                        surgery::CuttableTubes::kMostCuts) +
+                                                  kMostParted + 32);
 
 }  // namespace
 

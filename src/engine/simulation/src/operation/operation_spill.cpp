@@ -20,7 +20,7 @@ constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m
 void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   tissue::OrganVolume* const gallbladder =
       anatomy_.gallbladder >= 0 ? &operated.conserved.organs[static_cast<std::size_t>(anatomy_.gallbladder)]
-                              : nullptr;
+                                : nullptr;
   if (gallbladder != nullptr) {
     KeepLeaked(*gallbladder);
     const double now = gallbladder->leaked - wall_.leaked_seen;

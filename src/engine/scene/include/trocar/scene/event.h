@@ -12,7 +12,7 @@ namespace trocar::scene {
 
 /// A fact, or a verdict, as the state remembers it.
 struct Event {
-  surgery::FactKind kind;    ///< IsEvent, or kVerdict
+  surgery::FactKind kind;  ///< IsEvent, or kVerdict
   std::uint64_t tick;
   std::int32_t hand;         ///< Hand, or -1
   std::int32_t organ;        ///< index into Simulation::Surfaces(), or -1

@@ -100,8 +100,8 @@ struct Snapshot {
   double tick_seconds = 0;                          ///< sum of the stages [s]
   std::vector<surgery::Fact> facts;                 ///< of the last tick: the first fact_count count
   std::size_t fact_count = 0;
-  std::uint64_t event_count = 0;                    ///< since the start; the newest are in `events`
-  std::array<scene::Event, kEventRing> events{};    ///< ring: event n at n % kEventRing
+  std::uint64_t event_count = 0;                  ///< since the start; the newest are in `events`
+  std::array<scene::Event, kEventRing> events{};  ///< ring: event n at n % kEventRing
 };
 
 }  // namespace trocar::simulation

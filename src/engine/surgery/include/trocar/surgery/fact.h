@@ -22,22 +22,22 @@ enum class FactKind : std::int32_t {
   kGrasp,
   kRelease,
   kSlip,
-  kGraspMissed,    ///< jaws closed around nothing; no amount
-  kStateRestored,  ///< a bad tick: tissue was taken back to the last good one
-  kOrganFrozen,    ///< after too many of them
-  kTear,           ///< a strand or a wall gave way to the load
-  kPinchDamage,    ///< jaws pinched a bite harder than it bears; amount: the pinch [N]
-  kToolsTouch,     ///< the instruments met
+  kGraspMissed,      ///< jaws closed around nothing; no amount
+  kStateRestored,    ///< a bad tick: tissue was taken back to the last good one
+  kOrganFrozen,      ///< after too many of them
+  kTear,             ///< a strand or a wall gave way to the load
+  kPinchDamage,      ///< jaws pinched a bite harder than it bears; amount: the pinch [N]
+  kToolsTouch,       ///< the instruments met
   kExchangeRefused,  ///< another tool was asked for while this one holds tissue
   kClipClosed,       ///< a clip was closed around a duct or vessel, or a part of it
   kTubeCut,          ///< a duct or vessel was cut through; amount: cuts through it so far
   kNoClipsLeft,      ///< a clip applier was closed that is empty
-  kUsedOutside,  ///< a pedal was pressed, or blades or clips closed, while the tool is out of its trocar
-  kClipSlipped,  ///< a clip slipped off the end of a duct or vessel
-  kStoneSpilled,    ///< a stone left the gallbladder through a hole
-  kStoneTaken,      ///< a spilled stone was grasped
-  kStoneRetrieved,  ///< it was sucked up, put into the bag, or taken out
-  kVerdict,         ///< in the ring of events alone: a judge's, no fact
+  kUsedOutside,      ///< a pedal was pressed, or blades or clips closed, while the tool is out of its trocar
+  kClipSlipped,      ///< a clip slipped off the end of a duct or vessel
+  kStoneSpilled,     ///< a stone left the gallbladder through a hole
+  kStoneTaken,       ///< a spilled stone was grasped
+  kStoneRetrieved,   ///< it was sucked up, put into the bag, or taken out
+  kVerdict,          ///< in the ring of events alone: a judge's, no fact
   // at the tissue, tick by tick
   kStrandCut,     ///< by a blade
   kStrandSpread,  ///< parted by a jaw that opened
@@ -68,7 +68,7 @@ std::string_view FactName(FactKind kind) noexcept;
 
 struct Fact {
   FactKind kind = FactKind::kGrasp;
-  std::int8_t hand = -1;       ///< instrument::Hand, or -1
+  std::int8_t hand = -1;        ///< instrument::Hand, or -1
   bool is_coagulating = false;  ///< of current
   bool is_partial = false;      ///< of a clip: does not reach around the whole tube
   bool is_crossed = false;      ///< of a clip: lies across another
@@ -76,8 +76,8 @@ struct Fact {
   std::int32_t surface = -1;  ///< organ, duct or vessel: index into Simulation::Surfaces(), or -1
   std::int32_t strand = -1;   ///< index into Simulation::Strands(), or -1
   std::int32_t object = -1;   ///< Scene::objects, or -1
-  double along = 0;    ///< place on a duct or vessel, along its middle line at rest from its first node [m]
-  double amount = 0;   ///< see FactKind; 0 where nothing is said
+  double along = 0;     ///< place on a duct or vessel, along its middle line at rest from its first node [m]
+  double amount = 0;    ///< see FactKind; 0 where nothing is said
   math::Vec3 position;  ///< world frame [m]: of the tool's tip, or of the tissue that heat or load parted
   math::Vec3 p_rest;    ///< of a clip or a cut: where on its vessel at rest, world frame [m]
 };

@@ -27,7 +27,7 @@ struct HandObservation {
 
 /// How far the organ that is taken out is on its way.
 struct RetrievalObservation {
-  bool is_free = false;     ///< nothing holds it any more
+  bool is_free = false;  ///< nothing holds it any more
   bool is_in_bag = false;
   bool is_leaving = false;  ///< the bag is drawn into a port
 };

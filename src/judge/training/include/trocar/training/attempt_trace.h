@@ -122,7 +122,7 @@ struct AttemptTrace {
   std::array<std::vector<ToolSample>, instrument::kHandCount> hands;  ///< left, right: (ticks) each
   std::vector<CameraSample> camera;                                   ///< (ticks)
   std::vector<AttemptEvent> events;                                   ///< in order of time
-  std::vector<FactSpan> facts;  ///< what hands did to tissue, in order of their beginnings
+  std::vector<FactSpan> facts;      ///< what hands did to tissue, in order of their beginnings
   std::vector<PhaseSpan> phases;    ///< in order, without a gap; empty where the scene is no operation
   std::vector<ClipRecord> clips;    ///< in the order in which they were closed
   std::vector<FluidSample> fluids;  ///< about once a second, the first and the last tick among them

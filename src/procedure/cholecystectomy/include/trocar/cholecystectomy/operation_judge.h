@@ -35,7 +35,7 @@ struct JudgementSettings {
 /// The patient as a judge has to know it; constant.
 struct JudgedAnatomy {
   TargetTable targets;
-  BiliaryAnatomy biliary;                 ///< of the ducts and arteries, which follow the organs among the surfaces
+  BiliaryAnatomy biliary;  ///< of the ducts and arteries, which follow the organs among the surfaces
   std::vector<std::uint32_t> main_ducts;  ///< nodes of ducts that must stay
   std::size_t organ_count = 0;
   bool has_critical_view = false;  ///< there is one to be had before anything is clipped
