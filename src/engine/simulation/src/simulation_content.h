@@ -97,8 +97,7 @@ struct Simulation::Content {
     return world.operation != nullptr ? world.operation->Tool(hand) : GetScene().instruments[hand].tool;
   }
   ToolsNow GetTools() const noexcept;
-  TissueNow GetTissue() const noexcept;
-  OperatedTissue GetOperated() noexcept { return {world.tissue, world.conserved, world.grasps}; }
+  OperatedTissue GetTissue() noexcept;
   instrument::Camera GetCamera() const noexcept;
 
   // --- the stages of a tick, in their order (docs/step.md)

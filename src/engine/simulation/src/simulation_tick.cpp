@@ -103,12 +103,17 @@ ToolsNow Simulation::Content::GetTools() const noexcept {
   return now;
 }
 
-TissueNow Simulation::Content::GetTissue() const noexcept {
-  const WorldState& w = world;
-  return {&w.topology.Model(), &w.topology.Definition(),
-          &w.tissue,           conservation.get(),
-          &w.conserved,        w.touch.Organs(),
-          &w.touch.Tubes(),    std::span(tick.torn_springs).first(tick.torn_spring_count)};
+OperatedTissue Simulation::Content::GetTissue() noexcept {
+  WorldState& w = world;
+  return {w.topology.Model(),
+          w.topology.Definition(),
+          w.tissue,
+          *conservation,
+          w.conserved,
+          w.touch.Organs(),
+          w.touch.Tubes(),
+          std::span(tick.torn_springs).first(tick.torn_spring_count),
+          w.grasps};
 }
 
 void Simulation::Content::FindContacts() noexcept {
@@ -131,12 +136,11 @@ void Simulation::Content::UseTools(const Input& input) noexcept {
   hands.forces = w.forces;
   hands.gravity = tick.load.gravity + kImagingGravity;
   hands.changes = tick.changes;
-  hands.grasps = &w.grasps;
   hands.camera = GetCamera();
   hands.time = static_cast<double>(w.tick) * GetScene().tick_seconds;
   hands.seconds = GetScene().tick_seconds;
-  OperatedTissue operated = GetOperated();
-  w.operation->Act(hands, GetTissue(), operated);
+  OperatedTissue tissue = GetTissue();
+  w.operation->Act(hands, tissue);
 }
 
 void Simulation::Content::Grasp() noexcept {
@@ -147,8 +151,7 @@ void Simulation::Content::Grasp() noexcept {
     tick.changes[hand] = surgery::GraspChange::kNone;
     tick.changed_organs[hand] = held;
     const instrument::Tool& tool = ToolOf(hand);
-    const bool can_grasp =
-        tool.kind == instrument::ToolKind::kGrasper || tool.kind == instrument::ToolKind::kDissector;
+    const bool can_grasp = instrument::AbilitiesOf(tool.kind).takes;
     const bool has_stone = w.operation != nullptr && w.operation->HoldsStone(hand);
     if ((!can_grasp || has_stone) && !grasp.IsHolding()) continue;
     tick.changes[hand] = surgery::UpdateGrasp(tool, w.touch.Proxy(hand), w.touch.Device(hand),
@@ -175,8 +178,8 @@ void Simulation::Content::MarkPressedNodes() noexcept {
 
 void Simulation::Content::Heat() noexcept {
   if (world.operation == nullptr) return;
-  OperatedTissue operated = GetOperated();
-  world.operation->Heat(tick.hands, GetTissue(), operated);
+  OperatedTissue tissue = GetTissue();
+  world.operation->Heat(tick.hands, tissue);
 }
 
 /// A judge sees what tools and heat did while the tissue is as it was then.
@@ -187,8 +190,8 @@ void Simulation::Content::WitnessTools() noexcept {
 
 void Simulation::Content::Assist() noexcept {
   if (world.operation == nullptr) return;
-  OperatedTissue operated = GetOperated();
-  world.operation->Assist(tick.hands, GetTissue(), operated);
+  OperatedTissue tissue = GetTissue();
+  world.operation->Assist(tick.hands, tissue);
 }
 
 /// Takes a cut into the system in the tick that made it. Allocates.
@@ -269,8 +272,8 @@ void Simulation::Content::StepRigidBodies() noexcept {
 void Simulation::Content::Flow() noexcept {
   if (world.operation == nullptr) return;
   tick.hands.changes = tick.changes;  // a grasp may have slipped in the solve
-  OperatedTissue operated = GetOperated();
-  world.operation->Flow(tick.hands, GetTissue(), operated);
+  OperatedTissue tissue = GetTissue();
+  world.operation->Flow(tick.hands, tissue);
 }
 
 void Simulation::Content::MoveLoose() noexcept {

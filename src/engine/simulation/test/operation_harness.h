@@ -77,15 +77,14 @@ class OperationHarness : public testing::Test {
     hands_ = {};
     hands_.input = &input_;
     hands_.joints = input_.hands;
-    hands_.grasps = &grasps_;
     hands_.gravity = kGravity;
     hands_.seconds = kTick;
     // far from everything
     for (math::Pose& X : hands_.X_proxy) X.translation = {0, 0, 0.3};
     hands_.X_device = hands_.X_proxy;
   }
-  TissueNow Now() {
-    return {&model_, &Tissue().definition, &state_, &*conservation_, &conserved_, organs_, &tubes_, torn_};
+  OperatedTissue Now() {
+    return {model_, Tissue().definition, state_, *conservation_, conserved_, organs_, tubes_, torn_, grasps_};
   }
   void BeginTick() {
     facts_.Clear();
@@ -94,18 +93,18 @@ class OperationHarness : public testing::Test {
   }
   void Act() {
     if (is_judged_) BeginTick();
-    OperatedTissue operated{state_, conserved_, grasps_};
-    operation_->Act(hands_, Now(), operated);
-    operation_->Heat(hands_, Now(), operated);
+    OperatedTissue tissue = Now();
+    operation_->Act(hands_, tissue);
+    operation_->Heat(hands_, tissue);
     judge_->SeeTools(operation_->Observe(hands_, Now(), hands_.camera));
-    operation_->Assist(hands_, Now(), operated);
+    operation_->Assist(hands_, tissue);
     (void)operation_->EndCuts();
   }
   /// What follows the solve; the facts stay until the next tick.
   void Judge() {
     if (is_judged_) BeginTick();
-    OperatedTissue operated{state_, conserved_, grasps_};
-    operation_->Flow(hands_, Now(), operated);
+    OperatedTissue tissue = Now();
+    operation_->Flow(hands_, tissue);
     operation_->MoveLoose(hands_, Now());
     judge_->Update(operation_->Observe(hands_, Now(), hands_.camera));
     hands_.time += kTick;

@@ -38,11 +38,6 @@ bool IsMainBileDuct(roles::TubeRole role) {
          role == TubeRole::kAberrantRightDuct;
 }
 
-/// A tool that carries current.
-bool IsElectrode(instrument::ToolKind kind) {
-  return kind == instrument::ToolKind::kHook || kind == instrument::ToolKind::kDissector;
-}
-
 /// From a point to the wall of a tube, as it lies now; 0 inside.
 double DistanceToTube(const Vec3& p, const SurfaceInfo& tube, const std::vector<Vec3>& positions) {
   double least = std::numeric_limits<double>::infinity();
@@ -136,7 +131,8 @@ TraceBuilder::TraceBuilder(const simulation::Simulation& simulation) : content_(
       auto place = std::find(names.begin(), names.end(), tool.name);
       if (place == names.end()) place = names.insert(names.end(), tool.name);
       c.tool_index[hand].push_back(static_cast<std::int16_t>(place - names.begin()));
-      c.is_electrode[hand].push_back(IsElectrode(tool.kind));
+      c.is_electrode[hand].push_back(instrument::AbilitiesOf(tool.kind).electrode !=
+                                     instrument::Electrode::kNone);
     }
   }
   c.task = scene.task;

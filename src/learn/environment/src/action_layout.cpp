@@ -38,10 +38,11 @@ std::string InFull(double value) {
   return {text.data(), end};
 }
 
-bool HasKind(const scene::InstrumentSetup& setup, std::initializer_list<instrument::ToolKind> kinds) {
-  return std::any_of(setup.tray.begin(), setup.tray.end(), [&](const instrument::Tool& tool) {
-    return std::find(kinds.begin(), kinds.end(), tool.kind) != kinds.end();
-  });
+/// \param can  of instrument::ToolAbilities
+template <typename F>
+bool HasAny(const scene::InstrumentSetup& setup, F&& can) {
+  return std::any_of(setup.tray.begin(), setup.tray.end(),
+                     [&](const instrument::Tool& tool) { return can(instrument::AbilitiesOf(tool.kind)); });
 }
 
 /// Place in a row of `count` equal parts of -1 to 1.
@@ -61,14 +62,14 @@ ActionLayout::ActionLayout(const scene::Scene& scene, const EnvironmentSettings&
     : kind_(settings.actions),
       moves_camera_(settings.moves_camera),
       has_assistant_(scene.operation && scene.operation->assistant) {
-  using instrument::ToolKind;
   for (int hand = 0; hand < kHandCount; ++hand) {
     const scene::InstrumentSetup& setup = scene.instruments[hand];
-    if (HasKind(setup, {ToolKind::kHook, ToolKind::kDissector}) && (scene.operation || scene.model)) {
+    if (HasAny(setup, [](const auto& can) { return can.electrode != instrument::Electrode::kNone; }) &&
+        (scene.operation || scene.model)) {
       pedals_[hand].push_back(Pedal::kCut);
       pedals_[hand].push_back(Pedal::kCoagulate);
     }
-    if (HasKind(setup, {ToolKind::kSuctionIrrigator})) {
+    if (HasAny(setup, [](const auto& can) { return can.sucks; })) {
       pedals_[hand].push_back(Pedal::kRinse);
       pedals_[hand].push_back(Pedal::kAspirate);
     }

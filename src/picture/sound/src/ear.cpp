@@ -9,8 +9,7 @@ namespace {
 
 bool HoldsElectrode(const scene::InstrumentSetup& setup, std::size_t place) noexcept {
   if (place >= setup.tray.size()) return false;
-  const instrument::ToolKind kind = setup.tray[place].kind;
-  return kind == instrument::ToolKind::kHook || kind == instrument::ToolKind::kDissector;
+  return instrument::AbilitiesOf(setup.tray[place].kind).electrode != instrument::Electrode::kNone;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,32 @@ enum class ToolKind : std::uint8_t {
   kBag                ///< retrieval bag; no jaws, its mouth is open
 };
 
+/// Bare metal that current leaves.
+enum class Electrode : std::uint8_t {
+  kNone,
+  kToe,  ///< of the hook
+  kJaws
+};
+/// Edge that parts tissue.
+enum class Blade : std::uint8_t {
+  kNone,
+  kJaws,  ///< scissors, when they close
+  kHeel   ///< of the hook, under current
+};
+
+/// What a kind of tool can do besides pushing. Each ability is one mechanism of simulation/operation/tools.
+struct ToolAbilities {
+  bool takes = false;    ///< jaws take tissue and things, and hold them
+  bool spreads = false;  ///< jaws part strands as they open
+  bool bites = false;    ///< jaws close around a whole tube, and do something when they have closed
+  bool holds_clips = false;
+  bool sucks = false;  ///< and rinses
+  bool is_bag = false;
+  Electrode electrode = Electrode::kNone;
+  Blade blade = Blade::kNone;
+};
+const ToolAbilities& AbilitiesOf(ToolKind kind) noexcept;
+
 /// Sizes of one tool. Source of the defaults: domain facts, section 1.3 (5 mm tools, 33 cm shafts).
 struct Tool {
   std::string name = "grasper";
@@ -38,8 +65,9 @@ struct Tool {
   int clips = 0;                        ///< that a clip applier holds
 };
 
-/// \param name  "grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator" or "bag"
-/// \return nullptr for an unknown one
+/// One of each kind, in the order of ToolKind: "grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag".
+std::span<const Tool> AllTools() noexcept;
+/// \return nullptr for an unknown name
 const Tool* FindTool(std::string_view name) noexcept;
 
 /// Toe of the hook: across the shaft at the tip, as long as in the domain facts, section 1.3 [m].
