@@ -23,10 +23,12 @@ std::vector<Row> MakeRows() {
   grasper.can.takes = true;
   Row dissector;
   dissector.can.takes = dissector.can.spreads = true, dissector.can.electrode = Electrode::kJaws;
+  dissector.can.pedals.cut = dissector.can.pedals.coagulate = true;
   dissector.tool.name = "maryland", dissector.tool.kind = ToolKind::kDissector;
   dissector.tool.jaw_length = 0.019, dissector.tool.jaw_width = 0.003, dissector.tool.jaw_thickness = 0.0015;
   Row hook;
   hook.can.electrode = Electrode::kToe, hook.can.blade = Blade::kHeel;
+  hook.can.pedals.cut = hook.can.pedals.coagulate = true;
   hook.tool.name = "hook", hook.tool.kind = ToolKind::kHook;
   hook.tool.jaw_length = 0.005, hook.tool.jaw_width = hook.tool.jaw_thickness = 0.0012, hook.tool.max_jaw = 0;
   Row scissors;
@@ -39,7 +41,7 @@ std::vector<Row> MakeRows() {
   clips.tool.shaft_radius = 0.005, clips.tool.jaw_length = 0.012, clips.tool.jaw_width = 0.002;
   clips.tool.max_jaw = 0.7, clips.tool.clips = 15;  // 6 mm between the tips
   Row suction;
-  suction.can.sucks = true;
+  suction.can.sucks = suction.can.pedals.rinse = suction.can.pedals.aspirate = true;
   suction.tool.name = "suction_irrigator", suction.tool.kind = ToolKind::kSuctionIrrigator;
   suction.tool.jaw_length = 0.010, suction.tool.jaw_width = 0.005, suction.tool.jaw_thickness = 0.0025;
   suction.tool.max_jaw = 0;

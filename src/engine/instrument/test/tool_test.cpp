@@ -33,6 +33,11 @@ TEST(AbilitiesOf, FitTheShapesOfTheTools) {
     EXPECT_EQ(needs_jaws, tool.max_jaw > 0.0) << tool.name;
     EXPECT_EQ(can.holds_clips, tool.clips > 0) << tool.name;
   }
+  for (const Tool& tool : AllTools()) {
+    const ToolAbilities& can = AbilitiesOf(tool.kind);
+    EXPECT_EQ(can.pedals.coagulate, can.electrode != Electrode::kNone) << tool.name;
+    EXPECT_EQ(can.pedals.rinse, can.sucks) << tool.name;
+  }
   const ToolAbilities& hook = AbilitiesOf(ToolKind::kHook);
   EXPECT_TRUE(hook.electrode == Electrode::kToe && hook.blade == Blade::kHeel);
   EXPECT_TRUE(AbilitiesOf(ToolKind::kDissector).spreads && !AbilitiesOf(ToolKind::kGrasper).spreads);

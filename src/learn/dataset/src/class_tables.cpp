@@ -192,16 +192,8 @@ int ToEndoscapes(LabelClass label) noexcept {
       return 4;
     case LabelClass::kGallbladder:
       return 5;
-    case LabelClass::kGrasper:
-    case LabelClass::kDissector:
-    case LabelClass::kHook:
-    case LabelClass::kScissors:
-    case LabelClass::kClipApplier:
-    case LabelClass::kSuctionIrrigator:
-    case LabelClass::kBag:
-      return 6;
     default:
-      return 0;
+      return view::ToolOf(label) ? 6 : 0;
   }
 }
 

@@ -38,13 +38,6 @@ std::string InFull(double value) {
   return {text.data(), end};
 }
 
-/// \param can  of instrument::ToolAbilities
-template <typename F>
-bool HasAny(const scene::InstrumentSetup& setup, F&& can) {
-  return std::any_of(setup.tray.begin(), setup.tray.end(),
-                     [&](const instrument::Tool& tool) { return can(instrument::AbilitiesOf(tool.kind)); });
-}
-
 /// Place in a row of `count` equal parts of -1 to 1.
 std::size_t PartOf(double value, std::size_t count) {
   const double part = 0.5 * (value + 1) * static_cast<double>(count);
@@ -64,15 +57,16 @@ ActionLayout::ActionLayout(const scene::Scene& scene, const EnvironmentSettings&
       has_assistant_(scene.operation && scene.operation->assistant) {
   for (int hand = 0; hand < kHandCount; ++hand) {
     const scene::InstrumentSetup& setup = scene.instruments[hand];
-    if (HasAny(setup, [](const auto& can) { return can.electrode != instrument::Electrode::kNone; }) &&
-        (scene.operation || scene.model)) {
-      pedals_[hand].push_back(Pedal::kCut);
-      pedals_[hand].push_back(Pedal::kCoagulate);
-    }
-    if (HasAny(setup, [](const auto& can) { return can.sucks; })) {
-      pedals_[hand].push_back(Pedal::kRinse);
-      pedals_[hand].push_back(Pedal::kAspirate);
-    }
+    const bool has_tissue = scene.operation || scene.model;
+    const auto obeys = [&](bool instrument::Pedals::*pedal) {
+      return std::any_of(setup.tray.begin(), setup.tray.end(), [&](const instrument::Tool& tool) {
+        return instrument::AbilitiesOf(tool.kind).pedals.*pedal;
+      });
+    };
+    if (obeys(&instrument::Pedals::cut) && has_tissue) pedals_[hand].push_back(Pedal::kCut);
+    if (obeys(&instrument::Pedals::coagulate) && has_tissue) pedals_[hand].push_back(Pedal::kCoagulate);
+    if (obeys(&instrument::Pedals::rinse)) pedals_[hand].push_back(Pedal::kRinse);
+    if (obeys(&instrument::Pedals::aspirate)) pedals_[hand].push_back(Pedal::kAspirate);
     tools_[hand] = setup.tray.size();
     if (tools_[hand] > 1) pedals_[hand].push_back(Pedal::kNextTool);
 

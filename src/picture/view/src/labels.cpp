@@ -88,6 +88,13 @@ LabelClass FindLabelClass(instrument::ToolKind tool) noexcept {
   return LabelClass::kNothing;
 }
 
+std::optional<instrument::ToolKind> ToolOf(LabelClass label) noexcept {
+  for (const instrument::Tool& tool : instrument::AllTools()) {
+    if (FindLabelClass(tool.kind) == label) return tool.kind;
+  }
+  return std::nullopt;
+}
+
 LabelClass FindLabelClass(Material material) noexcept {
   switch (material) {
     case Material::kPeritoneum:

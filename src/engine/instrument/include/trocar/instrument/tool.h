@@ -39,6 +39,11 @@ enum class Blade : std::uint8_t {
   kHeel   ///< of the hook, under current
 };
 
+/// Pedals and buttons that a tool obeys.
+struct Pedals {
+  bool cut = false, coagulate = false, rinse = false, aspirate = false;
+};
+
 /// What a kind of tool can do besides pushing. Each ability is one mechanism of simulation/operation/tools.
 struct ToolAbilities {
   bool takes = false;    ///< jaws take tissue and things, and hold them
@@ -49,6 +54,7 @@ struct ToolAbilities {
   bool is_bag = false;
   Electrode electrode = Electrode::kNone;
   Blade blade = Blade::kNone;
+  Pedals pedals;
 };
 const ToolAbilities& AbilitiesOf(ToolKind kind) noexcept;
 
