@@ -50,7 +50,13 @@ std::vector<Row> MakeRows() {
   bag.tool.name = "bag", bag.tool.kind = ToolKind::kBag;
   bag.tool.shaft_radius = 0.005, bag.tool.jaw_length = 0.020, bag.tool.jaw_width = 0.008,
   bag.tool.max_jaw = 0;
-  return {grasper, dissector, hook, scissors, clips, suction, bag};
+  // 45 mm cartridges, of which one is fired before the tool has to come out
+  Row stapler;
+  stapler.can.bites = stapler.can.staples = stapler.can.pedals.cut = true;
+  stapler.tool.name = "linear_stapler", stapler.tool.kind = ToolKind::kLinearStapler;
+  stapler.tool.shaft_radius = 0.006, stapler.tool.jaw_length = 0.045, stapler.tool.jaw_width = 0.008;
+  stapler.tool.jaw_thickness = 0.004, stapler.tool.max_jaw = 0.5, stapler.tool.clips = 1;
+  return {grasper, dissector, hook, scissors, clips, suction, bag, stapler};
 }
 
 const std::vector<Row>& Rows() {

@@ -16,10 +16,10 @@ using math::Vec3;
 namespace {
 
 constexpr const char* kNames[] = {"grasper",      "maryland",          "hook", "scissors",
-                                  "clip_applier", "suction_irrigator", "bag"};
+                                  "clip_applier", "suction_irrigator", "bag",  "linear_stapler"};
 
 TEST(AllTools, StandInTheOrderOfTheirKinds) {
-  ASSERT_EQ(AllTools().size(), static_cast<std::size_t>(ToolKind::kBag) + 1);
+  ASSERT_EQ(AllTools().size(), static_cast<std::size_t>(ToolKind::kLinearStapler) + 1);
   for (std::size_t i = 0; i < AllTools().size(); ++i)
     EXPECT_EQ(static_cast<std::size_t>(AllTools()[i].kind), i) << AllTools()[i].name;
 }
@@ -31,7 +31,7 @@ TEST(AbilitiesOf, FitTheShapesOfTheTools) {
     const bool needs_jaws = can.takes || can.spreads || can.bites || can.electrode == Electrode::kJaws ||
                             can.blade == Blade::kJaws;
     EXPECT_EQ(needs_jaws, tool.max_jaw > 0.0) << tool.name;
-    EXPECT_EQ(can.holds_clips, tool.clips > 0) << tool.name;
+    EXPECT_EQ(can.holds_clips || can.staples, tool.clips > 0) << tool.name;
   }
   for (const Tool& tool : AllTools()) {
     const ToolAbilities& can = AbilitiesOf(tool.kind);

@@ -64,10 +64,10 @@ class OperationHarness : public testing::Test {
     return Tissue().surfaces[static_cast<std::size_t>(gallbladder_)];
   }
 
-  void MakeOperation() {
+  void MakeOperation(const scene::Scene& scene = *OperationScene()) {
     state_ = tissue::MakeRestState(model_);
     conserved_ = conservation_->MakeState(state_);
-    auto made = Operation::Make(*OperationScene(), SharedTissue());
+    auto made = Operation::Make(scene, SharedTissue());
     ASSERT_TRUE(made.ok()) << made.error().Text();
     operation_ = std::move(*made);
     judge_.emplace(operation_->MakeJudge());

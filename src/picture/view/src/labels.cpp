@@ -37,7 +37,8 @@ constexpr std::array<std::string_view, kLabelClassCount> kNames = {"nothing",
                                                                    "tissue_model",
                                                                    "object",
                                                                    "mark",
-                                                                   "trainer_box"};
+                                                                   "trainer_box",
+                                                                   "linear_stapler"};
 
 }  // namespace
 
@@ -84,6 +85,8 @@ LabelClass FindLabelClass(instrument::ToolKind tool) noexcept {
       return LabelClass::kSuctionIrrigator;
     case Kind::kBag:
       return LabelClass::kBag;
+    case Kind::kLinearStapler:
+      return LabelClass::kLinearStapler;
   }
   return LabelClass::kNothing;
 }

@@ -17,6 +17,7 @@ InstrumentKind InstrumentOf(ToolKind tool) noexcept {
     case ToolKind::kScissors:
       return InstrumentKind::kScissors;
     case ToolKind::kClipApplier:
+    case ToolKind::kLinearStapler:  // the data sets have none
       return InstrumentKind::kClipper;
     case ToolKind::kSuctionIrrigator:
       return InstrumentKind::kIrrigator;

@@ -49,6 +49,7 @@ void Operation::Act(const HandsNow& hands, OperatedTissue& tissue) noexcept {
     if (can.electrode != instrument::Electrode::kNone) UseElectrode(use, state.electrode);
     if (can.blade != instrument::Blade::kNone) UseBlade(use, state.blade);
     if (can.holds_clips) UseClips(use, state.clips);
+    if (can.staples) UseStapler(use, state.clips, state.blade.fronts);
     if (can.sucks) UseSuction(use, state.suction);
     if (can.is_bag) UseBag(use, assistant_ ? &assistant_->Held() : nullptr);
   }
@@ -68,7 +69,8 @@ void Operation::RefuseImpossible(ToolUse& use, HandState& state) noexcept {
   if (is_used && is_outside && !state.was_outside_emitted)
     use.facts.Add(use.MakeFact(FactKind::kUsedOutside));
   state.was_outside_emitted = is_outside && (is_used || state.was_outside_emitted);
-  if (has_bitten && !is_outside && can.holds_clips && state.clips.clips == 0 && !state.clips.has_clip_open)
+  if (has_bitten && !is_outside && (can.holds_clips || can.staples) && state.clips.clips == 0 &&
+      !state.clips.has_clip_open)
     use.facts.Add(use.MakeFact(FactKind::kNoClipsLeft));
 }
 

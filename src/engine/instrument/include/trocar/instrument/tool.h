@@ -23,7 +23,8 @@ enum class ToolKind : std::uint8_t {
   kScissors,
   kClipApplier,       ///< 10 mm; a clip closes with its jaws
   kSuctionIrrigator,  ///< no jaws
-  kBag                ///< retrieval bag; no jaws, its mouth is open
+  kBag,               ///< retrieval bag; no jaws, its mouth is open
+  kLinearStapler      ///< 12 mm; closes between two rows of staples on each side, and divides between them
 };
 
 /// Bare metal that current leaves.
@@ -50,6 +51,8 @@ struct ToolAbilities {
   bool spreads = false;  ///< jaws part strands as they open
   bool bites = false;    ///< jaws close around a whole tube, and do something when they have closed
   bool holds_clips = false;
+  bool staples =
+      false;  ///< closed jaws staple and divide at a press of the cut pedal; Tool::clips are its loads
   bool sucks = false;  ///< and rinses
   bool is_bag = false;
   Electrode electrode = Electrode::kNone;
@@ -68,10 +71,11 @@ struct Tool {
   double jaw_width = 0.0045;            ///< across the opening direction [m]
   double jaw_thickness = 0.0018;        ///< of each jaw [m]
   double max_jaw = 1.0471975511965976;  ///< whole opening, 60 deg [rad]; 0: the tool has no jaws
-  int clips = 0;                        ///< that a clip applier holds
+  int clips = 0;                        ///< that a clip applier holds; loads of a stapler
 };
 
-/// One of each kind, in the order of ToolKind: "grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag".
+/// One of each kind, in the order of ToolKind: "grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag",
+/// "linear_stapler".
 std::span<const Tool> AllTools() noexcept;
 /// \return nullptr for an unknown name
 const Tool* FindTool(std::string_view name) noexcept;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "operation/operated.h"
@@ -42,6 +43,12 @@ inline constexpr std::size_t kMostStrandsCut = 64, kMostStrandsSpread = 16, kMos
 /// Jaws that close a clip or cut: closed, and open again, as shares of their opening.
 inline constexpr double kBitten = 0.12, kOpenAgain = 0.6;
 
+/// Divides what a blade passes over: strands, ducts and vessels, organs.
+/// \param fronts    (organs) of the cuts that go on
+/// \param is_sealed  what it opens is closed at once: a hollow organ does not leak there
+void Divide(const surgery::BladeMove& move, ToolUse& use, std::span<geometry::CutFront> fronts,
+            bool cuts_strands, bool is_sealed) noexcept;
+
 /// Scissors, and the heel of the hook.
 struct BladeUse {
   surgery::BladeState blade;
@@ -68,6 +75,9 @@ struct ClipUse {
   int clips = 0;                                   ///< in stock
 };
 void UseClips(ToolUse& use, ClipUse& state) noexcept;
+/// \param state   its stock are the loads
+/// \param fronts  (organs) of no cut
+void UseStapler(ToolUse& use, ClipUse& state, std::span<geometry::CutFront> fronts) noexcept;
 
 /// Of this tick; decides nothing, so that no state has it.
 struct SuctionUse {

@@ -43,6 +43,7 @@ enum class LabelClass : std::uint8_t {
   kObject,       ///< of a training task
   kMark,         ///< what a training task points out
   kTrainerBox,
+  kLinearStapler,
   kCount
 };
 inline constexpr std::size_t kLabelClassCount = static_cast<std::size_t>(LabelClass::kCount);
