@@ -141,6 +141,7 @@ void Simulation::Content::VisitJudgement(base::StateArchive& archive) {
 }
 
 base::Status Simulation::Content::Restore(base::StateArchive& archive) {
+  tick.facts.Clear();
   VisitState(archive);
   if (!archive.ok()) return Refuse("the saved state does not fit: " + archive.Failure());
   if (!archive.IsAtEnd()) return Refuse("the saved state goes on after its last field");
