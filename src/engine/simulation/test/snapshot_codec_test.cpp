@@ -56,7 +56,7 @@ struct ChangeTo {
     } else if constexpr (std::is_floating_point_v<T>) {
       value = std::nextafter(value, std::numeric_limits<T>::max());  // the last bit is enough
     } else if constexpr (std::is_enum_v<T>) {
-      value = static_cast<T>(static_cast<std::underlying_type_t<T>>(value) + 1);
+      value = static_cast<T>(static_cast<std::underlying_type_t<T>>(value) + (attempt == 0 ? 1 : -1));
     } else {
       value = static_cast<T>(attempt == 0 ? value + 1 : value - 1);
     }
@@ -98,15 +98,16 @@ TEST(SnapshotCodec, CarriesAChangeOfAnyOneValue) {
   }
 }
 
-// Is every field visited? Between the values that are visited there is no room for another that is as large as its neighbour.
+// Another look at whether every field is visited: in memory there is no room between the values for a real number, a size or a
+// list that is not, only what alignment needs.
 TEST(SnapshotCodec, LeavesNoGapBetweenTheValuesThatItVisits) {
   struct Place {
     std::uintptr_t begin;
-    std::size_t size, alignment;
+    std::size_t size;
   };
   std::vector<Place> places, regions;
   const auto place_of = [](const auto& value) {
-    return Place{reinterpret_cast<std::uintptr_t>(&value), sizeof(value), alignof(decltype(value))};
+    return Place{reinterpret_cast<std::uintptr_t>(&value), sizeof(value)};
   };
   const Snapshot shape = MakeSampleLayout().shape;
   regions.push_back(place_of(shape));
@@ -114,20 +115,20 @@ TEST(SnapshotCodec, LeavesNoGapBetweenTheValuesThatItVisits) {
       shape, [&](const auto& value) { places.push_back(place_of(value)); },
       [&](const auto& list) {
         places.push_back(place_of(list));
-        regions.push_back({reinterpret_cast<std::uintptr_t>(list.data()), list.size() * sizeof(list.front()),
-                           alignof(decltype(list.front()))});
+        regions.push_back(
+            {reinterpret_cast<std::uintptr_t>(list.data()), list.size() * sizeof(list.front())});
       });
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
   std::size_t seen = 0;
-  for (const auto& [begin, size, alignment] : regions) {
+  for (const auto& [begin, size] : regions) {
     std::uintptr_t end = begin;
     for (const Place& place : places) {
       if (place.begin < begin || place.begin >= begin + size) continue;
-      ASSERT_LT(place.begin - end, place.alignment) << place.begin - begin;
+      ASSERT_LT(place.begin - end, sizeof(double)) << place.begin - begin;
       end = place.begin + place.size;
       ++seen;
     }
-    EXPECT_LT(begin + size - end, alignment);
+    EXPECT_LT(begin + size - end, sizeof(double));
   }
   EXPECT_EQ(seen, places.size());
 }

@@ -55,6 +55,10 @@ class Stream {
   std::size_t whole_bytes_ = 0, bytes_ = 0;
 };
 
+std::string NameOfRun(const testing::TestParamInfo<Course>& info) {
+  return NameOf(info);
+}
+
 void CheckStreams(const Course& course) {
   const auto scene = ReadCourse(course);
   auto made =
@@ -104,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Runs, SnapshotStream,
                                          Course{"pattern_cut", "expert", 600},
                                          Course{"clip_and_cut", "fumbler", 300},
                                          Course{"cholecystectomy", "expert", 120}),
-                         NameOf);
+                         NameOfRun);
 
 class SnapshotStreamSlow : public testing::TestWithParam<Course> {};
 TEST_P(SnapshotStreamSlow, CarriesEveryTickOfARun) {
@@ -115,14 +119,14 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Course{"demonstration", "", 1000}, Course{"clip_and_cut", "expert", 20'000},
                     Course{"hook_dissection", "expert", 20'000}, Course{"pattern_cut", "expert", 20'000},
                     Course{"cholecystectomy", "fumbler", 1800}, Course{"cholecystectomy", "expert", 3000}),
-    NameOf);
+    NameOfRun);
 
 class SnapshotStreamWhole : public testing::TestWithParam<Course> {};
 TEST_P(SnapshotStreamWhole, CarriesEveryTickOfARun) {
   CheckStreams(GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(Runs, SnapshotStreamWhole,
-                         testing::Values(Course{"cholecystectomy", "expert", 100'000}), NameOf);
+                         testing::Values(Course{"cholecystectomy", "expert", 100'000}), NameOfRun);
 
 TEST(SnapshotStreams, AreRefusedInAnotherScene) {
   const auto layout_of = [](const char* name) {
