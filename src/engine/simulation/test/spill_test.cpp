@@ -60,7 +60,7 @@ struct BallOrgan {
   geometry::EditableMesh editable = std::move(*geometry::EditableMesh::Make(mesh, 64, 256));
 };
 
-TEST(surgery::WallHoles, NodesSideBySideMakeOneHole) {
+TEST(WallHoles, NodesSideBySideMakeOneHole) {
   const BallOrgan ball;
   surgery::WallHoles holes;
   const auto find = [&] { return holes.FindLargest(ball.surface, ball.mesh.positions, ball.editable); };
