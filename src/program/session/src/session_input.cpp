@@ -234,15 +234,14 @@ void SessionInput::LookAtDevices(double time, bool may_act, bool may_move) {
 }
 
 /// Whoever takes over takes hands, tools and laparoscope where they are.
-void SessionInput::Follow(const Snapshot& snapshot, const Guide& guide) {
-  const bool is_demonstrated = guide.source != nullptr && !guide.yields_to_devices;
+void SessionInput::Follow(const Snapshot& snapshot, bool is_demonstrated, bool is_hands_only) {
   if (is_demonstrated) {
     for (const Hand hand : kHands) {
       standing_.hands[hand] = snapshot.instruments[hand].joints;
       standing_.controls[hand].tool = snapshot.operation.tools[hand];
     }
   }
-  if (standing_.settings.holds_camera || (is_demonstrated && !guide.is_hands_only))
+  if (standing_.settings.holds_camera || (is_demonstrated && !is_hands_only))
     standing_.laparoscope = snapshot.laparoscope;
 }
 
@@ -289,6 +288,7 @@ Input SessionInput::For(std::uint64_t tick, const Snapshot& before) {
     is_guide_over_.store(guidance.guide.source->IsAtEnd());
   }
   is_demonstration_ = guidance.guide.source != nullptr && !guidance.guide.yields_to_devices;
+  is_hands_only_ = guidance.guide.is_hands_only;
   const std::lock_guard lock(mutex_);
   if (resets_due_ > 0) return last_;
   next_tick_ = tick + 1;
@@ -298,7 +298,8 @@ Input SessionInput::For(std::uint64_t tick, const Snapshot& before) {
 
 void SessionInput::AfterTick(const Snapshot& after) {
   const std::lock_guard lock(mutex_);
-  if (resets_due_ == 0) Follow(after, guide_);
+  // a demonstration that has just been ended has still made this tick
+  if (resets_due_ == 0) Follow(after, is_demonstration_, is_hands_only_);
 }
 
 void SessionInput::Wait(const Snapshot& now) {
@@ -306,7 +307,7 @@ void SessionInput::Wait(const Snapshot& now) {
   if (resets_due_ > 0) return;
   const bool is_demonstrated = guide_.source != nullptr && !guide_.yields_to_devices;
   LookAtDevices(now.time, false, !is_demonstrated);
-  Follow(now, guide_);
+  Follow(now, is_demonstrated, guide_.is_hands_only);
   last_ = standing_;
 }
 

@@ -322,6 +322,25 @@ TEST_F(SessionInputTest, ADemonstrationMovesTheHandsAndIsTakenOverWhereTheyAre) 
   EXPECT_FALSE(input_.IsGuideOver());
 }
 
+// The person takes over while a tick is being made.
+TEST_F(SessionInputTest, ADemonstrationIsTakenOverAfterTheTickUnderWay) {
+  const auto guide = std::make_shared<FakeGuide>();
+  for (const bool is_hands_only : {true, false}) {
+    input_.SetGuide({.source = guide, .is_hands_only = is_hands_only});
+    Tick();
+    (void)input_.For(before_.tick + 1, before_);
+    input_.SetGuide({});
+    before_.instruments[kRight].joints.pan += 0.25;
+    before_.operation.tools[kRight] += 1;
+    ++before_.tick;
+    input_.AfterTick(before_);
+    EXPECT_EQ(Tick().hands[kRight], before_.instruments[kRight].joints);
+    EXPECT_EQ(now_.controls[kRight].tool, before_.operation.tools[kRight]);
+    input_.ChooseTool(kRight, 4);
+    EXPECT_EQ(Tick().controls[kRight].tool, 4) << "from then on the person's requests count";
+  }
+}
+
 // runs without a window: a script, and devices that keep what they hold
 TEST_F(SessionInputTest, AGuideThatYieldsLeavesDevicesTheirHands) {
   const auto guide = std::make_shared<FakeGuide>();

@@ -79,6 +79,7 @@ class SessionInput final : public simulation::InputSource {
   void DropDevice();
   /// \param link  outlives this
   void UseHaptics(HapticLink& link);
+  /// From the next tick on. Whoever takes over finds hands and tools as the tick under way leaves them.
   void SetGuide(Guide guide);
   /// The guide has come to its end.
   bool IsGuideOver() const { return is_guide_over_.load(); }
@@ -117,13 +118,14 @@ class SessionInput final : public simulation::InputSource {
   void GoHome();
   void LiftPedals();
   void LookAtDevices(double time, bool may_act, bool may_move);
-  void Follow(const simulation::Snapshot& snapshot, const Guide& guide);
+  void Follow(const simulation::Snapshot& snapshot, bool is_demonstrated, bool is_hands_only);
   void Combine(double time, const Guidance& guidance);
   std::uint64_t CountPlaces(instrument::Hand hand) const { return scene_->instruments[hand].tray.size(); }
 
   const scene::Scene* scene_;
   bool rounds_joints_;
-  bool is_demonstration_ = false;  // of the simulation's thread
+  bool is_demonstration_ = false,
+       is_hands_only_ = false;  // the guide of the last tick; of the simulation's thread
   std::atomic<bool> is_guide_over_{false};
   std::atomic<std::uint64_t> losses_{0};
 
