@@ -37,7 +37,7 @@ geometry::TriangleMesh MakeSleeve(double shaft_radius) {
                             24);
 }
 
-Material MaterialOf(ToolKind tool, Kind part) {
+Material MaterialOfPart(ToolKind tool, Kind part) {
   switch (part) {
     case Kind::kShaft:
       return tool == ToolKind::kSuctionIrrigator ? Material::kSteel : Material::kShaft;
@@ -87,7 +87,7 @@ void HandTools::Add(render::Renderer& renderer, const scene::Scene& scene) {
       const std::vector<double> shares =
           part.kind == Kind::kPouch ? CalcPouchShares(part.mesh) : std::vector<double>{};
       shown.parts.push_back(
-          {part.kind, renderer.AddSurface(part.mesh, MaterialOf(tool.kind, part.kind), shares)});
+          {part.kind, renderer.AddSurface(part.mesh, MaterialOfPart(tool.kind, part.kind), shares)});
     }
     return shown;
   };

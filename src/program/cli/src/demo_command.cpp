@@ -17,6 +17,7 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "igtl_option.h"
 #include "live_input.h"
@@ -131,7 +132,7 @@ void PrintSummary(const view::DemoReport& played, const scene::Scene& scene, con
       played.video.filename());
 }
 
-base::Status Play(const DemoArguments& arguments) {
+base::Status PlayDemo(const DemoArguments& arguments) {
   view::DemoOptions options;
   const auto size = ReadSize(arguments.size);
   if (!size) return size.error();
@@ -192,8 +193,7 @@ base::Status Play(const DemoArguments& arguments) {
 }  // namespace
 
 void AddDemoCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("demo", "Play a scene's script into pictures, a video, metrics and a report");
+  CLI::App* command = AddListed(app, "demo");
   auto arguments = std::make_shared<DemoArguments>();
   command
       ->add_option("scene,--scene", arguments->scene,
@@ -201,29 +201,21 @@ void AddDemoCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("FILE");
   command->add_option("--patient", arguments->patient, "Patient folder in place of the scene's")
       ->type_name("PATIENT");
-  command
-      ->add_option("--device", arguments->device,
-                   "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
-      ->type_name("DEVICE");
+  AddDeviceOption(*command, arguments->device);
   command->add_option("-o,--output", arguments->output, "Folder to write")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--size", arguments->size, "Of pictures and video [pixels]")
-      ->type_name("WxH")
-      ->capture_default_str();
+  AddSizeOption(*command, arguments->size);
   command->add_option("--seconds", arguments->seconds, "Play so much of the script; all of it if not given")
       ->check(CLI::Range(0.01, 3600.0))
       ->type_name("S");
-  command->add_option("--threads", arguments->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, arguments->threads);
   AddIgtlOption(*command, arguments->igtl_port);
   AddHapticOptions(*command, arguments->haptics);
   command->footer(
       "Needs OpenGL (in software will do) and no display. When anything fails, the folder stays as it was.\n"
       "Example: trocar demo -o out/demo --size 640x360 --seconds 5");
-  command->callback([arguments, &outcome] { outcome.status = Play(*arguments); });
+  command->callback([arguments, &outcome] { outcome.status = PlayDemo(*arguments); });
 }
 
 }  // namespace trocar::cli

@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device_input.h"
 
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
 #include "command.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/host/log.h"
 #include "trocar/session/device_thread.h"
 
 namespace trocar::cli {
+
+void AddDeviceOption(CLI::App& command, std::string& spec) {
+  command
+      .add_option("--device", spec,
+                  "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
+      ->type_name("DEVICE");
+}
 
 base::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& spec,
                                                              const scene::Scene& scene) {

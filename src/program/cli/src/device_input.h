@@ -11,7 +11,15 @@
 #include "trocar/scene/scene.h"
 #include "trocar/session/hand_device.h"
 
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls it so
+class App;
+}
+
 namespace trocar::cli {
+
+/// --device of the commands that play a scene's script.
+/// \param[out] spec  as DeviceInput::Open() takes it; lives as long as the command
+void AddDeviceOption(CLI::App& command, std::string& spec);
 
 /// A recording (play:FILE) runs on simulated time: the same file gives the same bits. Any other device runs in real time.
 class DeviceInput final : public session::HandDevice {

@@ -14,6 +14,7 @@
 
 #include "attempt_recording.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "igtl_option.h"
 #include "live_input.h"
@@ -162,7 +163,7 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   return report;
 }
 
-void PrintForProgram(const SimulateReport& report) {
+void PrintRunJson(const SimulateReport& report) {
   nlohmann::ordered_json json = {
       {"hash", report.hash}, {"ticks", report.ticks}, {"residual", report.residual}};
   json["stages"] = nlohmann::ordered_json::array();
@@ -180,7 +181,7 @@ void PrintForProgram(const SimulateReport& report) {
   PrintJson(json);
 }
 
-void PrintForPerson(const SimulateReport& report) {
+void PrintRun(const SimulateReport& report) {
   std::vector<std::vector<std::string>> rows = {{"stage", "median [ms]", "p99 [ms]"}};
   for (const StageTimes& stage : report.stages) {
     rows.push_back({ShownName(stage.name), ShownNumber(stage.median_ms, 3), ShownNumber(stage.p99_ms, 3)});
@@ -200,8 +201,7 @@ void PrintForPerson(const SimulateReport& report) {
 }  // namespace
 
 void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("simulate", "Run a scene's script without pictures; print hash and times");
+  CLI::App* command = AddListed(app, "simulate");
   auto options = std::make_shared<SimulateOptions>();
   command->add_option("scene", options->scene, "Scene file (JSON), which names its patient and its script")
       ->required()
@@ -214,14 +214,8 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("N");
   CLI::Option* seed =
       command->add_option("--seed", options->seed, "In place of the scene's seed")->type_name("K");
-  command->add_option("--threads", options->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
-  command
-      ->add_option("--device", options->device,
-                   "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
-      ->type_name("DEVICE");
+  AddThreadsOption(*command, options->threads);
+  AddDeviceOption(*command, options->device);
   command->add_option("--save", options->save, "Write the state after the last tick")->type_name("FILE");
   command
       ->add_option("--restore", options->restore,
@@ -232,7 +226,7 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
   AddHapticOptions(*command, options->haptics);
   command->add_flag("--gpu", options->uses_gpu,
                     "Solve on the GPU (single precision, so another hash); without one the processor does");
-  command->add_flag("--json", options->is_json, "Machine-readable");
+  AddJsonFlag(*command, options->is_json);
   command->footer(
       "The same scene, seed and ticks give the same hash, twice and with any number of threads.\n"
       "Example: trocar simulate scenes/demonstration.json --ticks 240 --seed 1 --threads 2 --json");
@@ -243,7 +237,7 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       outcome.status = report.error();
       return;
     }
-    options->is_json ? PrintForProgram(*report) : PrintForPerson(*report);
+    options->is_json ? PrintRunJson(*report) : PrintRun(*report);
   });
 }
 
