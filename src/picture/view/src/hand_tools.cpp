@@ -62,7 +62,9 @@ std::vector<double> CalcPouchShares(const geometry::TriangleMesh& pouch) {
 
 /// Current leaves the toe of the hook, else the tips.
 Vec3 FindElectrode(const instrument::Tool& tool, const Pose& X_world_tool) {
-  return X_world_tool * (tool.kind == ToolKind::kHook ? Vec3{0, 0.0032, -0.0005} : Vec3{});
+  return X_world_tool * (instrument::AbilitiesOf(tool.kind).electrode == instrument::Electrode::kToe
+                             ? Vec3{0, 0.0032, -0.0005}
+                             : Vec3{});
 }
 
 void AddSparks(render::Frame& frame, const Vec3& source, std::uint64_t tick, std::uint32_t hand) {

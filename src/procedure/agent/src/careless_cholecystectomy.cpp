@@ -1,240 +1,269 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <cmath>
-#include <span>
+#include "careless_cholecystectomy.h"
 
-#include "cholecystectomy_surgeon.h"
+#include <vector>
+
+#include "cholecystectomy_goals.h"
+#include "cholecystectomy_steps.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::agent {
 
 using instrument::kLeft;
 using instrument::kRight;
-using math::Pose;
+using instrument::ToolKind;
 using math::Vec3;
-using roles::TubeRole;
-using simulation::Snapshot;
+using scene::AssistantCommand;
 
 namespace {
 
-constexpr double kStandOff = 0.012;   // of a tool's tip from the vessel while it is lined up [m]
-constexpr double kBack = 0.020;       // from there when it is done [m]
-constexpr double kFromTips = 0.0018;  // of a vessel's axis, so that the clip reaches around it [m]
-constexpr double kAnother = 0.05;     // of a vessel's length, to another place for a clip
-constexpr double kBesideHold = 0.015, kBesideWeight = 4.0;  // of a place in the wall from the hold [m], [-]
-constexpr double kSpillSeconds = 8.0;                       // in which stones leave through a hole
-constexpr double kRinseFrom = 0.022;                        // before what bleeds [m]
+constexpr double kBack = 0.020;         // of a tool from the vessel when it is done [m]
+constexpr double kStandOff = 0.012;     // likewise before another try [m]
+constexpr double kFromTips = 0.0018;    // of a vessel's axis, so that the clip reaches around it [m]
+constexpr double kAnother = 0.05;       // of a vessel's length, to another place for a clip
 constexpr double kBetweenLegs = 0.003;  // of a clip applier's middle line, where a vessel is to be [m]
+constexpr double kBladesBeyond = 0.4;   // of the scissors, past the vessel [-]
+constexpr double kSpillSeconds = 8.0;   // in which stones leave through a hole
+constexpr double kRinseFrom = 0.022;    // before what bleeds [m]
 
-}  // namespace
+/// What a careless plan is written from.
+struct Writing {
+  const PatientKnowledge& known;
+  const Vec3& port;  // of the right hand [m]
+  ActList& plan;
 
-Vec3 CholecystectomySurgeon::Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const {
-  const Vec3 p = TubePoint(seen, tube, share);
-  return p + ahead * math::Normalized(p - hands_[kRight].Port());
-}
+  void Exchange(ToolKind kind) const { plan.Exchange(kRight, kind); }
+};
 
-void CholecystectomySurgeon::LineUp(const std::string& what, std::size_t tube, double share, double jaw) {
-  SurgeonAct& act = Add(SurgeonAct::Kind::kLineUp, "line up the " + what, 5.0);
+/// Along a tube's length, the tool across it.
+void LineUp(ActList& plan, const char* doing, std::size_t tube, double share, double jaw) {
+  SurgeonAct& act = plan.Add(SurgeonAct::Kind::kLineUp, doing, 5.0);
   act.tube = tube;
   act.share = share;
   act.amount = jaw;
 }
 
-void CholecystectomySurgeon::LineUpTool(const SurgeonAct& act, const Snapshot& seen) {
-  HandMotion& hand = HandOf(kRight);
-  const Vec3 p = TubePoint(seen, act.tube, act.share);
-  const Vec3 shaft = math::Normalized(p - hand.Port());
-  hand.Turn(FindSpin(hand.Port(), p, math::Cross(shaft, TubeDirection(seen, act.tube, act.share))));
-  hand.SetJaw(act.amount);
-  hand.MoveTo(Aim(seen, act.tube, act.share, -kStandOff));
-}
-
 /// \param beyond  how far from the tips, as a share of the jaws, the vessel lies in them
 /// \param tries   how often it is lined up anew when the vessel is not between the legs
-void CholecystectomySurgeon::PlaceClip(std::size_t tube, double share, double beyond, int tries) {
+void PlaceClip(ActList& plan, std::size_t tube, double share, double beyond = 0.5, int tries = 2) {
   const instrument::Tool& applier = *instrument::FindTool("clip_applier");
-  LineUp("clip", tube, share, applier.max_jaw);
-  Reach(kRight, Place::Aim(tube, share, -beyond * applier.jaw_length), 0.4);
-  Wait(0.2);
-  SurgeonAct& act = Decide(SurgeonAct::Kind::kCheckPlacedClip, "look at the clip's tips");
+  LineUp(plan, "line up the clip", tube, share, applier.max_jaw);
+  plan.Reach(kRight, Place::Aim(tube, share, -beyond * applier.jaw_length), 0.4);
+  plan.Wait(0.2);
+  SurgeonAct& act = plan.Decide(SurgeonAct::Kind::kCheckPlacedClip, "look at the clip's tips");
   act.tube = tube;
   act.share = share;
   act.amount = beyond;
   act.count = tries;
 }
 
-void CholecystectomySurgeon::CheckPlacedClip(const SurgeonAct& act, const Snapshot& seen) {
-  const double length = instrument::FindTool("clip_applier")->jaw_length;
-  const Pose& X = seen.instruments[kRight].X_world_tool;
-  const Vec3 in = math::Inverse(X) * TubePoint(seen, act.tube, act.share);
-  const bool is_between =
-      math::Hypot(in.x, in.y) < kBetweenLegs && in.z > kFromTips && in.z < length - kFromTips;
-  if (is_between || act.count == 0) return CloseClip(act.tube, act.share);
-  Reach(kRight, Place::Aim(act.tube, act.share, kStandOff));
-  // a little farther along, then a little nearer
-  PlaceClip(act.tube, act.share + (act.count % 2 == 0 ? kAnother : -2 * kAnother), act.amount, act.count - 1);
-}
-
-void CholecystectomySurgeon::CloseClip(std::size_t tube, double share) {
-  SetJaw("close the clip", 0.0);
-  // open enough to leave the clip, not so far that the next one comes
-  Jaw(kRight, 0.4);
-  Reach(kRight, Place::Aim(tube, share, kBack), 0.6);
-}
-
-void CholecystectomySurgeon::CutTube(std::size_t tube, double share) {
+void CutTube(ActList& plan, std::size_t tube, double share) {
   const instrument::Tool& scissors = *instrument::FindTool("scissors");
-  LineUp("scissors", tube, share, scissors.max_jaw);
-  Reach(kRight, Place::Aim(tube, share, -0.4 * scissors.jaw_length), 0.4);
-  SetJaw("cut", 0.0);
-  Reach(kRight, Place::Aim(tube, share, kBack), 0.6);
+  LineUp(plan, "line up the scissors", tube, share, scissors.max_jaw);
+  plan.Reach(kRight, Place::Aim(tube, share, -kBladesBeyond * scissors.jaw_length), 0.4);
+  plan.SetJaw("cut", 0.0);
+  plan.Reach(kRight, Place::Aim(tube, share, kBack), 0.6);
 }
 
-/// Of the gallbladder, near what the left hand holds, so that it does not give way; towards the right hand's trocar.
-Vec3 CholecystectomySurgeon::WallBesideHold(const Snapshot& seen) const {
-  const scene::SurfaceInfo& wall = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
-  const auto positions = std::span(seen.positions).subspan(wall.first_node, wall.node_count);
-  const auto cost = [&](const Vec3& p) {
-    const double away = math::Distance(p, hands_[kLeft].Tip());
-    return math::Distance(p, hands_[kRight].Port()) + kBesideWeight * std::fabs(away - kBesideHold);
+void ClipMainDuct(const Writing& on) {
+  on.Exchange(ToolKind::kClipApplier);
+  PlaceClip(on.plan, on.known.hepatic_duct, 0.5);
+}
+
+void CutMainDuct(const Writing& on) {
+  on.Exchange(ToolKind::kScissors);
+  CutTube(on.plan, on.known.hepatic_duct, 0.75);
+}
+
+void BurnMainDuct(const Writing& on) {
+  on.plan.Burn(kRight, Place::OnTube(on.known.hepatic_duct, 0.6).ForHook(), 20.0);
+}
+
+void CutUnclipped(const Writing& on) {
+  on.Exchange(ToolKind::kScissors);
+  CutTube(on.plan, on.known.cystic_duct, 0.4);
+}
+
+void ClipEarly(const Writing& on) {
+  on.Exchange(ToolKind::kClipApplier);
+  PlaceClip(on.plan, on.known.cystic_duct, 0.5);
+}
+
+void ClipTooLittle(const Writing& on) {
+  on.Exchange(ToolKind::kClipApplier);
+  PlaceClip(on.plan, on.known.cystic_duct, 0.6);
+  on.Exchange(ToolKind::kScissors);
+  CutTube(on.plan, on.known.cystic_duct, 0.36);
+}
+
+void CrossClips(const Writing& on) {
+  on.Exchange(ToolKind::kClipApplier);
+  for (int clip = 0; clip < 2; ++clip) PlaceClip(on.plan, on.known.cystic_duct, 0.5);
+}
+
+void ClipPartly(const Writing& on) {
+  on.Exchange(ToolKind::kClipApplier);
+  PlaceClip(on.plan, on.known.cystic_duct, 0.5, 0.1);
+}
+
+void CutArteryAndLook(const Writing& on) {
+  on.Exchange(ToolKind::kScissors);
+  CutTube(on.plan, on.known.cystic_artery, 0.65);
+  on.plan.LookAt(Place::OnTube(on.known.cystic_artery, 0.65), 0.0, 0.080);
+}
+
+void Bleed(const Writing& on) {
+  CutArteryAndLook(on);
+  on.plan.Wait(60.0);
+}
+
+void SlipClip(const Writing& on) {
+  on.Exchange(ToolKind::kClipApplier);
+  PlaceClip(on.plan, on.known.cystic_artery, 0.75, 0.0);
+  on.Exchange(ToolKind::kScissors);
+  CutTube(on.plan, on.known.cystic_artery, 0.5);
+  on.plan.Wait(10.0);
+}
+
+void Perforate(const Writing& on) {
+  on.plan.Burn(kRight, Place::AtNode(on.known.neck).ForHook(), 10.0);
+}
+
+/// A hole in the gallbladder that is off its bed, through which stones leave before it is brought out.
+void LeaveStones(const Writing& on) {
+  const auto goals = CholecystectomyGoals();
+  std::vector<OperationGoal> all(goals.begin(), goals.end());
+  OperationGoal open;
+  open.doing = "open the gallbladder";
+  open.write = [](const OperationGoal&, const PatientKnowledge&, ActList& plan) {
+    plan.Burn(kRight, Place::Of(Place::Kind::kBesideHold).ForHook(), 6.0);
+    plan.Wait(kSpillSeconds);
   };
-  return *std::min_element(positions.begin(), positions.end(),
-                           [&](const Vec3& a, const Vec3& b) { return cost(a) < cost(b); });
+  all.insert(all.end() - 1, open);
+  WritePlan(all, on.known, on.plan);
+}
+
+void BurnLiver(const Writing& on) {
+  on.plan.Burn(kRight, Place::AtNode(on.known.liver_node).ForHook(), 15.0);
+}
+
+void BurnNearDuct(const Writing& on) {
+  on.plan.Burn(kRight, Place::OnTube(on.known.hepatic_duct, 0.6).ForHook(), 0.5);
+}
+
+void BurnUnseen(const Writing& on) {
+  on.plan.Burn(kRight, Place::At(on.port + 0.035 * Vec3{0.2, 0.1, -1.0}), 0.5);
+}
+
+void BurnAir(const Writing& on) {
+  Place above_neck = Place::Of(Place::Kind::kAboveNode);
+  above_neck.node = on.known.neck;
+  above_neck.back = 0.05;
+  on.plan.Burn(kRight, above_neck, 0.5);
+}
+
+void DropClip(const Writing& on) {
+  on.Exchange(ToolKind::kClipApplier);
+  on.plan.Jaw(kRight, 1.0);
+  on.plan.Jaw(kRight, 0.0);
+}
+
+void GraspLiver(const Writing& on) {
+  on.plan.Grasp(kLeft, Place::AtNode(on.known.liver_node));
 }
 
 /// A light grip, and a strong pull.
-void CholecystectomySurgeon::PullHard() {
-  Grasp(kLeft, Place::AtNode(known_.hold), 0.17);
-  Draw(kLeft, {0.0, -0.09, 0.06});
-  Wait(1.0);
+void PullHard(const Writing& on) {
+  on.plan.Grasp(kLeft, Place::AtNode(on.known.hold), 0.17);
+  on.plan.Draw(kLeft, {0.0, -0.09, 0.06});
+  on.plan.Wait(1.0);
 }
 
-void CholecystectomySurgeon::CutIntoLiver() {
+void CutIntoLiver(const Writing& on) {
   Place in_liver = Place::Of(Place::Kind::kInLiver);
   in_liver.back = -0.006;
-  Reach(kRight, in_liver, 0.5);
-  Add(SurgeonAct::Kind::kPressCutPedal, "press the pedal", 1.0);
+  on.plan.Reach(kRight, in_liver, 0.5);
+  on.plan.Add(SurgeonAct::Kind::kPressCutPedal, "press the pedal", 1.0);
   in_liver.back = 0.010;
-  Reach(kRight, in_liver, 0.1);
-  Add(SurgeonAct::Kind::kLiftFoot, "let go of the pedal", 1.0);
+  on.plan.Reach(kRight, in_liver, 0.1);
+  on.plan.Add(SurgeonAct::Kind::kLiftFoot, "let go of the pedal", 1.0);
 }
 
 /// Exchanges a tool far from the picture, and does not look for it.
-void CholecystectomySurgeon::InsertBlind() {
-  Exchange(kRight, instrument::ToolKind::kScissors);
-  Reach(kRight, Place::At(HandOf(kRight).Port() + 0.10 * Vec3{0.6, -0.3, -0.7}));
-  Exchange(kRight, instrument::ToolKind::kHook, false);
-  Wait(3.0);
+void InsertBlind(const Writing& on) {
+  on.Exchange(ToolKind::kScissors);
+  on.plan.Reach(kRight, Place::At(on.port + 0.10 * Vec3{0.6, -0.3, -0.7}));
+  on.plan.Exchange(kRight, ToolKind::kHook, false);
+  on.plan.Wait(3.0);
 }
 
-void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scenario) {
-  using instrument::ToolKind;
-  const std::size_t duct = FindTube(TubeRole::kCysticDuct), artery = FindTube(TubeRole::kCysticArtery),
-                    main = FindTube(TubeRole::kCommonHepaticDuct);
-  const Place liver = Place::AtNode(known_.liver_node);
-  Place above_neck = Place::Of(Place::Kind::kAboveNode);
-  above_neck.node = known_.neck;
-  above_neck.back = 0.05;
-  const auto clip = [this] { Exchange(kRight, ToolKind::kClipApplier); };
-  const auto scissors = [this] { Exchange(kRight, ToolKind::kScissors); };
-  switch (error_scenario) {
-    case OperationErrorScenario::kNone:
-      break;
-    case OperationErrorScenario::kClipsMainDuct:
-      clip();
-      PlaceClip(main, 0.5);
-      break;
-    case OperationErrorScenario::kCutsMainDuct:
-      scissors();
-      CutTube(main, 0.75);
-      break;
-    case OperationErrorScenario::kBurnsMainDuct:
-      Burn(kRight, Place::OnTube(main, 0.6).ForHook(), 20.0);
-      break;
-    case OperationErrorScenario::kCutsUnclipped:
-      scissors();
-      CutTube(duct, 0.4);
-      break;
-    case OperationErrorScenario::kClipsEarly:
-      clip();
-      PlaceClip(duct, 0.5);
-      break;
-    case OperationErrorScenario::kTooFewClips:
-      clip();
-      PlaceClip(duct, 0.6);
-      scissors();
-      CutTube(duct, 0.36);
-      break;
-    case OperationErrorScenario::kCrossesClips:
-      clip();
-      PlaceClip(duct, 0.5);
-      PlaceClip(duct, 0.5);
-      break;
-    case OperationErrorScenario::kClipsPartly:
-      clip();
-      PlaceClip(duct, 0.5, 0.1);
-      break;
-    case OperationErrorScenario::kBleeds:
-      scissors();
-      CutTube(artery, 0.65);
-      LookAt(Place::OnTube(artery, 0.65), 0.0, 0.080);
-      Wait(60.0);
-      break;
-    case OperationErrorScenario::kSlipsClip:
-      clip();
-      PlaceClip(artery, 0.75, 0.0);
-      scissors();
-      CutTube(artery, 0.5);
-      Wait(10.0);
-      break;
-    case OperationErrorScenario::kPerforates:
-      Burn(kRight, Place::AtNode(known_.neck).ForHook(), 10.0);
-      break;
-    case OperationErrorScenario::kLeavesStones:
-      FreeGallbladder();
-      Burn(kRight, Place::Of(Place::Kind::kBesideHold).ForHook(), 6.0);
-      Wait(kSpillSeconds);
-      Remove();
-      break;
-    case OperationErrorScenario::kBurnsLiver:
-      Burn(kRight, liver.ForHook(), 15.0);
-      break;
-    case OperationErrorScenario::kBurnsNearDuct:
-      Burn(kRight, Place::OnTube(main, 0.6).ForHook(), 0.5);
-      break;
-    case OperationErrorScenario::kBurnsUnseen:
-      Burn(kRight, Place::At(HandOf(kRight).Port() + 0.035 * Vec3{0.2, 0.1, -1.0}), 0.5);
-      break;
-    case OperationErrorScenario::kBurnsAir:
-      Burn(kRight, above_neck, 0.5);
-      break;
-    case OperationErrorScenario::kDropsClip:
-      clip();
-      Jaw(kRight, 1.0);
-      Jaw(kRight, 0.0);
-      break;
-    case OperationErrorScenario::kGraspsLiver:
-      Grasp(kLeft, liver);
-      break;
-    case OperationErrorScenario::kPullsHard:
-      PullHard();
-      break;
-    case OperationErrorScenario::kCutsLiver:
-      CutIntoLiver();
-      break;
-    case OperationErrorScenario::kInsertsBlind:
-      InsertBlind();
-      break;
-    case OperationErrorScenario::kRinses:
-      Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = scene::AssistantCommand::kRetract;
-      scissors();
-      CutTube(artery, 0.65);
-      LookAt(Place::OnTube(artery, 0.65), 0.0, 0.080);
-      Exchange(kRight, ToolKind::kSuctionIrrigator);
-      for (int round = 0; round < 4; ++round) Rinse(Place::Aim(artery, 0.65, kRinseFrom), 3.0, 4.0);
-      break;
+void RinseWhileItBleeds(const Writing& on) {
+  on.plan.Assist(AssistantCommand::kRetract);
+  CutArteryAndLook(on);
+  on.Exchange(ToolKind::kSuctionIrrigator);
+  for (int round = 0; round < 4; ++round)
+    on.plan.Rinse(Place::Aim(on.known.cystic_artery, 0.65, kRinseFrom), 3.0, 4.0);
+}
+
+constexpr struct {
+  OperationErrorScenario scenario;
+  void (*write)(const Writing&);
+} kErrorPlans[] = {
+    {OperationErrorScenario::kClipsMainDuct, ClipMainDuct},
+    {OperationErrorScenario::kCutsMainDuct, CutMainDuct},
+    {OperationErrorScenario::kBurnsMainDuct, BurnMainDuct},
+    {OperationErrorScenario::kCutsUnclipped, CutUnclipped},
+    {OperationErrorScenario::kClipsEarly, ClipEarly},
+    {OperationErrorScenario::kTooFewClips, ClipTooLittle},
+    {OperationErrorScenario::kCrossesClips, CrossClips},
+    {OperationErrorScenario::kClipsPartly, ClipPartly},
+    {OperationErrorScenario::kBleeds, Bleed},
+    {OperationErrorScenario::kSlipsClip, SlipClip},
+    {OperationErrorScenario::kPerforates, Perforate},
+    {OperationErrorScenario::kLeavesStones, LeaveStones},
+    {OperationErrorScenario::kBurnsLiver, BurnLiver},
+    {OperationErrorScenario::kBurnsNearDuct, BurnNearDuct},
+    {OperationErrorScenario::kBurnsUnseen, BurnUnseen},
+    {OperationErrorScenario::kBurnsAir, BurnAir},
+    {OperationErrorScenario::kDropsClip, DropClip},
+    {OperationErrorScenario::kGraspsLiver, GraspLiver},
+    {OperationErrorScenario::kPullsHard, PullHard},
+    {OperationErrorScenario::kCutsLiver, CutIntoLiver},
+    {OperationErrorScenario::kInsertsBlind, InsertBlind},
+    {OperationErrorScenario::kRinses, RinseWhileItBleeds},
+};
+
+}  // namespace
+
+bool IsWholeOperation(OperationErrorScenario scenario) noexcept {
+  return scenario == OperationErrorScenario::kNone || scenario == OperationErrorScenario::kLeavesStones;
+}
+
+void WriteErrorPlan(OperationErrorScenario scenario, const PatientKnowledge& known, const Vec3& p_world_port,
+                    ActList& plan) {
+  if (scenario == OperationErrorScenario::kNone) return WritePlan(CholecystectomyGoals(), known, plan);
+  for (const auto& one : kErrorPlans)
+    if (one.scenario == scenario) one.write({known, p_world_port, plan});
+  plan.Wait(0.5);
+}
+
+/// Where the vessel is not between the legs, it is lined up anew: a little farther along, then a little nearer.
+void CheckPlacedClip(Planning& on, const SurgeonAct& act) {
+  const double length = instrument::FindTool("clip_applier")->jaw_length;
+  const math::Pose& X_world_tool = on.view.Tool(kRight).X_world_tool;
+  const Vec3 in = math::Inverse(X_world_tool) * on.view.TubePoint(act.tube, act.share);
+  const bool is_between =
+      math::Hypot(in.x, in.y) < kBetweenLegs && in.z > kFromTips && in.z < length - kFromTips;
+  if (is_between || act.count == 0) {
+    on.plan.SetJaw("close the clip", 0.0);
+    // open enough to leave the clip, not so far that the next one comes
+    on.plan.Jaw(kRight, 0.4);
+    on.plan.Reach(kRight, Place::Aim(act.tube, act.share, kBack), 0.6);
+    return;
   }
-  Wait(0.5);
+  on.plan.Reach(kRight, Place::Aim(act.tube, act.share, kStandOff));
+  PlaceClip(on.plan, act.tube, act.share + (act.count % 2 == 0 ? kAnother : -2 * kAnother), act.amount,
+            act.count - 1);
 }
 
 }  // namespace trocar::agent

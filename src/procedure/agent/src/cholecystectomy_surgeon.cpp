@@ -2,42 +2,28 @@
 #include "cholecystectomy_surgeon.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <span>
 #include <utility>
 
+#include "act_execution.h"
+#include "cholecystectomy_goals.h"
+#include "find_place.h"
+#include "state_fields.h"
 #include "trocar/patient/patient.h"
 
 namespace trocar::agent {
 
-using instrument::IsInView;
+using instrument::kLeft;
 using instrument::kRight;
-using math::Vec3;
 using roles::LandmarkRole;
 using roles::OrganRole;
 using roles::TubeRole;
-using scene::CalcLaparoscopePose;
-using scene::FindView;
 using scene::InstrumentSetup;
 using scene::Scene;
-using scene::StrandInfo;
-using scene::SurfaceInfo;
-using scene::ViewRequest;
-using simulation::DescribeModel;
-using simulation::InstrumentSnapshot;
 using simulation::Snapshot;
 
 namespace {
 
-/// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
-constexpr double kHoldBack = 0.020, kHoldBeside = 0.012;
-constexpr double kCameraRate = 0.25;    // [rad/s]
-constexpr double kSeenWell = 0.8;       // of the picture's width: the camera does not follow what lies within
-constexpr double kFollowSeconds = 0.3;  // a tip is out of there before the picture follows [s]
-constexpr double kFollowDistance = 0.09;  // of the lens from what it follows [m]
-constexpr double kNeckRadius = 0.015;     // what lies so near to the infundibulum turns with the neck [m]
-constexpr double kWorks = 0.06;           // a tool this deep is at work [m]
 constexpr std::uint64_t kProgressTicks = 120;  // between two counts of the fibres
 constexpr double kMostStuck = 120.0;           // of dissection that parts nothing [s]
 constexpr double kMostSeconds = 2400.0;        // without the critical view [s]
@@ -70,217 +56,146 @@ bool IsCholecystectomy(const Scene& scene) {
 CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
                                                OperationErrorScenario error_scenario, std::uint64_t seed)
     : scene_(std::move(scene)),
-      hands_{MakeHand(*scene_, instrument::kLeft, skill.hand, seed),
-             MakeHand(*scene_, kRight, skill.hand, seed)} {
-  picture_.camera = picture_.to = scene_->laparoscope.home;
-  auto model = DescribeModel(*scene_);
+      operates_(error_scenario == OperationErrorScenario::kNone),
+      memory_{{MakeHand(*scene_, kLeft, skill.hand, seed), MakeHand(*scene_, kRight, skill.hand, seed)}} {
+  memory_.camera.now = memory_.camera.to = scene_->laparoscope.home;
+  auto model = simulation::DescribeModel(*scene_);
   if (!model.ok()) {
     // the simulation of such a scene says why
-    has_finished_ = true;
-  } else {
-    Learn(std::move(*model));
-    operates_ = error_scenario == OperationErrorScenario::kNone;
-    operates_ ? PlanOperation() : PlanErrorScenario(error_scenario);
+    course_.has_finished = true;
+    return;
   }
-}
-
-void CholecystectomySurgeon::Learn(simulation::ModelDescription model) {
-  const patient::Patient& patient = scene_->patient;
-  known_.strands = std::move(model.strands);
-  known_.surfaces = std::move(model.surfaces);
-  known_.rest = std::move(model.rest);
-  known_.window_strands = std::move(model.window_strands);
-  sight_ = std::move(model.sight);
-  known_.exposable = std::move(model.exposable);
-  known_.gallbladder = scene::FindSurface(known_.surfaces, OrganRole::kGallbladder);
-  known_.liver = scene::FindSurface(known_.surfaces, OrganRole::kLiver);
-  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
-    const SurfaceInfo& surface = known_.surfaces[patient.organs.size() + t];
-    std::vector<std::uint32_t> nodes;
-    for (std::uint32_t k = 0; k < surface.node_count; ++k) nodes.push_back(surface.first_node + k);
-    if (surface.ends[1] == known_.gallbladder) std::reverse(nodes.begin(), nodes.end());
-    known_.tube_nodes.push_back(std::move(nodes));
-  }
-  // what anatomy teaches of each tube
-  for (std::size_t t = 0; t < model.tube_roles.size(); ++t) {
-    const patient::Tube& tube = patient.tubes[t];
-    const SurfaceInfo& surface = known_.surfaces[patient.organs.size() + t];
-    if (surface.Joins(known_.gallbladder)) known_.entering.push_back(t);
-    for (std::uint32_t k = 0; k < surface.node_count; ++k) {
-      const cholecystectomy::VesselRole role = model.tube_roles[t][k];
-      if (!cholecystectomy::MayBeDivided(role)) known_.main_nodes.push_back(surface.first_node + k);
-      const bool is_duct = tube.kind == patient::TubeKind::kDuct;
-      if (!cholecystectomy::MayBeDivided(role) && is_duct)
-        known_.main_ducts.push_back(surface.first_node + k);
-      const bool is_kept_artery = !cholecystectomy::MayBeDivided(role) && !is_duct;
-      if (is_kept_artery || role == cholecystectomy::VesselRole::kSubvesicalDuct)
-        known_.careful_nodes.push_back(surface.first_node + k);
-    }
-  }
-  for (std::size_t i = 0; i < patient.organs.size(); ++i) {
-    const SurfaceInfo& surface = known_.surfaces[i];
-    auto tree =
-        collision::TriangleTree::Make(std::span(known_.rest).subspan(surface.first_node, surface.node_count),
-                                      patient.organs[i].mesh.triangles);
-    trees_.push_back(tree.ok() ? std::move(*tree) : collision::TriangleTree());
-  }
-  for (std::uint32_t i = 0; i < known_.strands.size(); ++i) {
-    const bool enters = std::any_of(known_.entering.begin(), known_.entering.end(), [&](std::size_t tube) {
-      return known_.strands[i].a == known_.tube_nodes[tube].front();
-    });
-    if (known_.strands[i].kind == StrandInfo::Kind::kEnd && enters) known_.end_strands.push_back(i);
-  }
-  const Vec3 neck = patient.LandmarkOf(LandmarkRole::kInfundibulum)->position,
-             fundus = patient.LandmarkOf(LandmarkRole::kFundus)->position,
-             edge = patient.LandmarkOf(LandmarkRole::kLiverEdge)->position;
-  known_.neck = FindNode(known_.gallbladder, neck);
-  known_.fundus = FindNode(known_.gallbladder, fundus);
-  known_.liver_node = FindNode(known_.liver, edge);
-  for (const StrandInfo& strand : known_.strands) {
-    if (strand.kind == StrandInfo::Kind::kBed)
-      known_.bed_normal += known_.rest[strand.a] - known_.rest[strand.b];
-  }
-  known_.bed_normal = math::Normalized(known_.bed_normal, {0, -1, 0});
-  // beside the neck, so that both tools have clearance
-  const Vec3 axis = math::Normalized(fundus - neck);
-  known_.hold = FindNode(known_.gallbladder, neck + kHoldBack * axis + kHoldBeside * known_.bed_normal);
-  const SurfaceInfo& surface = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
-  for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
-    if (math::Distance(known_.rest[node], neck) <= kNeckRadius) known_.neck_nodes.push_back(node);
-  }
-  picture_.field = Place::AtNode(known_.neck);
+  known_ = LearnPatient(*scene_, *model);
+  sight_ = std::move(model->sight);
+  organs_ = OrganClearance(scene_->patient.organs, known_.surfaces, known_.rest);
+  memory_.camera.field = Place::AtNode(known_.neck);
+  memory_.camera.follows = IsWholeOperation(error_scenario);
   KnowFirstView(scene_->laparoscope.home);
+  ActList plan(scene_->instruments);
+  WriteErrorPlan(error_scenario, known_, memory_.Hand(kRight).Port(), plan);
+  course_.acts.assign(std::make_move_iterator(plan.acts.begin()), std::make_move_iterator(plan.acts.end()));
 }
 
 void CholecystectomySurgeon::KnowFirstView(const instrument::TrocarJoints& laparoscope) {
   if (known_.tube_nodes.empty()) return;
-  picture_.first_azimuth = 0;
-  picture_.first_azimuth =
-      CalcAzimuth(known_.rest, CalcLaparoscopePose(scene_->laparoscope, laparoscope).translation);
+  memory_.camera.first_azimuth = CalcAzimuth(
+      known_, known_.rest, scene::CalcLaparoscopePose(scene_->laparoscope, laparoscope).translation, 0.0);
 }
 
-/// The picture goes where the right hand works.
-void CholecystectomySurgeon::FollowWithCamera(const Snapshot& seen) {
-  const InstrumentSnapshot& hand = seen.instruments[kRight];
-  const Vec3& tip = hand.X_world_tool.translation;
-  const bool is_seen = hand.joints.depth < kWorks ||
-                       IsInView(seen.X_world_laparoscope, kSeenWell * scene_->laparoscope.field_of_view, tip);
-  picture_.unseen_seconds = is_seen ? 0.0 : picture_.unseen_seconds + scene_->tick_seconds;
-  if (picture_.unseen_seconds < kFollowSeconds || !(picture_.camera == picture_.to)) return;
-  const Vec3 middle = 0.5 * (tip + Find(picture_.field, seen));
-  AimCamera(middle, math::Normalized(scene_->laparoscope.p_world_port - middle), kFollowDistance);
-  picture_.unseen_seconds = 0;
-}
-
-/// Turns the laparoscope to a place, at about a distance; nothing where it does not get there.
-void CholecystectomySurgeon::AimCamera(const Vec3& p, const Vec3& facing, double distance) {
-  for (const double share : {1.0, 0.85, 1.15, 0.7, 1.3, 0.55}) {
-    ViewRequest request;
-    request.p_world = p;
-    request.distance = share * distance;
-    request.facing = facing;
-    if (const auto view = FindView(scene_->laparoscope, request)) {
-      picture_.to = *view;
-      return;
-    }
-  }
-}
-
-std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p) const {
-  const SurfaceInfo& surface = known_.surfaces[static_cast<std::size_t>(organ)];
-  std::uint32_t nearest = surface.first_node;
-  for (std::uint32_t i = 0; i < surface.node_count; ++i) {
-    const std::uint32_t node = surface.first_node + i;
-    if (math::SquaredDistance(known_.rest[node], p) < math::SquaredDistance(known_.rest[nearest], p))
-      nearest = node;
-  }
-  return nearest;
-}
-
-std::size_t CholecystectomySurgeon::FindTube(TubeRole role) const {
-  return static_cast<std::size_t>(std::max(0, scene_->patient.TubeOf(role)));
-}
-
-Vec3 CholecystectomySurgeon::TubePoint(const Snapshot& seen, std::size_t tube, double share) const {
-  const auto& nodes = known_.tube_nodes[tube];
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(nodes.size() - 1);
-  const auto i = std::min(nodes.size() - 2, static_cast<std::size_t>(at));
-  return math::Lerp(seen.positions[nodes[i]], seen.positions[nodes[i + 1]], at - static_cast<double>(i));
-}
-
-Vec3 CholecystectomySurgeon::TubeDirection(const Snapshot& seen, std::size_t tube, double share) const {
-  return math::Normalized(TubePoint(seen, tube, share + 0.08) - TubePoint(seen, tube, share - 0.08));
+SurgeonView CholecystectomySurgeon::See(const Snapshot& seen) {
+  return {*scene_, known_, seen, memory_.hands, organs_, sight_, memory_.camera.first_azimuth};
 }
 
 /// Counts the fibres once a second while it dissects. Without the critical view it ends the operation after a time in
 /// which a careful surgeon would no longer go on.
 /// \return whether what is under way is worth going on with
-bool CholecystectomySurgeon::WatchProgress(const SurgeonAct& act, const Snapshot& seen) {
-  progress_.seconds += scene_->tick_seconds;
-  if (operates_ && !has_view_ && progress_.seconds > kMostSeconds) BailOut(ExplainMissingView(seen));
+bool CholecystectomySurgeon::WatchProgress(const SurgeonAct& act, const SurgeonView& view) {
+  Progress& progress = memory_.progress;
+  progress.seconds += scene_->tick_seconds;
+  if (operates_ && !memory_.has_view && progress.seconds > kMostSeconds)
+    memory_.BailOut(ExplainMissingView(view, memory_.ways));
   const bool dissects = act.kind == SurgeonAct::Kind::kDissect || act.kind == SurgeonAct::Kind::kSpread;
   if (!dissects) {
-    progress_.stuck_seconds = 0;
+    progress.stuck_seconds = 0;
     return true;
   }
-  progress_.stuck_seconds += scene_->tick_seconds;
-  if (seen.tick % kProgressTicks == 0) {
-    const auto& is_intact = seen.operation.strand_is_intact;
+  progress.stuck_seconds += scene_->tick_seconds;
+  if (view.seen.tick % kProgressTicks == 0) {
+    const auto& is_intact = view.seen.operation.strand_is_intact;
     const auto left =
         is_intact.size() - static_cast<std::size_t>(std::count(is_intact.begin(), is_intact.end(), 0));
-    if (left != progress_.fibres_left) progress_.stuck_seconds = 0;
-    progress_.fibres_left = left;
+    if (left != progress.fibres_left) progress.stuck_seconds = 0;
+    progress.fibres_left = left;
   }
-  if (progress_.stuck_seconds < kMostStuck) return true;
-  LeaveFibre(dissection_);
+  if (progress.stuck_seconds < kMostStuck) return true;
+  LeaveFibre(memory_.dissection, memory_.controls[kRight].coagulate);
   return false;
 }
 
+/// One tick of the act that is first in the plan; what it plans is done next.
+void CholecystectomySurgeon::GoOn(const SurgeonView& view) {
+  ActList next(scene_->instruments);
+  SurgeonAct& act = course_.acts.front();
+  if (!course_.has_begun) {
+    Planning on{view, memory_, next};
+    act.IsDecision() ? PlanOn(on, act) : BeginAct(act, view, memory_);
+    course_.has_begun = true;
+    course_.act_seconds = 0;
+    course_.doing = act.doing;
+  }
+  course_.act_seconds += scene_->tick_seconds;
+  const bool gets_on = WatchProgress(act, view);
+  if (!StepAct(act, view, memory_, course_.act_seconds, next) && course_.act_seconds <= act.time_limit &&
+      gets_on)
+    return;
+  course_.acts.pop_front();
+  course_.has_begun = false;
+  course_.acts.insert(course_.acts.begin(), std::make_move_iterator(next.acts.begin()),
+                      std::make_move_iterator(next.acts.end()));
+}
+
 scene::Input CholecystectomySurgeon::Act(const Snapshot& seen) {
-  const double dt = scene_->tick_seconds;
-  has_view_ = has_view_ || seen.operation.critical_view.IsAchieved();
-  if (stops_) acts_.clear();
-  if (acts_.empty()) {
-    if (operates_ && bail_out_.empty() && !seen.operation.is_completed)
-      bail_out_ = "the gallbladder is off its bed but could not be brought out in the bag";
-    has_finished_ = true;
+  const SurgeonView view = See(seen);
+  memory_.has_view = memory_.has_view || seen.operation.critical_view.IsAchieved();
+  if (memory_.stops) course_.acts.clear();
+  if (course_.acts.empty()) {
+    if (operates_ && memory_.bail_out.empty() && !seen.operation.is_completed)
+      memory_.bail_out = "the gallbladder is off its bed but could not be brought out in the bag";
+    course_.has_finished = true;
+  } else {
+    GoOn(view);
   }
-  if (!acts_.empty()) {
-    SurgeonAct& act = acts_.front();
-    if (!has_begun_) {
-      Begin(act, seen);
-      has_begun_ = true;
-      act_seconds_ = 0;
-      doing_ = act.doing;
-    }
-    act_seconds_ += dt;
-    const bool gets_on = WatchProgress(act, seen);
-    if (IsDone(act, seen) || act_seconds_ > act.time_limit || !gets_on) {
-      acts_.pop_front();
-      has_begun_ = false;
-      acts_.insert(acts_.begin(), std::make_move_iterator(inserted_.begin()),
-                   std::make_move_iterator(inserted_.end()));
-      inserted_.clear();
-    }
-  }
-  if (picture_.follows) FollowWithCamera(seen);
-  const auto follow = [&](double& now, double to) {
-    now += std::clamp(to - now, -kCameraRate * dt, kCameraRate * dt);
-  };
-  follow(picture_.camera.pan, picture_.to.pan);
-  follow(picture_.camera.tilt, picture_.to.tilt);
-  picture_.camera.spin +=
-      std::clamp(picture_.to.spin - picture_.camera.spin, -4 * kCameraRate * dt, 4 * kCameraRate * dt);
-  picture_.camera.depth += std::clamp(picture_.to.depth - picture_.camera.depth, -0.03 * dt, 0.03 * dt);
-  picture_.camera.jaw = picture_.to.jaw;
+  CameraWork& camera = memory_.camera;
+  const simulation::InstrumentSnapshot& tool = view.Tool(kRight);
+  if (camera.follows)
+    FollowTool(camera, scene_->laparoscope, seen.X_world_laparoscope, tool.X_world_tool.translation,
+               tool.joints.depth, FindPlace(view, camera.field, {memory_.aim, camera.field}),
+               scene_->tick_seconds);
+  StepCamera(camera, scene_->tick_seconds);
   scene::Input input;
-  for (int hand = 0; hand < instrument::kHandCount; ++hand)
-    input.hands[static_cast<std::size_t>(hand)] = HandOf(hand).Step(dt);
-  input.controls = controls_;
-  input.assistant = assistant_;
-  input.laparoscope = picture_.camera;
+  for (std::size_t hand = 0; hand < memory_.hands.size(); ++hand)
+    input.hands[hand] = memory_.hands[hand].Step(scene_->tick_seconds);
+  input.controls = memory_.controls;
+  input.assistant = memory_.assistant;
+  input.laparoscope = camera.now;
   input.settings = scene_->settings;
   return input;
+}
+
+// The order is that of states that have been saved.
+void CholecystectomySurgeon::VisitState(base::StateArchive& archive) {
+  archive.Field("hands", memory_.hands);
+  archive.Field("controls", memory_.controls);
+  archive.Field("assistant", memory_.assistant);
+  archive.Field("camera", memory_.camera.now);
+  archive.Field("camera_to", memory_.camera.to);
+  archive.Field("first_azimuth", memory_.camera.first_azimuth);
+  archive.Field("has_view", memory_.has_view);
+  archive.Field("stops", memory_.stops);
+  archive.Field("bail_out", memory_.bail_out);
+  archive.Field("triangle_ways_left", memory_.ways.triangle);
+  archive.Field("sharp_rounds_left", memory_.ways.sharp);
+  archive.Field("has_begun_at_fundus", memory_.ways.has_begun_at_fundus);
+  archive.Field("fibres_left", memory_.progress.fibres_left);
+  archive.Field("stuck_seconds", memory_.progress.stuck_seconds);
+  archive.Field("seconds", memory_.progress.seconds);
+  VisitQueue(archive, "acts", course_.acts);
+  archive.Field("dissection", memory_.dissection);
+  archive.Field("spreading", memory_.spreading);
+  archive.Field("division", memory_.division);
+  archive.Field("has_begun", course_.has_begun);
+  archive.Field("has_finished", course_.has_finished);
+  archive.Field("act_seconds", course_.act_seconds);
+  archive.Field("field", memory_.camera.field);
+  archive.Field("camera_follows", memory_.camera.follows);
+  archive.Field("unseen_seconds", memory_.camera.unseen_seconds);
+  archive.Field("unheld_seconds", memory_.unheld_seconds);
+  archive.Field("missed_holds", memory_.missed_holds);
+  archive.Field("heat", memory_.heat);
+  archive.Field("beyond", memory_.aim.beyond);
+  archive.Field("offset", memory_.aim.offset);
+  archive.Field("doing", course_.doing);
+  if (archive.IsRestoring()) organs_.Forget();
 }
 
 }  // namespace trocar::agent

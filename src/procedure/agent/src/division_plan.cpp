@@ -21,7 +21,7 @@ using collision::Segment;
 using math::Pose;
 
 constexpr double kStep = 0.0004;          // between the places that are looked at [m]
-constexpr double kFromWall = 0.0020;      // of a clip, from the gallbladder [m]
+constexpr double kFromWall = 0.0020;      // of a clip, from the organ [m]
 constexpr double kFromJunction = 0.0025;  // of a clip, from the axis of the vessel that this one joins [m]
 constexpr double kBesideLegs = 0.0017;    // of another vessel's axis, beside the legs' middle line [m]
 constexpr double kBesideBlades = 0.0007;  // of anything else, beside the open blades [m]

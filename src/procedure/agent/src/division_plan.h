@@ -12,7 +12,7 @@
 
 namespace trocar::agent {
 
-/// A duct or artery as it lies now, from the gallbladder on.
+/// A duct or artery as it lies now, from the organ that it enters on.
 struct TubeLine {
   std::vector<math::Vec3> points;  ///< at least 2 [m]
   std::vector<double> radii;       ///< (points) [m]
@@ -21,7 +21,7 @@ struct TubeLine {
   /// \param arc  from the first point [m]; outside is taken at the end
   math::Vec3 At(double arc) const;
   double RadiusAt(double arc) const;
-  /// Unit, away from the gallbladder, over a few millimetres.
+  /// Unit, away from the organ, over a few millimetres.
   math::Vec3 DirectionAt(double arc) const;
   /// Arc of the nearest point, and how far it is [m].
   struct Near {
@@ -57,10 +57,10 @@ std::optional<double> FindClip(const DivisionField& field, double arc);
 /// How scissors cut this tube there and nothing else; nothing where they cannot.
 std::optional<ScissorsPose> FindCut(const DivisionField& field, double arc);
 
-/// Next step of a division, which is to end with one clip on the gallbladder's side of the cut and two on the patient's.
+/// Next step of a division, which is to end with one clip on the organ's side of the cut and two that stay.
 struct DivisionStep {
   enum class Kind { kClip, kCut, kNone } kind = Kind::kNone;
-  double arc = 0;  ///< from the gallbladder [m]
+  double arc = 0;  ///< from the organ [m]
 };
 /// \param clips  arcs of those that lie there already [m]
 /// \param avoid  arcs at which it has failed before [m]

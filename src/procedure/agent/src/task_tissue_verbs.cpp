@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "task_surgeon.h"
+#include "tool_alignment.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::agent {
@@ -33,13 +34,6 @@ constexpr double kFarther = 0.004;     // each time that they closed on nothing 
 constexpr double kJawMargin = 0.2;     // beyond the time that jaws need [s]
 constexpr double kCareful = 0.5;       // speed into tissue, as a share of a hand's own
 constexpr double kBetter = 0.0005;     // of one place on a band over another, for more clearance [m]
-
-/// Spin that turns the tool's +y as nearly as can be along `across`; FindSpin leaves open which way round.
-double FindUpperSpin(const Vec3& port, const Vec3& tip, const Vec3& across) {
-  const double spin = FindSpin(port, tip, across);
-  const Pose X = instrument::CalcToolPose(port, instrument::FindJoints(port, tip, spin, 0.0));
-  return math::Dot(math::Rotate(X.rotation, {0, 1, 0}), across) < 0 ? spin + M_PI : spin;
-}
 
 }  // namespace
 
@@ -83,14 +77,13 @@ void TaskSurgeon::PlanTissue(const Snapshot& seen, const scene::Condition& wante
 void TaskSurgeon::GraspTissue(const Snapshot& seen, int hand, const Vec3& p_before) {
   const auto h = static_cast<std::size_t>(hand);
   const double max_jaw = scene_->instruments[h].tray[seen.operation.tools[h]].max_jaw;
-  const Vec3 along = math::Normalized(p_before - HandOf(hand).Port());
   const bool misses = random_.Uniform() < skill_.miss_share;
   // what they closed on was nothing: they open away from it
   if (fruitless_plans_ > 0) ReachPoint(hand, p_before);
   const double seconds = kJawMargin + kWide * max_jaw / skill_.hand.jaw_rate;
   SetJaw("open the jaws", hand, kWide * max_jaw, seconds);
   const double way = misses ? 0.0 : kIntoTissue + kFarther * fruitless_plans_ + skill_.press;
-  ReachPoint(hand, p_before + way * along, kCareful);
+  ReachPoint(hand, PointBeyond(HandOf(hand).Port(), p_before, way), kCareful);
   SetJaw("close on the tissue", hand, 0.0, seconds);
 }
 
@@ -128,11 +121,8 @@ void TaskSurgeon::LineUp(int hand, const TissueSpot& spot, double jaw) {
 
 void TaskSurgeon::BeginLineUp(const TaskAct& act, const Snapshot& seen) {
   HandMotion& motion = HandOf(act.hand);
-  const Vec3 p = act.spot.At(seen);
-  const Vec3 shaft = math::Normalized(p - motion.Port());
-  motion.Turn(FindSpin(motion.Port(), p, math::Cross(shaft, act.spot.Along(seen))));
-  motion.SetJaw(act.amount);
-  motion.MoveTo(p - kStandOff * shaft);
+  BeginMotion(motion,
+              LineUpAcross(motion.Port(), act.spot.At(seen), act.spot.Along(seen), kStandOff, act.amount));
 }
 
 /// The tip goes to a place on tissue, or beyond it along the shaft.
@@ -192,7 +182,7 @@ void TaskSurgeon::BeginFollowSheet(const TaskAct& act) {
 void TaskSurgeon::BeginReachBand(const TaskAct& act) {
   HandMotion& motion = HandOf(act.hand);
   motion.Turn(FindUpperSpin(motion.Port(), act.p, act.q));
-  motion.MoveTo(act.p - kStandOff * math::Normalized(act.p - motion.Port()));
+  motion.MoveTo(PointBeyond(motion.Port(), act.p, -kStandOff));
 }
 
 /// With hook and current: to the circle from outside, round it, and out over the cut with which it began.
@@ -253,9 +243,8 @@ void TaskSurgeon::BurnBand(const Snapshot& seen, int band) {
   const int hand = TakeTool(seen, instrument::ToolKind::kHook);
   const ModelBand& cord = scene_->model->bands[static_cast<std::size_t>(band)];
   const Vec3 along = math::Normalized(cord.to - cord.from);
-  const double toe = math::Distance(instrument::kHookToe.a, instrument::kHookToe.b);
-  const Vec3 tip = math::Lerp(cord.from, cord.to, FindClearPlace(seen, band)) - 0.5 * toe * along;
-  const Vec3 before = tip - kStandOff * math::Normalized(tip - HandOf(hand).Port());
+  const Vec3 tip = HookTip(math::Lerp(cord.from, cord.to, FindClearPlace(seen, band)), along);
+  const Vec3 before = PointBeyond(HandOf(hand).Port(), tip, -kStandOff);
   TaskAct& reach = Reach(TaskAct::Kind::kReachBand, hand);
   reach.doing = "reach for " + cord.name;
   reach.time_limit = 8.0;

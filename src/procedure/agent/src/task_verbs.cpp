@@ -6,6 +6,7 @@
 
 #include "state_fields.h"
 #include "task_surgeon.h"
+#include "tool_alignment.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::agent {
@@ -65,8 +66,8 @@ Vec3 TaskSurgeon::GripTip(const Snapshot& seen, int hand, int object, int grip, 
   const auto& grips = scene_->objects[o].grips;
   const Vec3 p =
       grips.empty() ? X.translation : X * grips[static_cast<std::size_t>(grip) % grips.size()].point;
-  const Vec3 along = math::Normalized(p - hands_[static_cast<std::size_t>(hand)].Port());
-  return p + (kBite - back + (back > 0 ? 0.0 : skill_.press)) * along;
+  return PointBeyond(hands_[static_cast<std::size_t>(hand)].Port(), p,
+                     kBite - back + (back > 0 ? 0.0 : skill_.press));
 }
 
 void TaskSurgeon::PickUp(int hand, int object, int grip) {
@@ -184,10 +185,8 @@ void TaskSurgeon::Begin(const TaskAct& act, const Snapshot& seen) {
       return hand.MoveTo(act.p, act.hurry);
     case Kind::kReachGrip:
       return hand.MoveTo(GripTip(seen, act.hand, act.object, act.grip, 0) + act.p, act.hurry);
-    case Kind::kReachSpot: {
-      const Vec3 p = act.spot.At(seen);
-      return hand.MoveTo(p + act.amount * math::Normalized(p - hand.Port()), act.hurry);
-    }
+    case Kind::kReachSpot:
+      return hand.MoveTo(PointBeyond(hand.Port(), act.spot.At(seen), act.amount), act.hurry);
     case Kind::kMoveBy:
       return hand.MoveTo(hand.Tip() + act.p, act.hurry);
     case Kind::kGoBack:

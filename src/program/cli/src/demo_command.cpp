@@ -19,9 +19,8 @@
 #include "command.h"
 #include "common_options.h"
 #include "console.h"
-#include "device_input.h"
-#include "haptic_input.h"
 #include "igtl_option.h"
+#include "live_input.h"
 #include "own_json.h"
 #include "part_folder.h"
 #include "picture_size.h"
@@ -147,7 +146,9 @@ base::Status PlayDemo(const DemoArguments& arguments) {
   std::optional<record::TraceBuilder> trace;
   std::array<scene::HandControls, instrument::kHandCount> controls{};
   std::unique_ptr<net::IgtlServer> server;
-  std::unique_ptr<HapticInput> haptics;
+  auto live = LiveInput::Open(arguments.device, **scene);
+  if (!live) return live.error();
+  options.source = live->get();
   options.on_start = [&](const simulation::Simulation& simulation) -> base::Status {
     trace.emplace(simulation);
     trace->Add(simulation.GetSnapshot());
@@ -156,30 +157,15 @@ base::Status PlayDemo(const DemoArguments& arguments) {
       if (!listening) return listening.error();
       server = std::move(*listening);
     }
-    if (!arguments.haptics.name.empty()) {
-      auto opened = HapticInput::Open(arguments.haptics, simulation);
-      if (!opened) return opened.error();
-      haptics = std::move(*opened);
-    }
-    return {};
+    return (*live)->UseHaptics(arguments.haptics, simulation);
   };
-  options.after_step = [&](simulation::Simulation& simulation) {
-    if (haptics != nullptr) haptics->AfterStep(simulation);
+  options.after_step = [&](simulation::Simulation& simulation, const scene::Input& input) {
+    (*live)->AfterStep(simulation);
+    controls = input.controls;
   };
   options.on_tick = [&](const simulation::Snapshot& snapshot) {
     trace->Add(snapshot, controls);
     if (server != nullptr) server->Publish(snapshot);
-  };
-  std::unique_ptr<DeviceInput> device;
-  if (!arguments.device.empty()) {
-    auto opened = DeviceInput::Open(arguments.device, **scene);
-    if (!opened) return opened.error();
-    device = std::move(*opened);
-  }
-  options.change_input = [&](double time, scene::Input& input) {
-    if (device != nullptr) device->Apply(time, input);
-    if (haptics != nullptr) haptics->Apply(time, input);
-    controls = input.controls;
   };
   host::ProgressBar progress("playing", 1.0);
   options.on_progress = [&](double done) { progress.Show(done); };
@@ -187,11 +173,12 @@ base::Status PlayDemo(const DemoArguments& arguments) {
   progress.Finish();
   if (!played) return played.error();
 
+  const HapticInput* haptics = (*live)->Haptics();
   const training::AttemptTrace attempt = trace->Calc();
   const base::Result<training::AttemptMetrics> metrics = training::CalcAttemptMetrics(attempt);
   if (!metrics) return metrics.error();
-  const std::string metrics_text = FormatDemoMetrics(*metrics, **scene, *played, haptics.get());
-  const base::Result<std::string> page = MakePage(**scene, *played, attempt, haptics.get());
+  const std::string metrics_text = FormatDemoMetrics(*metrics, **scene, *played, haptics);
+  const base::Result<std::string> page = MakePage(**scene, *played, attempt, haptics);
   if (!page) return page.error();
   if (auto status = host::WriteFile(part.Path() / "metrics.json", metrics_text); !status) return status;
   if (auto status = host::WriteFile(part.Path() / "report.html", *page); !status) return status;

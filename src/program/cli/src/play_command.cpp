@@ -30,6 +30,7 @@
 #include "trocar/host/threads.h"
 #include "trocar/host/version.h"
 #include "trocar/scene/task.h"
+#include "trocar/session/input_sources.h"
 #include "trocar/simulation/attempt_end.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/demo.h"
@@ -296,7 +297,9 @@ base::Result<PlayReport> PlayForTheEye(std::shared_ptr<const scene::Scene> scene
   options.output_folder = part.Path();
   Watcher watcher(*scene);
   host::ProgressBar progress("playing", static_cast<double>(scene->task->goals.size()));
-  options.surgeon = &surgeon;
+  session::SurgeonSource source(surgeon);
+  options.source = &source;
+  options.is_until_end = true;
   options.duration = arguments.most_seconds;
   Snapshot last;
   options.on_tick = [&](const Snapshot& now) {

@@ -16,6 +16,7 @@
 #include "trocar/host/json.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/translate.h"
+#include "trocar/session/input_sources.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/demo.h"
 
@@ -208,7 +209,9 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     options.threads = play.threads;
     PartFolder part(play.output);
     options.output_folder = part.Path();
-    options.surgeon = &surgeon;
+    session::SurgeonSource source(surgeon);
+    options.source = &source;
+    options.is_until_end = true;
     options.duration = play.most_seconds;
     options.on_tick = see;
     play.report.Follow(options);

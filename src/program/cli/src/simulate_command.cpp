@@ -16,9 +16,8 @@
 #include "command.h"
 #include "common_options.h"
 #include "console.h"
-#include "device_input.h"
-#include "haptic_input.h"
 #include "igtl_option.h"
+#include "live_input.h"
 #include "own_json.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/base/statistics.h"
@@ -95,12 +94,8 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     const auto restored = files::ReadStateFile(options.restore, simulation);
     if (!restored) return restored.error();
   }
-  std::unique_ptr<DeviceInput> device;
-  if (!options.device.empty()) {
-    auto opened = DeviceInput::Open(options.device, *scene);
-    if (!opened) return opened.error();
-    device = std::move(*opened);
-  }
+  auto live = LiveInput::Open(options.device, *scene);
+  if (!live) return live.error();
 
   std::unique_ptr<net::IgtlServer> server;
   if (options.igtl_port >= 0) {
@@ -109,12 +104,7 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     server = std::move(*listening);
   }
 
-  std::unique_ptr<HapticInput> haptics;
-  if (!options.haptics.name.empty()) {
-    auto opened = HapticInput::Open(options.haptics, simulation);
-    if (!opened) return opened.error();
-    haptics = std::move(*opened);
-  }
+  if (const base::Status used = (*live)->UseHaptics(options.haptics, simulation); !used) return used.error();
 
   const std::string player = options.haptics.name.empty()
                                  ? (options.device.empty() ? std::string("script") : options.device)
@@ -133,12 +123,10 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   SimulateReport report;
   host::ProgressBar progress("simulating", options.ticks);
   for (int tick = 0; tick < options.ticks; ++tick) {
-    scene::Input input = scene::CalcScriptInput(*scene, simulation.GetSnapshot().time);
-    if (device != nullptr) device->Apply(simulation.GetSnapshot().time, input);
-    if (haptics != nullptr) haptics->Apply(simulation.GetSnapshot().time, input);
+    const scene::Input input = (*live)->For(simulation.GetSnapshot().tick + 1, simulation.GetSnapshot());
     const host::Stopwatch stopwatch;
     simulation.Step(input);
-    if (haptics != nullptr) haptics->AfterStep(simulation);
+    (*live)->AfterStep(simulation);
     recording->Add(input, simulation);
     tick_ms.push_back(1e3 * stopwatch.Seconds());
     const simulation::Snapshot& snapshot = simulation.GetSnapshot();
@@ -156,9 +144,7 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     if (const base::Status saved = files::WriteStateFile(options.save, simulation); !saved)
       return saved.error();
   }
-  if (device != nullptr) {
-    if (const base::Status whole = device->Check(); !whole) return whole.error();
-  }
+  if (const base::Status whole = (*live)->Check(); !whole) return whole.error();
 
   if (report.gpu.empty()) report.gpu = simulation.DeviceName();
   report.hash = base::HashText(simulation.Hash());
@@ -170,7 +156,7 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
                              base::CalcPercentile(times, 0.5), base::CalcPercentile(times, 0.99)});
   }
   report.tick_p99_ms = base::CalcPercentile(tick_ms, 0.99);
-  if (haptics != nullptr) {
+  if (const HapticInput* haptics = (*live)->Haptics(); haptics != nullptr) {
     report.haptics = haptics->Record().CalcSummary();
     if (const base::Status saved = haptics->SaveRecord(); !saved) return saved.error();
   }
