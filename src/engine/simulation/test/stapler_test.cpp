@@ -47,9 +47,9 @@ class StaplerTest : public OperationHarness {
   }
   /// Puts the jaws across a line, as far as can be from the ducts and vessels that are not meant.
   /// \param inside  from the line to the tip of the jaws [m]
-  void PutAcross(const Vec3& p, const Vec3& axis, double inside, std::int32_t meant) {
+  /// \param best  how far they were elsewhere: only a better place is taken [m]
+  void PutAcross(const Vec3& p, const Vec3& axis, double inside, std::int32_t meant, double& best) {
     const Vec3 side = math::AnyPerpendicular(axis);
-    double best = -1;
     for (int i = 0; i < 24; ++i) {
       const Vec3 along = math::Rotate(math::RotationAbout(axis, i * M_PI / 12), side);
       const Vec3 tip = p + inside * along;
@@ -98,13 +98,15 @@ class StaplerTest : public OperationHarness {
     }
     return bile() - before;
   }
-  /// Over the middle of the cystic duct.
+  /// Over the cystic duct, where the others are farthest.
   void PutAcrossDuct(double inside) {
     const auto tube = scene::FindSurface(Tissue().surfaces, roles::TubeRole::kCysticDuct);
     const scene::SurfaceInfo& duct = Tissue().surfaces[static_cast<std::size_t>(tube)];
-    const std::uint32_t middle = duct.first_node + duct.node_count / 2;
-    PutAcross(math::Lerp(state_.position[middle], state_.position[middle + 1], 0.5),
-              math::Normalized(state_.position[middle + 1] - state_.position[middle]), inside, tube);
+    double best = 0;
+    for (std::uint32_t k = duct.first_node + 2; k + 3 < duct.first_node + duct.node_count; ++k)
+      PutAcross(math::Lerp(state_.position[k], state_.position[k + 1], 0.5),
+                math::Normalized(state_.position[k + 1] - state_.position[k]), inside, tube, best);
+    ASSERT_GT(best, Stapler().jaw_thickness) << "the knife is as wide as the jaws are thick";
   }
 
   scene::Scene scene_;
@@ -135,7 +137,8 @@ TEST_F(StaplerTest, AHollowOrganIsDividedAndStaysTight) {
   const Vec3 fundus = patient.LandmarkOf(roles::LandmarkRole::kFundus)->position;
   const Vec3 neck = patient.LandmarkOf(roles::LandmarkRole::kInfundibulum)->position;
   const Vec3 axis = math::Normalized(neck - fundus);
-  PutAcross(fundus + 0.006 * axis, axis, 0.010, -1);
+  double best = 0;
+  PutAcross(fundus + 0.006 * axis, axis, 0.010, -1, best);
   const auto facts = Fire();
   const auto is_cut = [this](const surgery::Fact& fact) {
     return fact.kind == FactKind::kOrganCut && fact.surface == gallbladder_;
