@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -142,7 +143,9 @@ bool IsWithin(const Snapshot& snapshot, const SnapshotLayout& layout) noexcept {
   for (const surgery::Dent& dent : snapshot.dents) {
     if (!IsIndexOrNone(dent.neighbour, layout.neighbours)) return false;
   }
-  for (const scene::Event& event : snapshot.events) {
+  // entries of the ring that no event has taken yet say nothing
+  const std::uint64_t events = std::min<std::uint64_t>(snapshot.event_count, snapshot.events.size());
+  for (const scene::Event& event : std::span(snapshot.events).first(static_cast<std::size_t>(events))) {
     if (!IsIndexOrNone(event.hand, instrument::kHandCount) || !IsIndexOrNone(event.organ, layout.surfaces) ||
         !IsIndexOrNone(event.object, objects) ||
         !IsIndexOrNone(event.error, cholecystectomy::kOperationErrorCount))

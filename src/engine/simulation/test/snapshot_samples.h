@@ -52,6 +52,7 @@ inline SnapshotLayout MakeSampleLayout() {
   SnapshotLayout layout;
   Visit(
       layout.shape, [](auto&) {}, [](auto& list) { list.resize(kSampleLength); });
+  layout.shape.event_count = kEventRing;  // the ring is full
   layout.model = 0x0123456789abcdef;
   layout.surfaces = layout.neighbours = layout.rules = 4;
   layout.tools = {4, 4};

@@ -12,7 +12,6 @@
 #include "course.h"
 #include "snapshot_samples.h"
 #include "trocar/host/clock.h"
-#include "trocar/host/threads.h"
 
 namespace trocar::agent {
 
@@ -61,8 +60,7 @@ std::string NameOfRun(const testing::TestParamInfo<Course>& info) {
 
 void CheckStreams(const Course& course) {
   const auto scene = ReadCourse(course);
-  auto made =
-      simulation::Simulation::Make(scene, {.threads = host::UseThreads(2), .now = host::NowNanoseconds});
+  auto made = simulation::Simulation::Make(scene, {.now = host::NowNanoseconds});
   ASSERT_TRUE(made.ok()) << made.error().Text();
   simulation::Simulation& simulation = *made;
   // another program's: of the same scene, made apart
