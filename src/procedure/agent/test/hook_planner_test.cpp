@@ -178,8 +178,7 @@ TEST(HookField, TakesAFibreAwayFromWhereAVesselEnters) {
   const Vec3 entry = middle + Vec3{0, 0, 0.001};
   row.field.entries = {{entry, entry + Vec3{0.01, 0, 0}}};
   EXPECT_GT(math::Distance(row.field.HookedPoint(0), middle), 0.0005);
-  EXPECT_NEAR(row.field.EntryDistance({entry + Vec3{0, 0.004, 0}, entry + Vec3{0, 0.005, 0}}), 0.004,
-              1e-12);
+  EXPECT_NEAR(row.field.EntryDistance({entry + Vec3{0, 0.004, 0}, entry + Vec3{0, 0.005, 0}}), 0.004, 1e-12);
 }
 
 }  // namespace
