@@ -6,8 +6,9 @@ include(CMakePackageConfigHelpers)
 
 # Programs. Those that only other programs start lie in libexec, where they are looked for.
 install(TARGETS trocar RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
-install(TARGETS trocar-import trocar-supervisor
+install(TARGETS trocar-training trocar-anatomy trocar-research trocar-import trocar-supervisor
   RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/trocar COMPONENT programs)
+install(TARGETS trocar-postgres LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/trocar COMPONENT programs)
 if(TARGET trocar-window)
   install(TARGETS trocar-window RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
   install(FILES packaging/org.trocar.Trocar.desktop
@@ -28,7 +29,7 @@ find_program(TROCAR_PYTHON3 python3)
 if(TROCAR_PYTHON3)
   add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/man/trocar.1
     COMMAND ${TROCAR_PYTHON3} ${PROJECT_SOURCE_DIR}/tools/make-man-pages $<TARGET_FILE:trocar> ${PROJECT_BINARY_DIR}/man
-    DEPENDS trocar ${PROJECT_SOURCE_DIR}/tools/make-man-pages
+    DEPENDS trocar trocar-training trocar-anatomy trocar-research ${PROJECT_SOURCE_DIR}/tools/make-man-pages
     COMMENT "manual pages" VERBATIM)
   add_custom_target(man_pages DEPENDS ${PROJECT_BINARY_DIR}/man/trocar.1)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs
@@ -38,7 +39,7 @@ if(TROCAR_PYTHON3)
       set(folder ${PROJECT_BINARY_DIR}/man-${language})
       add_custom_command(OUTPUT ${folder}/trocar.1
         COMMAND ${TROCAR_PYTHON3} ${PROJECT_SOURCE_DIR}/tools/make-man-pages $<TARGET_FILE:trocar> ${folder} ${language}
-        DEPENDS trocar translation_${language} ${PROJECT_SOURCE_DIR}/po/${language}.po ${PROJECT_SOURCE_DIR}/tools/make-man-pages
+        DEPENDS trocar trocar-training trocar-anatomy trocar-research translation_${language} ${PROJECT_SOURCE_DIR}/po/${language}.po ${PROJECT_SOURCE_DIR}/tools/make-man-pages
         COMMENT "manual pages: ${language}" VERBATIM)
       add_custom_target(man_pages_${language} DEPENDS ${folder}/trocar.1)
       add_dependencies(man_pages man_pages_${language})

@@ -1,15 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# Where tests are built, to compile a file well takes longer than it wins, but for what is computed in every tick or frame: that has
-# -O2. What people see and click has -O0, and so have the tests of modules that are not fast; all else has -O1 by its preset.
+# How well a file is compiled, by what it does; no bit of a simulation depends on it (tests/bits).
+#
+#                                              release   relwithassert
+#   what is computed in every tick or frame      -O3          -O2       TROCAR_FAST_MODULES
+#   what people see, click and type              -O1          -O0       TROCAR_SHOWING_MODULES, windows, commands
+#   all else                                     -O3          -O1
+#   tests; of fast modules as their modules                   -O0
 set(TROCAR_FAST_MODULES
   anatomy base cholecystectomy collision files geometry haptics host images instrument math meshing patient record render rigid scene simulation surgery tissue
   tissue_cuda training view)
 set(TROCAR_SHOWING_MODULES assessment centre cli doctor editor gui presenter rehearsal report sound store study)
 
-# for the targets of this folder that come after it
+# for the targets of this folder that come after it: tests and the like
 function(trocar_compile_quickly)
   add_compile_options($<$<CONFIG:RelWithDebInfo>:-O0>)
+endfunction()
+# the same for what shows and asks, which does not compute in a release either
+function(trocar_compile_for_showing)
+  trocar_compile_quickly()
+  add_compile_options($<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # trocar_module(NAME
@@ -40,7 +50,7 @@ function(trocar_module name)
   list(TRANSFORM arg_TEST_DEPENDS PREPEND trocar_)
   cmake_language(DEFER CALL trocar_unity_builds)
   if(name IN_LIST TROCAR_SHOWING_MODULES)
-    trocar_compile_quickly()
+    trocar_compile_for_showing()
   endif()
   if(arg_SOURCES)
     add_library(trocar_${name} STATIC ${arg_SOURCES})

@@ -23,6 +23,8 @@ endfunction()
 # the private names that a source file defines, and its text
 function(trocar_private_names file names_variable text_variable)
   file(READ ${file} text)
+  # the bound of an array is no name of this file's
+  string(REGEX REPLACE "\\[k[A-Z][A-Za-z_0-9]*\\] = " " = " text "${text}")
   # brackets and semicolons would be taken for lists
   string(REGEX REPLACE "[][;\\\\]" " " text "${text}")
   string(REGEX REPLACE "//[^\n]*" "" text "${text}")
@@ -121,7 +123,7 @@ function(trocar_unity_builds)
   get_property(targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type ${target} TYPE)
-    if(type MATCHES "EXECUTABLE|STATIC_LIBRARY")
+    if(type MATCHES "EXECUTABLE|STATIC_LIBRARY|MODULE_LIBRARY")
       trocar_unity_build(${target})
     endif()
   endforeach()

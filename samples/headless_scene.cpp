@@ -34,7 +34,7 @@ int main(int count, char** arguments) {
       const scene::Event& event = now.events[printed % now.events.size()];
       std::printf("%6.2f s  %s hand: %s, %.2f N\n", now.time,
                   event.hand == instrument::kLeft ? "left" : "right",
-                  std::string(scene::EventName(event.kind)).c_str(), event.force);
+                  std::string(surgery::FactName(event.kind)).c_str(), event.force);
     }
   }
 }

@@ -281,7 +281,7 @@ py::list DescribeEvents(const Running& running, std::uint64_t since) {
   for (std::uint64_t n = std::max(since, oldest); n < now.event_count; ++n) {
     const scene::Event& event = now.events[n % simulation::kEventRing];
     py::dict entry;
-    entry["event"] = std::string(scene::EventName(event.kind));
+    entry["event"] = std::string(surgery::FactName(event.kind));
     entry["tick"] = event.tick;
     entry["hand"] =
         event.hand < 0 ? py::object(py::none()) : py::str(kHandNames[static_cast<std::size_t>(event.hand)]);

@@ -19,6 +19,10 @@ cd "$work" # nothing of the source tree is near
 grep -q "\"found\": \"$root/share/trocar" doctor.json || { cat doctor.json; exit 1; }
 LANGUAGE=es LC_ALL=C.UTF-8 "$root/bin/trocar" errors >errors.txt
 grep -q 'no se puede leer' errors.txt || { echo "Spanish is missing"; exit 1; }
+# commands of the programs in libexec
+"$root/bin/trocar" bench --list | grep -q '^ *tissue' || { echo "trocar-research does not start"; exit 1; }
+"$root/bin/trocar" play --list | grep -q peg_transfer || { echo "trocar-training finds no tasks"; exit 1; }
+"$root/bin/trocar" anatomy generate --seed 3 -o generated >/dev/null
 if python3 -c 'import h5py, numpy' 2>/dev/null; then
   "$root/bin/trocar" dataset --layout trocar --task peg_transfer --size 64x48 --every 0.5 --most-seconds 1 -o set
   "$root/bin/trocar" dataset verify set

@@ -23,13 +23,13 @@ COMMANDS = ["src/program/cli"]
 # list_console.py lists these; VisitHelpTexts translates the help
 SAYS = {"Say", "FormatFields", "ProgressBar"}
 HELPS = {"add_subcommand", "add_option", "add_flag", "add_option_function", "add_flag_function", "add_option_group", "footer", "type_name", "group",
-         "check", "description"}
+         "check", "description", "AddThreadsOption", "AddJsonFlag", "AddSizeOption", "AddCacheOption", "AddPseudonymOption"}
 PRINTS = {"printf", "fprintf", "puts", "fputs"}
 # tables that tests/texts/list_texts.cpp prints, help of the command line, pages of machines, and reports for programs
 TABLES = {"simulator_commands.cpp", "replay_commands.cpp", "centre_commands.cpp", "contour_commands.cpp", "patient_commands.cpp",
           "settings_form.cpp", "home.cpp", "options.cpp", "contour_script.cpp", "unattended_play.cpp", "play_screenshot.cpp",
           "report_files.cpp", "xapi.cpp", "xapi_delivery.cpp", "http_client.cpp", "page_style.cpp", "page_style.h", "pdf_canvas.cpp",
-          "run_command.cpp", "errors_command.cpp"}
+          "run_command.cpp", "command_list.cpp", "errors_command.cpp"}
 PROSE = re.compile(r"[A-Za-z]{2,}[,;:.]? +[A-Za-z]{2,}|^[A-Z][a-z]{2,}")
 
 

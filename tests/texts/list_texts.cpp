@@ -194,13 +194,9 @@ void PrintMedicine() {
        {cholecystectomy::Severity::kMinor, cholecystectomy::Severity::kMajor,
         cholecystectomy::Severity::kCritical})
     Print(cholecystectomy::NameOf(severity));
-  for (const char* tool :
-       {"grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag"}) {
-    if (instrument::FindTool(tool) == nullptr) std::exit(1);
-    PrintWords(tool);
-  }
-  for (int kind = 0; kind <= static_cast<int>(scene::EventKind::kOperationError); ++kind)
-    PrintWords(std::string(scene::EventName(static_cast<scene::EventKind>(kind))));
+  for (const instrument::Tool& tool : instrument::AllTools()) PrintWords(tool.name);
+  for (int kind = 0; kind <= static_cast<int>(surgery::FactKind::kVerdict); ++kind)
+    PrintWords(std::string(surgery::FactName(static_cast<surgery::FactKind>(kind))));
   for (int stage = 0; stage < static_cast<int>(simulation::Stage::kCount); ++stage)
     PrintWords(std::string(simulation::StageName(static_cast<simulation::Stage>(stage))));
   // what a generated patient may have; ducts and regions beyond those of the built-in one

@@ -56,7 +56,7 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kUnstableStep, "E-SIM-004", "the relaxation's step is larger than any stable one"},
     {ErrorCode::kOutOfMemory, "E-SIM-005", "more memory is needed than there is"},
     {ErrorCode::kStateInvalid, "E-SIM-006",
-     "a saved state is damaged, of another version or of another scene"},
+     "a saved state or a snapshot that was sent is damaged, of another version or of another scene"},
     {ErrorCode::kRecordingInvalid, "E-REC-001",
      "a recording is damaged, of another version, or its scene has changed since"},
     {ErrorCode::kStoreBusy, "E-STO-001", "another program holds the store locked"},

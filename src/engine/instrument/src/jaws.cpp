@@ -118,6 +118,21 @@ geometry::TriangleMesh MakeClipJaw(const Tool& tool, int side) {
   return MakeLoft(rings);
 }
 
+/// Linear stapler: a long bar, blunt at the tip; the lower one, which holds the cartridge, is the stouter.
+geometry::TriangleMesh MakeStaplerJaw(const Tool& tool, int side) {
+  constexpr int kSteps = 24;
+  std::vector<Ring> rings;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double along = static_cast<double>(i) / kSteps;
+    const double nose = std::sqrt(std::min(1.0, 0.10 + along / 0.10));
+    const double half = 0.5 * tool.jaw_width * nose;
+    const double low = 0.0003, high = low + tool.jaw_thickness * nose * (side > 0 ? 0.8 : 1.15);
+    rings.push_back(
+        MakeBlockRing(along * tool.jaw_length, -half, half, side > 0 ? low : -high, side > 0 ? high : -low));
+  }
+  return MakeLoft(rings);
+}
+
 }  // namespace
 
 geometry::TriangleMesh MakeJaw(const Tool& tool, int side) {
@@ -129,6 +144,8 @@ geometry::TriangleMesh MakeJaw(const Tool& tool, int side) {
       return MakeScissorsBlade(tool, side);
     case ToolKind::kClipApplier:
       return MakeClipJaw(tool, side);
+    case ToolKind::kLinearStapler:
+      return MakeStaplerJaw(tool, side);
     default:
       return MakeGrasperJaw(tool, side);
   }

@@ -254,7 +254,7 @@ std::vector<ToolPart> MakeParts(const Tool& tool) {
   parts.push_back({Kind::kTip, MakeHub(tool)});
   parts.push_back({Kind::kUpperJaw, MakeJaw(tool, +1)});
   parts.push_back({Kind::kLowerJaw, MakeJaw(tool, -1)});
-  if (tool.kind == ToolKind::kClipApplier) {
+  if (AbilitiesOf(tool.kind).holds_clips) {
     parts.push_back({Kind::kUpperClip, MakeClipLeg(tool, +1)});
     parts.push_back({Kind::kLowerClip, MakeClipLeg(tool, -1)});
   }

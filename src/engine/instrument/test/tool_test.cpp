@@ -16,7 +16,34 @@ using math::Vec3;
 namespace {
 
 constexpr const char* kNames[] = {"grasper",      "maryland",          "hook", "scissors",
-                                  "clip_applier", "suction_irrigator", "bag"};
+                                  "clip_applier", "suction_irrigator", "bag",  "linear_stapler"};
+
+TEST(AllTools, StandInTheOrderOfTheirKinds) {
+  ASSERT_EQ(AllTools().size(), static_cast<std::size_t>(ToolKind::kLinearStapler) + 1);
+  for (std::size_t i = 0; i < AllTools().size(); ++i)
+    EXPECT_EQ(static_cast<std::size_t>(AllTools()[i].kind), i) << AllTools()[i].name;
+}
+
+// Each ability is of some tools and not of all; what bites, takes or spreads needs jaws, what holds clips has a stock.
+TEST(AbilitiesOf, FitTheShapesOfTheTools) {
+  for (const Tool& tool : AllTools()) {
+    const ToolAbilities& can = AbilitiesOf(tool.kind);
+    const bool needs_jaws = can.takes || can.spreads || can.bites || can.electrode == Electrode::kJaws ||
+                            can.blade == Blade::kJaws;
+    EXPECT_EQ(needs_jaws, tool.max_jaw > 0.0) << tool.name;
+    EXPECT_EQ(can.holds_clips || can.staples, tool.clips > 0) << tool.name;
+  }
+  for (const Tool& tool : AllTools()) {
+    const ToolAbilities& can = AbilitiesOf(tool.kind);
+    EXPECT_EQ(can.pedals.coagulate, can.electrode != Electrode::kNone) << tool.name;
+    EXPECT_EQ(can.pedals.rinse, can.sucks) << tool.name;
+  }
+  const ToolAbilities& hook = AbilitiesOf(ToolKind::kHook);
+  EXPECT_TRUE(hook.electrode == Electrode::kToe && hook.blade == Blade::kHeel);
+  EXPECT_TRUE(AbilitiesOf(ToolKind::kDissector).spreads && !AbilitiesOf(ToolKind::kGrasper).spreads);
+  EXPECT_TRUE(AbilitiesOf(ToolKind::kScissors).bites && AbilitiesOf(ToolKind::kClipApplier).bites);
+  EXPECT_TRUE(AbilitiesOf(ToolKind::kSuctionIrrigator).sucks && AbilitiesOf(ToolKind::kBag).is_bag);
+}
 
 TEST(FindTool, KnowsEveryToolByItsName) {
   for (const char* name : kNames) {

@@ -43,15 +43,15 @@ class RigidStage {
             const ToolContacts& contacts, const math::Vec3& gravity);
 
   math::Vec3 ForceOn(int hand) const { return forces_[static_cast<std::size_t>(hand)]; }
-  /// \param emit  (EventKind, hand, object): called for each thing that jaws took, let go or lost in this tick
+  /// \param emit  (surgery::FactKind, hand, object): called for each thing that jaws took, let go or lost in this tick
   template <typename F>
   void ForEachChange(F&& emit) const {
     for (int hand = 0; hand < instrument::kHandCount; ++hand) {
       const RigidChange& change = changes_[static_cast<std::size_t>(hand)];
-      if (change.kind == surgery::GraspChange::kGrasped) emit(scene::EventKind::kGrasp, hand, change.object);
+      if (change.kind == surgery::GraspChange::kGrasped) emit(surgery::FactKind::kGrasp, hand, change.object);
       if (change.kind == surgery::GraspChange::kReleased)
-        emit(scene::EventKind::kRelease, hand, change.object);
-      if (change.kind == surgery::GraspChange::kSlipped) emit(scene::EventKind::kSlip, hand, change.object);
+        emit(surgery::FactKind::kRelease, hand, change.object);
+      if (change.kind == surgery::GraspChange::kSlipped) emit(surgery::FactKind::kSlip, hand, change.object);
     }
   }
   std::int32_t HeldBy(int hand) const;

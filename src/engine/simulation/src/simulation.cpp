@@ -120,6 +120,7 @@ void Simulation::Content::Begin() {
   snapshot.positions.resize(world.tissue.position.size());
   snapshot.organs.resize(world.conserved.organs.size());
   if (world.operation != nullptr) world.operation->Size(snapshot.operation);
+  snapshot.facts.resize(world.operation != nullptr ? surgery::FactList::kCapacity : kMostPlainFacts);
   snapshot.objects.resize(scene.objects.size());
   judgement.monitor.Reset(scene, judgement.task);
   snapshot.task = judgement.task;
@@ -164,8 +165,8 @@ void Timed(Stage stage, const Services& services, std::array<double, kStageCount
 
 }  // namespace
 
-void Simulation::StepWorld(const Input& input) noexcept {
-  Content& c = *content_;
+void Simulation::Content::StepWorld(const Input& input, bool is_judged) noexcept {
+  Content& c = *this;
   const auto timed = [&c](Stage stage, auto&& work) { Timed(stage, c.services, c.tick.stage_seconds, work); };
   ++c.world.tick;
   timed(Stage::kReadInputs, [&] { c.ReadInputs(input); });
@@ -173,6 +174,7 @@ void Simulation::StepWorld(const Input& input) noexcept {
   timed(Stage::kFindContacts, [&] { c.FindContacts(); });
   timed(Stage::kUseTools, [&] { c.UseTools(input); });
   timed(Stage::kHeat, [&] { c.Heat(); });
+  if (is_judged) timed(Stage::kWitness, [&] { c.WitnessTools(); });
   timed(Stage::kAssistant, [&] { c.Assist(); });
   timed(Stage::kTopology, [&] { c.CutTopology(); });
   timed(Stage::kTissue, [&] { c.SolveTissue(); });
@@ -184,10 +186,14 @@ void Simulation::StepWorld(const Input& input) noexcept {
   timed(Stage::kCamera, [&] { c.HoldCamera(); });
 }
 
+void Simulation::StepWorld(const Input& input) noexcept {
+  content_->StepWorld(input, false);
+}
+
 void Simulation::Step(const Input& input) noexcept {
   Content& c = *content_;
   const auto timed = [&c](Stage stage, auto&& work) { Timed(stage, c.services, c.tick.stage_seconds, work); };
-  StepWorld(input);
+  c.StepWorld(input, true);
   timed(Stage::kJudgement, [&] { c.Judge(); });
   timed(Stage::kPublish, [&] { c.Publish(); });
   timed(Stage::kTaskRules, [&] { c.JudgeTask(); });

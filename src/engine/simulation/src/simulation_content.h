@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "camera_holder.h"
@@ -17,6 +18,7 @@
 #include "tool_contacts.h"
 #include "topology.h"
 #include "trocar/simulation/simulation.h"
+#include "trocar/surgery/fact.h"
 #include "trocar/surgery/grasp.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
@@ -71,6 +73,7 @@ struct TickScratch {
   std::vector<std::uint32_t> torn_springs;  ///< (springs) those of the walls that tore in this tick, first
   std::size_t torn_spring_count = 0;
   HandsNow hands;
+  surgery::FactList facts;
   std::array<double, kStageCount> stage_seconds{};
 };
 
@@ -94,16 +97,18 @@ struct Simulation::Content {
     return world.operation != nullptr ? world.operation->Tool(hand) : GetScene().instruments[hand].tool;
   }
   ToolsNow GetTools() const noexcept;
-  TissueNow GetTissue() const noexcept;
-  OperatedTissue GetOperated() noexcept { return {world.tissue, world.conserved, world.grasps}; }
+  OperatedTissue GetTissue() noexcept;
   instrument::Camera GetCamera() const noexcept;
 
   // --- the stages of a tick, in their order (docs/step.md)
+  /// Up to the laparoscope. \param is_judged  a judge looks on
+  void StepWorld(const scene::Input& input, bool is_judged) noexcept;
   void ReadInputs(const scene::Input& input) noexcept;
   void MoveTools(const scene::Input& input) noexcept;
   void FindContacts() noexcept;
   void UseTools(const scene::Input& input) noexcept;
   void Heat() noexcept;
+  void WitnessTools() noexcept;
   void Assist() noexcept;
   void CutTopology() noexcept;
   void SolveTissue() noexcept;
@@ -122,9 +127,11 @@ struct Simulation::Content {
   void Grasp() noexcept;
   void MarkPressedNodes() noexcept;
   void TearTissue() noexcept;
-  void Emit(scene::EventKind kind, int hand, std::int32_t organ, double force,
+  void Emit(surgery::FactKind kind, int hand, std::int32_t organ, double force,
             std::int32_t object = -1) noexcept;
   void EmitGrasps() noexcept;
+  scene::Event& Remember(const scene::Event& event) noexcept;
+  void RememberFacts(std::span<const surgery::Fact> facts) noexcept;
 
   // --- as a whole
   base::Status MakeParts();

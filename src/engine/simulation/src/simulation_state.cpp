@@ -8,6 +8,7 @@
 
 #include "simulation_content.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/checksum.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/instrument/state_fields.h"
 #include "trocar/math/state_fields.h"
@@ -28,20 +29,6 @@ constexpr std::array<char, 8> kMagic{'T', 'R', 'O', 'C', 'S', 'T', 'A', 'T'};
 /// Counts up whenever a field comes, goes or changes its meaning.
 constexpr std::uint64_t kVersion = 2;
 
-std::uint64_t CalcChecksum(std::span<const std::byte> bytes) {
-  base::StateHash hash;
-  std::size_t at = 0;
-  for (; at + 8 <= bytes.size(); at += 8) {
-    std::uint64_t word;
-    std::memcpy(&word, bytes.data() + at, 8);
-    hash.Add(word);
-  }
-  std::uint64_t rest = 0;
-  std::memcpy(&rest, bytes.data() + at, bytes.size() - at);
-  hash.Add(rest);
-  return hash.Value();
-}
-
 base::Error Refuse(std::string why) {
   return {base::ErrorCode::kStateInvalid, std::move(why)};
 }
@@ -61,7 +48,7 @@ base::Result<std::span<const std::byte>> ReadHeader(const SimulationModel& model
   if (header.fingerprint != model.fingerprint && header.fingerprint != model.first_fingerprint)
     return Refuse(
         "the state was saved of another scene, patient or seed; restore it into the one it came from");
-  if (header.size != fields.size() || header.checksum != CalcChecksum(fields))
+  if (header.size != fields.size() || header.checksum != base::CalcChecksum(fields))
     return Refuse("the state is damaged: its checksum does not fit; take another copy of it");
   return fields;
 }
@@ -79,7 +66,7 @@ void Simulation::Content::Save(std::vector<std::byte>& bytes, const AlterField& 
   }
   VisitState(archive);
   const auto fields = std::span<const std::byte>(bytes).subspan(sizeof(Header));
-  const Header header{kMagic, kVersion, model->fingerprint, fields.size(), CalcChecksum(fields)};
+  const Header header{kMagic, kVersion, model->fingerprint, fields.size(), base::CalcChecksum(fields)};
   std::memcpy(bytes.data(), &header, sizeof(header));
 }
 
@@ -141,6 +128,7 @@ void Simulation::Content::VisitJudgement(base::StateArchive& archive) {
 }
 
 base::Status Simulation::Content::Restore(base::StateArchive& archive) {
+  tick.facts.Clear();
   VisitState(archive);
   if (!archive.ok()) return Refuse("the saved state does not fit: " + archive.Failure());
   if (!archive.IsAtEnd()) return Refuse("the saved state goes on after its last field");

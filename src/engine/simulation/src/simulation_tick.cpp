@@ -18,8 +18,8 @@ using math::Sin;
 using math::Vec3;
 using scene::CalcLaparoscopePose;
 using scene::ClampSettings;
-using scene::EventKind;
 using scene::Input;
+using surgery::FactKind;
 
 namespace {
 
@@ -47,7 +47,8 @@ void Simulation::Content::ReadInputs(const Input& input) noexcept {
 
 void Simulation::Content::MoveTools(const Input& input) noexcept {
   WorldState& w = world;
-  if (w.operation != nullptr) w.operation->BeginTick();
+  tick.facts.Clear();
+  if (w.operation != nullptr) w.operation->BeginTick(tick.facts);
   for (int hand = 0; hand < kHandCount; ++hand) {
     instrument::JointLimits limits;
     limits.max_jaw = ToolOf(hand).max_jaw;
@@ -102,12 +103,17 @@ ToolsNow Simulation::Content::GetTools() const noexcept {
   return now;
 }
 
-TissueNow Simulation::Content::GetTissue() const noexcept {
-  const WorldState& w = world;
-  return {&w.topology.Model(), &w.topology.Definition(),
-          &w.tissue,           conservation.get(),
-          &w.conserved,        w.touch.Organs(),
-          &w.touch.Tubes(),    std::span(tick.torn_springs).first(tick.torn_spring_count)};
+OperatedTissue Simulation::Content::GetTissue() noexcept {
+  WorldState& w = world;
+  return {w.topology.Model(),
+          w.topology.Definition(),
+          w.tissue,
+          *conservation,
+          w.conserved,
+          w.touch.Organs(),
+          w.touch.Tubes(),
+          std::span(tick.torn_springs).first(tick.torn_spring_count),
+          w.grasps};
 }
 
 void Simulation::Content::FindContacts() noexcept {
@@ -130,12 +136,11 @@ void Simulation::Content::UseTools(const Input& input) noexcept {
   hands.forces = w.forces;
   hands.gravity = tick.load.gravity + kImagingGravity;
   hands.changes = tick.changes;
-  hands.grasps = &w.grasps;
   hands.camera = GetCamera();
   hands.time = static_cast<double>(w.tick) * GetScene().tick_seconds;
   hands.seconds = GetScene().tick_seconds;
-  OperatedTissue operated = GetOperated();
-  w.operation->Act(hands, GetTissue(), operated);
+  OperatedTissue tissue = GetTissue();
+  w.operation->Act(hands, tissue);
 }
 
 void Simulation::Content::Grasp() noexcept {
@@ -146,8 +151,7 @@ void Simulation::Content::Grasp() noexcept {
     tick.changes[hand] = surgery::GraspChange::kNone;
     tick.changed_organs[hand] = held;
     const instrument::Tool& tool = ToolOf(hand);
-    const bool can_grasp =
-        tool.kind == instrument::ToolKind::kGrasper || tool.kind == instrument::ToolKind::kDissector;
+    const bool can_grasp = instrument::AbilitiesOf(tool.kind).takes;
     const bool has_stone = w.operation != nullptr && w.operation->HoldsStone(hand);
     if ((!can_grasp || has_stone) && !grasp.IsHolding()) continue;
     tick.changes[hand] = surgery::UpdateGrasp(tool, w.touch.Proxy(hand), w.touch.Device(hand),
@@ -174,14 +178,20 @@ void Simulation::Content::MarkPressedNodes() noexcept {
 
 void Simulation::Content::Heat() noexcept {
   if (world.operation == nullptr) return;
-  OperatedTissue operated = GetOperated();
-  world.operation->Heat(tick.hands, GetTissue(), operated);
+  OperatedTissue tissue = GetTissue();
+  world.operation->Heat(tick.hands, tissue);
+}
+
+/// A judge sees what tools and heat did while the tissue is as it was then.
+void Simulation::Content::WitnessTools() noexcept {
+  if (world.operation == nullptr) return;
+  judgement.operation->SeeTools(world.operation->Observe(tick.hands, GetTissue(), tick.hands.camera));
 }
 
 void Simulation::Content::Assist() noexcept {
   if (world.operation == nullptr) return;
-  OperatedTissue operated = GetOperated();
-  world.operation->Assist(tick.hands, GetTissue(), operated);
+  OperatedTissue tissue = GetTissue();
+  world.operation->Assist(tick.hands, tissue);
 }
 
 /// Takes a cut into the system in the tick that made it. Allocates.
@@ -262,19 +272,36 @@ void Simulation::Content::StepRigidBodies() noexcept {
 void Simulation::Content::Flow() noexcept {
   if (world.operation == nullptr) return;
   tick.hands.changes = tick.changes;  // a grasp may have slipped in the solve
-  OperatedTissue operated = GetOperated();
-  world.operation->Flow(tick.hands, GetTissue(), operated);
+  OperatedTissue tissue = GetTissue();
+  world.operation->Flow(tick.hands, tissue);
 }
 
 void Simulation::Content::MoveLoose() noexcept {
   if (world.operation != nullptr) world.operation->MoveLoose(tick.hands, GetTissue());
 }
 
-void Simulation::Content::Emit(EventKind kind, int hand, std::int32_t organ, double force,
-                               std::int32_t object) noexcept {
+scene::Event& Simulation::Content::Remember(const scene::Event& event) noexcept {
   JudgementState& j = judgement;
-  j.events[j.event_count % j.events.size()] = {kind, world.tick, hand, organ, force, object};
+  scene::Event& place = j.events[j.event_count % j.events.size()];
+  place = event;
   ++j.event_count;
+  return place;
+}
+
+void Simulation::Content::Emit(FactKind kind, int hand, std::int32_t organ, double force,
+                               std::int32_t object) noexcept {
+  surgery::Fact fact;
+  fact.kind = kind;
+  fact.hand = static_cast<std::int8_t>(hand);
+  fact.surface = organ;
+  fact.object = object;
+  fact.amount = force;
+  if (hand >= 0) {
+    fact.tool = ToolOf(hand).kind;
+    fact.position = world.touch.Proxy(hand).translation;
+  }
+  tick.facts.Add(fact);
+  Remember({kind, world.tick, hand, organ, force, object});
 }
 
 void Simulation::Content::EmitGrasps() noexcept {
@@ -284,55 +311,62 @@ void Simulation::Content::EmitGrasps() noexcept {
       case surgery::GraspChange::kNone:
         break;
       case surgery::GraspChange::kGrasped:
-        Emit(EventKind::kGrasp, hand, tick.changed_organs[hand], force);
+        Emit(FactKind::kGrasp, hand, tick.changed_organs[hand], force);
         break;
       case surgery::GraspChange::kMissed:
-        Emit(EventKind::kGraspMissed, hand, -1, 0.0);
+        Emit(FactKind::kGraspMissed, hand, -1, 0.0);
         break;
       case surgery::GraspChange::kReleased:
-        Emit(EventKind::kRelease, hand, tick.changed_organs[hand], force);
+        Emit(FactKind::kRelease, hand, tick.changed_organs[hand], force);
         break;
       case surgery::GraspChange::kSlipped:
-        Emit(EventKind::kSlip, hand, tick.changed_organs[hand], force);
+        Emit(FactKind::kSlip, hand, tick.changed_organs[hand], force);
         break;
       case surgery::GraspChange::kDamaged:
-        Emit(EventKind::kPinchDamage, hand, tick.changed_organs[hand], world.grasps[hand].pinch);
+        Emit(FactKind::kPinchDamage, hand, tick.changed_organs[hand], world.grasps[hand].pinch);
         break;
     }
   }
-  world.rigid.ForEachChange([&](EventKind kind, int hand, std::int32_t object) {
+  world.rigid.ForEachChange([&](FactKind kind, int hand, std::int32_t object) {
     Emit(kind, hand, -1, math::Norm(world.forces[hand]), object);
   });
 }
 
 void Simulation::Content::Judge() noexcept {
   JudgementState& j = judgement;
-  const auto last = [&j]() -> scene::Event& { return j.events[(j.event_count - 1) % j.events.size()]; };
+  const std::size_t of_operation = tick.facts.All().size();
   for (int hand = 0; hand < kHandCount; ++hand) {
     if (tick.was_exchange_refused[hand])
-      Emit(EventKind::kExchangeRefused, hand, world.grasps[hand].surface, 0.0);
+      Emit(FactKind::kExchangeRefused, hand, world.grasps[hand].surface, 0.0);
   }
   EmitGrasps();
   const bool are_touching = world.touch.AreToolsTouching();
-  if (are_touching && !j.were_tools_touching) Emit(EventKind::kToolsTouch, -1, -1, 0.0);
+  if (are_touching && !j.were_tools_touching) Emit(FactKind::kToolsTouch, -1, -1, 0.0);
   j.were_tools_touching = are_touching;
-  if (tick.torn_count > 0) Emit(EventKind::kTear, -1, model->tissue->strand_organs[tick.torn[0]], 0.0);
+  if (tick.torn_count > 0) Emit(FactKind::kTear, -1, model->tissue->strand_organs[tick.torn[0]], 0.0);
   if (tick.torn_spring_count > 0)
-    Emit(EventKind::kTear, -1, world.topology.Walls().organs[tick.torn_springs[0]], 0.0);
-  if (tick.verdict == tissue::GuardVerdict::kRestored) Emit(EventKind::kStateRestored, -1, -1, 0.0);
+    Emit(FactKind::kTear, -1, world.topology.Walls().organs[tick.torn_springs[0]], 0.0);
+  if (tick.verdict == tissue::GuardVerdict::kRestored) Emit(FactKind::kStateRestored, -1, -1, 0.0);
   const bool is_frozen = tick.verdict == tissue::GuardVerdict::kFrozen;
-  if (is_frozen && !j.was_frozen) Emit(EventKind::kOrganFrozen, -1, -1, 0.0);
+  if (is_frozen && !j.was_frozen) Emit(FactKind::kOrganFrozen, -1, -1, 0.0);
   j.was_frozen = is_frozen;
   if (world.operation == nullptr) return;
-  for (const OperationEvent& event : world.operation->Events()) {
-    Emit(event.kind, event.hand, event.surface, 0.0);
-    last().p_rest = event.p_rest;
-  }
+  RememberFacts(tick.facts.All().first(of_operation));
   j.operation->Update(world.operation->Observe(tick.hands, GetTissue(), GetCamera()));
   for (const cholecystectomy::ErrorEntry& entry : j.operation->NewErrors()) {
-    Emit(EventKind::kOperationError, entry.hand, -1, 0.0);
-    last().error = static_cast<std::int32_t>(entry.error);
-    last().p_rest = entry.place;
+    scene::Event& event = Remember({FactKind::kVerdict, world.tick, entry.hand, -1, 0.0});
+    event.error = static_cast<std::int32_t>(entry.error);
+    event.p_rest = entry.place;
+  }
+}
+
+/// Those that count as events, as many as the ring holds.
+void Simulation::Content::RememberFacts(std::span<const surgery::Fact> facts) noexcept {
+  std::size_t count = 0;
+  for (const surgery::Fact& fact : facts) {
+    if (!surgery::IsEvent(fact.kind) || count == kEventRing) continue;
+    ++count;
+    Remember({fact.kind, world.tick, fact.hand, fact.surface, 0.0}).p_rest = fact.p_rest;
   }
 }
 
@@ -374,6 +408,9 @@ void Simulation::Content::Publish() noexcept {
   snapshot.dents = w.touch.Neighbours().Dents();
   snapshot.events = judgement.events;
   snapshot.event_count = judgement.event_count;
+  const auto facts = tick.facts.All();
+  snapshot.fact_count = std::min(facts.size(), snapshot.facts.size());
+  std::copy_n(facts.begin(), snapshot.fact_count, snapshot.facts.begin());
 }
 
 void Simulation::Content::JudgeTask() noexcept {

@@ -17,7 +17,6 @@ using math::Vec3;
 using scene::Condition;
 using scene::ConditionKind;
 using scene::ErrorRule;
-using scene::EventKind;
 using scene::Goal;
 using scene::GoalSnapshot;
 using scene::kAnyHand;
@@ -28,6 +27,7 @@ using scene::Task;
 using scene::TaskError;
 using scene::TaskPhase;
 using scene::TaskSnapshot;
+using surgery::FactKind;
 
 namespace {
 
@@ -249,9 +249,9 @@ Finding TaskMonitor::FindOfEvents(const Scene& scene, const Snapshot& snapshot,
     if (c.hand != kAnyHand && c.hand != event.hand) return false;
     switch (c.kind) {
       case ConditionKind::kOperationError:
-        return event.kind == EventKind::kOperationError && event.error == c.error;
+        return event.kind == FactKind::kVerdict && event.error == c.error;
       case ConditionKind::kUnclippedCut:
-        return event.kind == EventKind::kTubeCut &&
+        return event.kind == FactKind::kTubeCut &&
                static_cast<double>(CountGoodClips(snapshot.operation)) < c.amount;
       default:
         if (static_cast<int>(event.kind) != c.event) return false;

@@ -17,7 +17,7 @@ namespace trocar::simulation {
 
 using files::ReadScene;
 using scene::CalcScriptInput;
-using scene::EventKind;
+using surgery::FactKind;
 namespace {
 
 namespace fs = std::filesystem;
@@ -47,8 +47,8 @@ TEST(GeneratedPatient, RunsInTheDemonstrationScene) {
   ASSERT_FALSE(snapshot.positions.empty());
   for (const math::Vec3& p : snapshot.positions) ASSERT_TRUE(math::IsFinite(p));
   for (std::uint64_t i = 0; i < snapshot.event_count && i < snapshot.events.size(); ++i) {
-    EXPECT_NE(snapshot.events[i].kind, EventKind::kStateRestored);
-    EXPECT_NE(snapshot.events[i].kind, EventKind::kOrganFrozen);
+    EXPECT_NE(snapshot.events[i].kind, FactKind::kStateRestored);
+    EXPECT_NE(snapshot.events[i].kind, FactKind::kOrganFrozen);
   }
   EXPECT_EQ(ReadScene(scene_path, folder / "nowhere").error().code, base::ErrorCode::kFileMissing);
 }

@@ -64,42 +64,51 @@ class OperationHarness : public testing::Test {
     return Tissue().surfaces[static_cast<std::size_t>(gallbladder_)];
   }
 
-  void MakeOperation() {
+  void MakeOperation(const scene::Scene& scene = *OperationScene()) {
     state_ = tissue::MakeRestState(model_);
     conserved_ = conservation_->MakeState(state_);
-    auto made = Operation::Make(*OperationScene(), SharedTissue());
+    auto made = Operation::Make(scene, SharedTissue());
     ASSERT_TRUE(made.ok()) << made.error().Text();
     operation_ = std::move(*made);
     judge_.emplace(operation_->MakeJudge());
+    BeginTick();
     input_ = scene::CalcScriptInput(*OperationScene(), 0.0);
     grasps_ = {};
     hands_ = {};
     hands_.input = &input_;
     hands_.joints = input_.hands;
-    hands_.grasps = &grasps_;
     hands_.gravity = kGravity;
     hands_.seconds = kTick;
     // far from everything
     for (math::Pose& X : hands_.X_proxy) X.translation = {0, 0, 0.3};
     hands_.X_device = hands_.X_proxy;
   }
-  TissueNow Now() {
-    return {&model_, &Tissue().definition, &state_, &*conservation_, &conserved_, organs_, &tubes_, torn_};
+  OperatedTissue Now() {
+    return {model_, Tissue().definition, state_, *conservation_, conserved_, organs_, tubes_, torn_, grasps_};
+  }
+  void BeginTick() {
+    facts_.Clear();
+    operation_->BeginTick(facts_);
+    is_judged_ = false;
   }
   void Act() {
-    OperatedTissue operated{state_, conserved_, grasps_};
-    operation_->Act(hands_, Now(), operated);
-    operation_->Heat(hands_, Now(), operated);
-    operation_->Assist(hands_, Now(), operated);
+    if (is_judged_) BeginTick();
+    OperatedTissue tissue = Now();
+    operation_->Act(hands_, tissue);
+    operation_->Heat(hands_, tissue);
+    judge_->SeeTools(operation_->Observe(hands_, Now(), hands_.camera));
+    operation_->Assist(hands_, tissue);
     (void)operation_->EndCuts();
   }
-  /// What follows the solve; the acts up to here are forgotten, the events stay until the next tick.
+  /// What follows the solve; the facts stay until the next tick.
   void Judge() {
-    OperatedTissue operated{state_, conserved_, grasps_};
-    operation_->Flow(hands_, Now(), operated);
+    if (is_judged_) BeginTick();
+    OperatedTissue tissue = Now();
+    operation_->Flow(hands_, tissue);
     operation_->MoveLoose(hands_, Now());
     judge_->Update(operation_->Observe(hands_, Now(), hands_.camera));
     hands_.time += kTick;
+    is_judged_ = true;
   }
   OperationResult Result() const {
     OperationResult result;
@@ -122,6 +131,7 @@ class OperationHarness : public testing::Test {
                                     [kind](const instrument::Tool& tool) { return tool.kind == kind; });
     ASSERT_NE(found, tray.end());
     input_.controls[hand].tool = static_cast<std::uint8_t>(found - tray.begin());
+    if (is_judged_) BeginTick();
     instrument::TrocarJoints wanted;
     for (int i = 0; i < 80; ++i)
       (void)operation_->MoveTool(hand, input_.controls[hand], grasps_[hand].IsHolding(), kTick, wanted);
@@ -175,6 +185,8 @@ class OperationHarness : public testing::Test {
   int gallbladder_ = -1, liver_ = -1;
   std::vector<std::uint32_t> torn_;
   std::unique_ptr<Operation> operation_;
+  surgery::FactList facts_;  // of the tick
+  bool is_judged_ = false;   // the tick is over
   std::optional<cholecystectomy::OperationJudge> judge_;
   scene::Input input_;
   HandsNow hands_;

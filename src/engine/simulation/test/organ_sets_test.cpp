@@ -49,7 +49,7 @@ class OrganSets : public SmallScene {
     EXPECT_EQ(snapshot.tick, 120u);
     for (const math::Vec3& p : snapshot.positions) ASSERT_TRUE(math::IsFinite(p));
     for (std::uint64_t i = 0; i < snapshot.event_count && i < snapshot.events.size(); ++i)
-      EXPECT_NE(snapshot.events[i].kind, scene::EventKind::kStateRestored);
+      EXPECT_NE(snapshot.events[i].kind, surgery::FactKind::kStateRestored);
   }
 
   std::optional<Simulation> simulation_;

@@ -24,11 +24,11 @@ using instrument::kLeft;
 using instrument::kRight;
 using math::Vec3;
 using scene::CalcScriptInput;
-using scene::EventKind;
-using scene::EventName;
 using scene::Input;
 using scene::Scene;
 using scene::SmallScene;
+using surgery::FactKind;
+using surgery::FactName;
 
 namespace {
 
@@ -62,7 +62,7 @@ TEST_F(SimulationTest, LiesStillWhenNothingActs) {
 TEST_F(SimulationTest, ScriptGraspsLiftsAndLetsGo) {
   Simulation simulation = Make();
   const auto rest = simulation.GetSnapshot().positions;
-  std::set<EventKind> seen;
+  std::set<FactKind> seen;
   double highest_force = 0, largest = 0;
   std::uint64_t events = 0;
   for (int i = 0; i < 180; ++i) {
@@ -75,9 +75,9 @@ TEST_F(SimulationTest, ScriptGraspsLiftsAndLetsGo) {
     }
     EXPECT_EQ(math::Norm(now.instruments[kRight].force), 0.0);
   }
-  EXPECT_TRUE(seen.count(EventKind::kGrasp));
-  EXPECT_TRUE(seen.count(EventKind::kRelease));
-  EXPECT_FALSE(seen.count(EventKind::kStateRestored));
+  EXPECT_TRUE(seen.count(FactKind::kGrasp));
+  EXPECT_TRUE(seen.count(FactKind::kRelease));
+  EXPECT_FALSE(seen.count(FactKind::kStateRestored));
   EXPECT_GT(largest, 0.004);
   EXPECT_GT(highest_force, 0.05);
   EXPECT_LT(highest_force, 30.0);
@@ -259,7 +259,7 @@ TEST_F(SimulationTest, ToolsThatMeetSaySoAndPushBack) {
   const Snapshot& now = simulation.GetSnapshot();
   bool is_said = false;
   for (const scene::Event& event : now.events)
-    is_said = is_said || (event.kind == EventKind::kToolsTouch && event.tick > 0);
+    is_said = is_said || (event.kind == FactKind::kToolsTouch && event.tick > 0);
   EXPECT_TRUE(is_said);
   EXPECT_GT(math::Norm(now.instruments[kLeft].force), 0.1);
 }
@@ -291,8 +291,8 @@ TEST(StageName, IsThatOfTheMapInTheDocuments) {
 TEST(StageName, HasANameForEachStageAndEvent) {
   std::set<std::string_view> names;
   for (int i = 0; i < kStageCount; ++i) EXPECT_TRUE(names.insert(StageName(static_cast<Stage>(i))).second);
-  for (int i = 0; i <= static_cast<int>(EventKind::kToolsTouch); ++i) {
-    EXPECT_TRUE(names.insert(EventName(static_cast<EventKind>(i))).second);
+  for (int i = 0; i <= static_cast<int>(FactKind::kToolsTouch); ++i) {
+    EXPECT_TRUE(names.insert(FactName(static_cast<FactKind>(i))).second);
   }
 }
 

@@ -10,10 +10,10 @@ using instrument::kLeft;
 using instrument::kRight;
 using scene::Condition;
 using scene::ConditionKind;
-using scene::EventKind;
 using scene::RegionMark;
 using scene::Task;
 using scene::TaskPhase;
+using surgery::FactKind;
 
 namespace {
 
@@ -281,13 +281,13 @@ TEST_F(Vocabulary, ToolsForceViewAndEvents) {
   EXPECT_TRUE(IsDone());
 
   Condition slip = Of(ConditionKind::kEvent);
-  slip.event = static_cast<int>(EventKind::kSlip), slip.hand = kRight;
+  slip.event = static_cast<int>(FactKind::kSlip), slip.hand = kRight;
   Start(slip);
-  snapshot_.events[0] = {EventKind::kSlip, 1, kLeft, -1, 0, 0};
+  snapshot_.events[0] = {FactKind::kSlip, 1, kLeft, -1, 0, 0};
   snapshot_.event_count = 1;
   Tick();
   EXPECT_FALSE(IsDone()) << "the other hand's";
-  snapshot_.events[1] = {EventKind::kSlip, 1, kRight, -1, 0, 0};
+  snapshot_.events[1] = {FactKind::kSlip, 1, kRight, -1, 0, 0};
   snapshot_.event_count = 2;
   Tick();
   EXPECT_TRUE(IsDone());

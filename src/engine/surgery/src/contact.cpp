@@ -372,7 +372,7 @@ bool HasBody(const instrument::Tool& tool, ToolBody body) noexcept {
 }
 
 bool ClosesAroundTubes(const instrument::Tool& tool) noexcept {
-  return tool.kind == instrument::ToolKind::kScissors || tool.kind == instrument::ToolKind::kClipApplier;
+  return instrument::AbilitiesOf(tool.kind).bites;
 }
 
 bool IsPinch(const instrument::Tool& tool, ToolBody body, const math::Pose& X_world_tool,

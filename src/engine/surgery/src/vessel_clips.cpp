@@ -67,11 +67,6 @@ ClipResult Vessels::Clip(const instrument::Tool& tool, const math::Pose& X_world
     clips_.push_back(clip);
     return result;
   }
-  // how much of the flattened vessel lies between the jaws: it is pi r wide
-  const double length = math::Distance(hinge, tip), half = 0.5 * M_PI * caught->radius;
-  const double from = caught->jaw_at * length - half, to = caught->jaw_at * length + half;
-  const double inside = std::max(0.0, std::min(to, length) - std::max(from, 0.0));
-  const double closure = std::clamp(inside / (2.0 * half), 0.0, 1.0);
   clip.a = caught->a, clip.b = caught->b, clip.t = caught->t;
   clip.place = {tube_of_[clip.a], math::Lerp(arc_of_[clip.a], arc_of_[clip.b], clip.t)};
   for (Clipped& other : clips_) {
@@ -79,15 +74,67 @@ ClipResult Vessels::Clip(const instrument::Tool& tool, const math::Pose& X_world
         std::fabs(other.place.arc - clip.place.arc) < settings_.clip_shape.width)
       result.is_crossed = other.is_weak = true;
   }
+  Fasten(clip, *caught, math::Distance(hinge, tip), result);
+  return result;
+}
+
+/// Closes the tube at the clip's place as far as the jaws reach over it.
+/// \param length  of the jaws [m]
+void Vessels::Fasten(Clipped& clip, const Caught& caught, double length, ClipResult& result) noexcept {
+  // how much of the flattened vessel lies between the jaws: it is pi r wide
+  const double half = 0.5 * M_PI * caught.radius;
+  const double from = caught.jaw_at * length - half, to = caught.jaw_at * length + half;
+  const double inside = std::max(0.0, std::min(to, length) - std::max(from, 0.0));
+  const double closure = std::clamp(inside / (2.0 * half), 0.0, 1.0);
   const VesselPlace place = map_.Find(clip.place.tube, clip.place.arc);
   clip.act = static_cast<std::uint32_t>(acts_.clips.size());
   acts_.clips.push_back({place.vessel, place.position, closure});
   result.place = clip.place;
   clip.closure = closure;
   clip.is_crossed = clip.is_weak = result.is_crossed;
-  clip.vessel_radius = caught->radius;
+  clip.vessel_radius = caught.radius;
   result.kind = closure < kTight ? ClipResult::Kind::kPartial : ClipResult::Kind::kClosed;
   clips_.push_back(clip);
+}
+
+std::size_t Vessels::CatchBetween(const instrument::Tool& tool, const math::Pose& X_world_tool,
+                                  std::span<const Vec3> position, std::span<Caught> caught) const noexcept {
+  const collision::Segment jaws{X_world_tool * instrument::JawHinge(tool),
+                                X_world_tool * instrument::JawTip(tool, 0.0, +1)};
+  const auto& graph = tubes_.Graph();
+  std::size_t count = 0;
+  for (std::uint32_t tube = 0; tube < rest_.size() && count < caught.size(); ++tube) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const geometry::Edge& edge : graph.edges) {
+      if (tube_of_[edge[0]] != tube) continue;
+      const auto near = collision::FindNearestSegmentSegment(
+          jaws, {position[tubes_.Node(edge[0])], position[tubes_.Node(edge[1])]});
+      const double distance = std::sqrt(near.squared_distance);
+      const double radius = math::Lerp(graph.radii[edge[0]], graph.radii[edge[1]], near.parameter_b);
+      if (distance > radius + settings_.clip_shape.catch_beside || distance >= best) continue;
+      best = distance;
+      caught[count] = Caught{edge[0], edge[1], near.parameter_b, near.parameter_a, radius};
+    }
+    if (best < std::numeric_limits<double>::infinity()) ++count;
+  }
+  return count;
+}
+
+ClipResult Vessels::Staple(const instrument::Tool& tool, const math::Pose& X_world_tool, const Caught& caught,
+                           double offset) noexcept {
+  ClipResult result;
+  Clipped row;
+  row.place = {tube_of_[caught.a], math::Lerp(arc_of_[caught.a], arc_of_[caught.b], caught.t) + offset};
+  const std::vector<double>& arcs = map_.arcs[row.place.tube];
+  if (clips_.size() == VesselActs::kMostClips || row.place.arc <= arcs.front() ||
+      row.place.arc >= arcs.back())
+    return result;
+  row.legs = math::Rotate(X_world_tool.rotation, {0, 0, -1});
+  row.gap = settings_.clip_shape.gap;
+  row.loose.radius = settings_.clip_shape.height;
+  row.a = caught.a, row.b = caught.b, row.t = caught.t;
+  FindEdge(row);
+  Fasten(row, caught, tool.jaw_length, result);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "node_force.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::tissue {
@@ -96,10 +97,8 @@ void AcceleratedDescent::SetModel(const TissueModel& model, const OrderedModel& 
   ordered_ = &ordered;
   edge_length_ = model.half_springs.empty() ? 0.0 : model.half_springs.front().rest_length;
   lowest_ratio_ = INFINITY;
-  for (std::size_t i = 0; i < model.Size(); ++i) {
-    double sum = 0;
-    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
-      sum += model.half_springs[h].stiffness;
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    const double sum = SumSpringStiffness(model, i);
     if (sum > 0.0 && !model.is_fixed[i])
       lowest_ratio_ = std::min(lowest_ratio_, model.shape_stiffness[i] / sum);
   }

@@ -7,6 +7,7 @@
 /// springs bound the lowest eigenvalue it ends by itself, with a bound on its error. With constraints whose
 /// gradients are not known the double-precision recurrence runs. See docs/solver.md.
 #include "solver_content.h"
+#include "trocar/tissue/element_kinds.h"
 
 namespace trocar::tissue {
 namespace {
@@ -25,7 +26,8 @@ SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& s
   if (constraints != nullptr && constraints->Nodes().empty())
     return c.SolveChebyshev(settings, load, state, constraints);
   SolveReport descent;
-  if (constraints == nullptr && c.grid.has_value() && c.spring_linearisation.IsPlain()) {
+  if (constraints == nullptr && c.grid.has_value() && c.spring_linearisation.IsPlain() &&
+      !HasElements(load)) {
     if (c.Accelerated().IsCold(state) || c.Accelerated().IsWellConditioned(load)) {
       descent = c.SolveAccelerated(kDescentIterations, settings.max_error, load, state, nullptr);
       if (descent.converged) return descent;

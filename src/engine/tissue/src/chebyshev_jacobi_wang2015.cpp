@@ -16,6 +16,7 @@
 
 #include "solver_content.h"
 #include "trocar/base/spare_capacity.h"
+#include "trocar/tissue/element_kinds.h"
 
 namespace trocar::tissue {
 
@@ -82,7 +83,7 @@ void ForEachChunk(Workers& workers, std::uint32_t n, const Work& work) noexcept 
               [&](std::uint32_t chunk) { work(chunk, chunk * size, std::min(n, (chunk + 1) * size)); });
 }
 
-/// Refills the forces that change with the positions of few nodes: strands and contacts.
+/// Refills the forces that change with the positions of few nodes: strands, contacts and elements.
 void SetOtherForces(const TissueModel& model, const TissueLoad& load, const TissueState& state,
                     ChebyshevScratch& scratch) noexcept {
   const auto set = [&](std::uint32_t i, const Vec3& force) {
@@ -110,6 +111,12 @@ void SetOtherForces(const TissueModel& model, const TissueLoad& load, const Tiss
     for (int i = 0; i < 3; ++i)
       add(contact.nodes[i], (contact.weights[i] * contact.stiffness * depth) * contact.normal);
   }
+  if (!HasElements(load)) return;
+  load.elements->ForEach([&](const auto& element) {
+    const auto forces = CalcElementForce(
+        element, GatherPositions(element, [&](std::uint32_t node) { return state.position[node]; }));
+    for (std::size_t i = 0; i < forces.size(); ++i) add(element.nodes[i], forces[i]);
+  });
 }
 
 /// Weight and external force of every node; strands and contacts are added in every iteration.
@@ -140,6 +147,10 @@ void SetSlices(const TissueModel& model, const TissueLoad& load, const TissueSta
     if (scratch.touched_nodes.size() + 3 > scratch.touched_nodes.capacity()) break;
     scratch.touched_nodes.insert(scratch.touched_nodes.end(), contact.nodes.begin(), contact.nodes.end());
   }
+  if (!HasElements(load)) return;
+  load.elements->ForEach([&](const auto& element) {
+    scratch.touched_nodes.insert(scratch.touched_nodes.end(), element.nodes.begin(), element.nodes.end());
+  });
 }
 
 /// Inverse of each node's own stiffness. A touched node counts as pressed, so that a contact that opens and
@@ -155,6 +166,16 @@ void SetBlocks(const TissueModel& model, Workers& workers, const TissueLoad& loa
     for (int i = 0; i < 3; ++i) {
       AddDirection(blocks[contact.nodes[i]], contact.normal, contact.weights[i] * contact.stiffness);
     }
+  }
+  if (HasElements(load)) {
+    const auto position_at = [&](std::uint32_t node) { return state.position[node]; };
+    const auto is_free = [&](std::uint32_t node) {
+      return state.condition[node] != NodeCondition::kPrescribed;
+    };
+    SetElementMatrix(*load.elements, position_at, StiffnessPart::kBound, is_free, scratch.element_bound);
+    scratch.element_bound.ForEachBound([&](std::uint32_t node, const Symmetric3& own) {
+      for (std::size_t v = 0; v < own.size(); ++v) blocks[node][v] += own[v];
+    });
   }
   ForEachChunk(workers, n, [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
     for (auto i = first; i < last; ++i) {
@@ -174,7 +195,8 @@ ChebyshevScratch::ChebyshevScratch(const TissueModel& model, double spare_share)
   blocks.resize(n);
   slices.resize((n + kLanes - 1) / kLanes, SliceData{});
   constant_force.resize(n);
-  touched_nodes.reserve(3 * kMaxContacts);
+  touched_nodes.reserve(3 * kMaxContacts + ElementArrays::kNodeCapacity);
+  element_bound.Reserve();
   chunk_reports.resize(n / CalcChunk(n) + 1);
   base::ReserveWithSpare(model.half_strands.size(), spare_share, strand_nodes);
   SetModel(model);

@@ -8,6 +8,7 @@
 #include "node_force.h"
 #include "solver_content.h"
 #include "trocar/base/assert.h"
+#include "trocar/tissue/element_kinds.h"
 
 namespace trocar::tissue {
 
@@ -26,15 +27,17 @@ bool IsFinite(const TissueLoad& load, const TissueState& state) noexcept {
   }
   for (const Vec3& f : load.external_force) is_finite = is_finite && math::IsFinite(f);
   for (const Vec3& p : state.position) is_finite = is_finite && math::IsFinite(p);
+  if (HasElements(load)) is_finite = is_finite && AreUsable(*load.elements, state.position.size());
   return is_finite;
 }
 
-/// True where an intact strand holds the node.
-bool HangsOnStrand(const TissueModel& model, const TissueState& state, std::uint32_t node) noexcept {
+/// True where an intact strand or an element holds the node.
+bool HangsOnLink(const TissueModel& model, const TissueLoad& load, const TissueState& state,
+                 std::uint32_t node) noexcept {
   for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
     if (state.strand_is_intact[model.half_strands[h].strand]) return true;
   }
-  return false;
+  return HasElements(load) && CalcElementBound(*load.elements, state.position, node) > 0.0;
 }
 
 /// One solve with the springs as they are linearised now.
@@ -53,8 +56,9 @@ SolveReport SolveLinearised(EquilibriumSolver::Content& c, const SolverSettings&
     case SolverKind::kChebyshevJacobi2015:
       return c.SolveChebyshev(settings, load, state, constraints);
     case SolverKind::kAcceleratedDescent:
-      // a stencil has no place for springs of their own; the recurrence in double precision has
-      if (c.grid.has_value() && !c.spring_linearisation.IsPlain())
+      // a stencil has no place for springs of their own, and the descent keeps elements' forces for a whole cycle; the
+      // recurrence in double precision has and does not
+      if ((c.grid.has_value() && !c.spring_linearisation.IsPlain()) || HasElements(load))
         return c.SolveChebyshev(settings, load, state, constraints);
       return c.SolveAccelerated(settings.max_iterations, settings.max_error, load, state, constraints);
     case SolverKind::kNewtonMultigrid:
@@ -209,7 +213,7 @@ SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const Tissu
   const std::span<const std::uint32_t> unconstrained = c.spring_linearisation.Unconstrained();
   for (std::size_t i = 0; i < unconstrained.size(); ++i) {
     c.unconstrained_condition[i] = state.condition[unconstrained[i]];
-    if (!HangsOnStrand(*c.laws, state, unconstrained[i]))
+    if (!HangsOnLink(*c.laws, load, state, unconstrained[i]))
       state.condition[unconstrained[i]] = NodeCondition::kPrescribed;
   }
   const SolveReport report =
@@ -227,15 +231,16 @@ Vec3 EquilibriumSolver::CalcReaction(const TissueLoad& load, const TissueState& 
                                      std::span<const std::uint32_t> nodes) const noexcept {
   Vec3 force;
   for (const auto node : nodes) force += GatherLawForce(*content_->laws, state, load, node);
+  if (HasElements(load)) {
+    for (const auto node : nodes) force += CalcElementForceOn(*load.elements, state.position, node).sum;
+  }
   return force;
 }
 
-double CalcLargestAlpha(const TissueModel& model, const TissueLoad& load) {
+double CalcLargestAlpha(const TissueModel& model, const TissueLoad& load, std::span<const Vec3> position) {
   double bound = 0;
   for (std::size_t i = 0; i < model.Size(); ++i) {
-    double links = 0;
-    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
-      links += model.half_springs[h].stiffness;
+    double links = SumSpringStiffness(model, static_cast<std::uint32_t>(i));
     for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h)
       links += model.half_strands[h].stiffness;
     bound = std::max(bound, 2.0 * load.stiffness_scale * links + load.shape_scale * model.shape_stiffness[i]);
@@ -243,6 +248,8 @@ double CalcLargestAlpha(const TissueModel& model, const TissueLoad& load) {
   double contacts = 0;
   for (const ContactSpring& contact : load.contacts) contacts += contact.stiffness;
   bound += contacts;
+  if (HasElements(load))
+    bound += CalcLargestElementStiffness(*load.elements, position.empty() ? std::span(model.rest) : position);
   return bound > 0.0 ? 2.0 / bound : 0.0;
 }
 

@@ -20,9 +20,7 @@ namespace {
 /// Stiffness that bounds what node i feels while its neighbours stay [N/m].
 double CalcNodeStiffness(const TissueModel& model, const TissueLoad& load, const TissueState& state,
                          std::uint32_t i) noexcept {
-  double links = 0;
-  for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
-    links += model.half_springs[h].stiffness;
+  double links = SumSpringStiffness(model, i);
   for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
     if (state.strand_is_intact[model.half_strands[h].strand]) links += model.half_strands[h].stiffness;
   }
@@ -33,6 +31,7 @@ double CalcNodeStiffness(const TissueModel& model, const TissueLoad& load, const
         contacts += contact.weights[corner] * contact.weights[corner] * contact.stiffness;
     }
   }
+  if (HasElements(load)) contacts += CalcElementBound(*load.elements, state.position, i);
   return load.stiffness_scale * links + load.shape_scale * model.shape_stiffness[i] + contacts;
 }
 
@@ -86,10 +85,14 @@ SolveReport SolveGaussSeidelBrown2001(const TissueModel& model, GaussSeidelScrat
         scratch.visited[other] = sweep;
         wave.push_back(other);
       };
-      for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
-        reach(model.half_springs[h].other);
-      for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h)
-        reach(model.half_strands[h].other);
+      ForEachNeighbour(model, i, reach);
+      if (HasElements(load)) {
+        load.elements->ForEach([&](const auto& element) {
+          const auto& nodes = element.nodes;
+          if (std::find(nodes.begin(), nodes.end(), i) != nodes.end())
+            std::for_each(nodes.begin(), nodes.end(), reach);
+        });
+      }
     }
     if (constraints != nullptr && report.iterations % constraints->Interval() == 0)
       constraints->Project(state, {});

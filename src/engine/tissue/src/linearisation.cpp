@@ -137,6 +137,12 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
   for (ContactSpring& contact : ordered.contacts) {
     for (std::uint32_t& node : contact.nodes) node = model.new_of_old[node];
   }
+  ordered.elements.Clear();
+  if (!HasElements(load)) return;
+  ordered.elements = *load.elements;
+  ordered.elements.ForEach([&](auto& element) {
+    for (std::uint32_t& node : element.nodes) node = model.new_of_old[node];
+  });
 }
 
 void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, std::uint32_t first,
@@ -181,12 +187,15 @@ void Linearisation::SetModel(const OrderedModel& model) {
 void Linearisation::Reserve(std::size_t nodes, std::size_t strand_ends) {
   nodes_.reserve(nodes * kBalanceValues);
   strand_nodes_.reserve(std::min(nodes, strand_ends));
+  element_stiffness_.Reserve();
 }
 
 void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
                             LinkLevel& level) noexcept {
   load_ = &load;
   strand_is_intact_ = strand_is_intact;
+  element_stiffness_.Clear();
+  level.elements.Clear();
   SetForce(0, model_->Size());
   for (std::uint32_t i = 0; i < model_->Size(); ++i) {
     const double shape = load.shape_scale * model_->shape[i];
@@ -216,9 +225,9 @@ void Linearisation::AddOuter(std::uint32_t node, const Vec3& force, double size)
   At(node, kOuterSize) = math::Max(At(node, kOuterSize), size);
 }
 
-/// Strands and contacts are few, and each changes two or three nodes: their force joins the constant one.
+/// Strands, contacts and elements are few, and each changes a few nodes: their force joins the constant one.
 /// \return their energy, less that of a constant force of the same size [J]
-double Linearisation::AddStrandsAndContacts(std::span<const Double4> position, Balance& balance) noexcept {
+double Linearisation::AddOuterForces(std::span<const Double4> position, Balance& balance) noexcept {
   const OrderedModel& model = *model_;
   const OrderedLoad& load = *load_;
   const auto set_outer = [&](std::uint32_t node, const Vec3& force, double size) {
@@ -229,6 +238,10 @@ double Linearisation::AddStrandsAndContacts(std::span<const Double4> position, B
     for (const std::uint32_t node : contact.nodes)
       set_outer(node, load.constant[node], math::Norm(load.constant[node]));
   }
+  load.elements.ForEach([&](const auto& element) {
+    for (const std::uint32_t node : element.nodes)
+      set_outer(node, load.constant[node], math::Norm(load.constant[node]));
+  });
   double energy = 0;
   for (std::size_t first = 0, last = 0; first < model.strands.size(); first = last) {
     // a node's strands lie side by side
@@ -263,7 +276,31 @@ double Linearisation::AddStrandsAndContacts(std::span<const Double4> position, B
       energy -= force * math::Dot(contact.normal, model.rest[node] - ToVec3(position[node]));
     }
   }
+  return load.elements.IsEmpty() ? energy : energy + AddElementForces(position);
+}
+
+double Linearisation::AddElementForces(std::span<const Double4> position) noexcept {
+  double energy = 0;
+  load_->elements.ForEach([&](const auto& element) {
+    const auto here = GatherPositions(element, [&](std::uint32_t node) { return ToVec3(position[node]); });
+    energy += CalcElementEnergy(element, here);
+    const auto forces = CalcElementForce(element, here);
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      AddOuter(element.nodes[i], forces[i], math::Norm(forces[i]));
+      energy -= math::Dot(forces[i], model_->rest[element.nodes[i]] - here[i]);
+    }
+  });
   return energy;
+}
+
+/// The elements' stiffness at a position: the whole of it for products, what is firm of it for the level.
+void Linearisation::SetElements(std::span<const Double4> position, LinkLevel& level) noexcept {
+  if (load_->elements.IsEmpty()) return;
+  const auto position_at = [&](std::uint32_t node) { return ToVec3(position[node]); };
+  const auto is_free = [&](std::uint32_t node) { return load_->is_free[node] != 0; };
+  SetElementMatrix(load_->elements, position_at, StiffnessPart::kWhole, is_free, element_stiffness_);
+  SetElementMatrix(load_->elements, position_at, StiffnessPart::kFirm, is_free, level.elements.Firm());
+  level.elements.AddDiagonal(level.diagonal_excess);
 }
 
 void Linearisation::AddContactDiagonal(LinkLevel& level, const Balance& balance) noexcept {
@@ -319,15 +356,17 @@ void Linearisation::Run(const Kernels& kernels, Workers& workers, BalancePass pa
 
 void Linearisation::CalcBalance(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                                 Balance& balance) noexcept {
-  const double energy = AddStrandsAndContacts(position, balance);
+  const double energy = AddOuterForces(position, balance);
   Run(kernels, workers, {.position = position.data(), .has_stiffness = false}, energy, balance);
 }
 
 void Linearisation::Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                               LinkLevel& level, Balance& balance) noexcept {
   TROCAR_ASSERT(level.link_floats == kSpringLinkFloats);
-  const double energy = AddStrandsAndContacts(position, balance);
+  const double energy = AddOuterForces(position, balance);
+  level.elements.RemoveDiagonal(level.diagonal_excess);
   AddContactDiagonal(level, balance);
+  SetElements(position, level);
   Run(kernels, workers,
       {.position = position.data(),
        .has_stiffness = true,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "link_hierarchy.h"
+#include "trocar/tissue/element_kinds.h"
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::tissue {
@@ -63,6 +64,7 @@ struct OrderedLoad {
   std::vector<math::Vec3> constant;  // (n) weight and external force [N]
   std::vector<std::uint8_t> is_free;
   std::vector<ContactSpring> contacts;
+  ElementArrays elements;
   double stiffness_scale = 1, shape_scale = 1;
 };
 /// Fills `ordered`, whose vectors have the capacity, from the caller's order.
@@ -80,7 +82,7 @@ struct Balance {
   std::vector<std::uint8_t> is_pressing;  // (contacts)
   double energy = 0;                      // [J]
   double largest_residual = 0;            // [N]
-  double force_scale = 0;                 // largest force of one spring, load or contact on a free node [N]
+  double force_scale = 0;                 // largest force of one spring, load or element on a free node [N]
   double largest_distance = 0;            // of a node from rest [m]
   bool is_finite = true;
 };
@@ -122,6 +124,11 @@ class Linearisation {
   /// \note Real-time safe.
   void Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                  LinkLevel& level, Balance& balance) noexcept;
+  /// Adds to out = K x of a pass over the level what the elements of the last Linearise() do beyond the level's diagonal.
+  /// \note Real-time safe.
+  void CompleteProduct(const LinkLevel& level, const Float4* x, Float4* out) const noexcept {
+    level.elements.CompleteProduct(element_stiffness_, x, out);
+  }
 
  private:
   double& At(std::uint32_t node, BalanceValue value) {
@@ -129,8 +136,10 @@ class Linearisation {
                   node % kSliceNodes];
   }
   void AddOuter(std::uint32_t node, const math::Vec3& force, double size) noexcept;
-  double AddStrandsAndContacts(std::span<const Double4> position, Balance& balance) noexcept;
+  double AddOuterForces(std::span<const Double4> position, Balance& balance) noexcept;
+  double AddElementForces(std::span<const Double4> position) noexcept;
   void AddContactDiagonal(LinkLevel& level, const Balance& balance) noexcept;
+  void SetElements(std::span<const Double4> position, LinkLevel& level) noexcept;
   void Run(const Kernels& kernels, Workers& workers, BalancePass pass, double energy,
            Balance& balance) noexcept;
 
@@ -140,6 +149,7 @@ class Linearisation {
   std::span<const std::uint8_t> strand_is_intact_;
   math::AlignedVector<double> nodes_;        // (slices, kBalanceValues, kSliceNodes)
   std::vector<std::uint32_t> strand_nodes_;  // those with strands, each once
+  ElementMatrix element_stiffness_;          // of all elements, what softens them included
 };
 
 }  // namespace trocar::tissue

@@ -91,6 +91,7 @@ void LinkLevel::SetLayout(const SliceLayout& of) {
   diagonal_excess.assign(6 * padded, 0.0f), inverse.assign(6 * padded, 0.0f), is_free.assign(padded, 0.0f);
   x.assign(padded, {}), b.assign(padded, {}), r.assign(padded, {});
   near_held.assign(of.node_count, 0);
+  elements.Clear();
 }
 
 void LinkLevel::Reserve(const LevelCapacity& capacity) {
@@ -100,6 +101,7 @@ void LinkLevel::Reserve(const LevelCapacity& capacity) {
   for (auto* blocks : {&diagonal_excess, &inverse}) blocks->reserve(6 * nodes);
   is_free.reserve(nodes);
   for (auto* vector : {&x, &b, &r}) vector->reserve(nodes);
+  elements.Reserve();
 }
 
 LinkMatrix LinkLevel::Matrix() const {
@@ -125,6 +127,8 @@ LinkHierarchy::LinkHierarchy(const HierarchyTopology& topology, const NodeGraph&
   constexpr std::size_t kMostUnknowns = 3 * kDirectNodes;
   for (auto* matrix : {&factor_, &rows_}) matrix->reserve(kMostUnknowns * kMostUnknowns);
   inverse_.reserve(kMostUnknowns * kMostUnknowns);
+  coarsened_nodes_.reserve(ElementArrays::kNodeCapacity);
+  less_elements_.resize(topology.levels.front().layout.PaddedNodes());
   SetTopology(topology, graph);
   if (spare_share > 0.0) line_smoother_.Reserve(spare_share);
 }
@@ -199,9 +203,15 @@ void LinkHierarchy::GatherDiagonal(std::size_t at, std::uint32_t aggregate) noex
 }
 
 void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers) noexcept {
+  const std::span<const std::uint32_t> element_nodes = levels_.front().elements.Firm().Nodes();
+  coarsened_nodes_.assign(element_nodes.begin(), element_nodes.end());
   for (std::size_t at = 0; at + 1 < topology_->level_count; ++at) {
+    LinkLevel &level = levels_[at], &next = levels_[at + 1];
+    level.elements.SwapDiagonal(level.diagonal_excess);  // they are coarsened apart
     Coarsen(workers, at);
-    LinkLevel& next = levels_[at + 1];
+    level.elements.SwapDiagonal(level.diagonal_excess);
+    level.elements.Firm().Coarsen(topology_->levels[at].aggregate, next.elements.Firm());
+    next.elements.AddDiagonal(next.diagonal_excess);
     const LinkMatrix matrix = next.Matrix();
     ForEachSliceChunk(workers, next.layout->Slices(), [&](std::uint32_t first, std::uint32_t last) {
       kernels.invert_blocks(matrix, next.inverse.data(), first, last);
@@ -236,6 +246,17 @@ void LinkHierarchy::InvertCoarsest() noexcept {
       if (level.is_free[other] != 0.0f) add(i, other, link, -1.0);
     }
   }
+  // the elements in full, in the place of what the diagonal has of them
+  level.elements.ForEachOwn([&](std::uint32_t node, const Symmetric3& own) { add(node, node, own, -1.0); });
+  level.elements.Firm().ForEachBlock(
+      [&](std::uint32_t i, std::uint32_t j, bool is_diagonal, const StiffnessBlock& block) {
+        for (std::size_t a = 0; a < 3; ++a) {
+          for (std::size_t b = 0; b < 3; ++b) {
+            factor_[(3 * i + a) * n + 3 * j + b] += block[3 * a + b];
+            if (!is_diagonal) factor_[(3 * j + b) * n + 3 * i + a] += block[3 * a + b];
+          }
+        }
+      });
   // L^T in place, row by row; the diagonal as it was is kept beside it
   for (std::size_t j = 0; j < n; ++j) rows_[j] = factor_[j * n + j];
   is_inverted_ = true;
@@ -293,6 +314,26 @@ void LinkHierarchy::SolveCoarsest(const Float4* b, Float4* x) const noexcept {
   for (std::uint32_t i = 0; i < nodes; ++i) x[i] = {sum[3 * i], sum[3 * i + 1], sum[3 * i + 2], 0.0f};
 }
 
+const Float4* LinkHierarchy::LessElements(const LinkLevel& level, const Float4* from,
+                                          const Float4* b) noexcept {
+  if (level.elements.IsEmpty()) return b;
+  // a pass subtracts what links and diagonal do; the rest is taken off beforehand
+  for (const std::uint32_t node : level.elements.Touched()) less_elements_[node] = {};
+  level.elements.CompleteProduct(level.elements.Firm(), from, less_elements_.data());
+  std::size_t touched = 0;
+  const std::span<const std::uint32_t> nodes = level.elements.Touched();
+  for (std::uint32_t i = 0; i < level.x.size(); ++i) {
+    Float4& sum = less_elements_[i];
+    if (touched < nodes.size() && nodes[touched] == i) {
+      sum = {b[i].x - sum.x, b[i].y - sum.y, b[i].z - sum.z, 0.0f};
+      ++touched;
+    } else {
+      sum = b[i];
+    }
+  }
+  return less_elements_.data();
+}
+
 /// x = (from +) damped block Jacobi of b - K from, and on the finest level the line smoother on its chains instead.
 ///
 /// \param from  nullptr for zero
@@ -300,6 +341,7 @@ void LinkHierarchy::Smooth(const Kernels& kernels, Workers& workers, std::size_t
                            const Float4* b, Float4* x) noexcept {
   const LinkLevel& level = levels_[at];
   const LinkMatrix matrix = level.Matrix();
+  if (from != nullptr) b = LessElements(level, from, b);
   const LinkPass pass = from == nullptr ? LinkPass::kStart : LinkPass::kSmooth;
   const bool has_chains = at == 0 && !line_smoother_.Nodes().empty();
   const std::uint32_t slices = level.layout->Slices(), size = SliceChunkSize(slices), first = has_chains;
@@ -319,12 +361,14 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
   Smooth(kernels, workers, at, nullptr, b, level.x.data());
   if (is_last) {
     for (int sweep = 1; sweep < kCoarsestSweeps; ++sweep) {
-      RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), b, kDamping, x);
+      RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(),
+              LessElements(level, level.x.data(), b), kDamping, x);
       std::copy(x, x + level.x.size(), level.x.begin());
     }
     return;
   }
-  RunPass(kernels, workers, level, LinkPass::kResidual, level.x.data(), b, 0.0f, level.r.data());
+  RunPass(kernels, workers, level, LinkPass::kResidual, level.x.data(),
+          LessElements(level, level.x.data(), b), 0.0f, level.r.data());
   LinkLevel& next = levels_[at + 1];
   const LevelTopology& transfer = topology_->levels[at];
   ForEachSliceChunk(workers, next.layout->Slices(), [&](std::uint32_t first, std::uint32_t last) {

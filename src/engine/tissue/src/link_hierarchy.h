@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "element_matrix.h"
 #include "hierarchy_topology.h"
 #include "line_smoother.h"
 #include "slice_layout.h"
@@ -32,6 +33,7 @@ struct LinkLevel {
   std::size_t link_floats = kBlockFloats;
   std::vector<std::uint8_t> near_held;  // (n) held, or next to one that is
   math::AlignedVector<Float4> x, b, r;  // (padded nodes)
+  LevelElements elements;
 
   std::uint32_t Size() const { return layout->node_count; }
   LinkMatrix Matrix() const;
@@ -74,6 +76,10 @@ class LinkHierarchy {
   /// level, its inverse blocks included, is the caller's.
   /// \note Real-time safe.
   void UpdateCoarse(const Kernels& kernels, Workers& workers) noexcept;
+  /// True where other elements act on the finest level than the coarser ones have.
+  bool HasNewElements() const noexcept {
+    return !std::ranges::equal(levels_.front().elements.Firm().Nodes(), coarsened_nodes_);
+  }
   /// Follows a change of the finest level without the coarser ones.
   /// \note Real-time safe.
   void UpdateLineSmoother() noexcept { line_smoother_.Factorise(levels_.front()); }
@@ -88,6 +94,8 @@ class LinkHierarchy {
   void Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b, Float4* x) noexcept;
   void Smooth(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* from, const Float4* b,
               Float4* x) noexcept;
+  /// b less what the elements do that a pass over the level leaves out.
+  const Float4* LessElements(const LinkLevel& level, const Float4* from, const Float4* b) noexcept;
   void Coarsen(Workers& workers, std::size_t at) noexcept;
   void GatherDiagonal(std::size_t at, std::uint32_t aggregate) noexcept;
   void InvertCoarsest() noexcept;
@@ -99,8 +107,10 @@ class LinkHierarchy {
   const HierarchyTopology* topology_ = nullptr;
   std::vector<LinkLevel> levels_;  // as many as the topology's are in use
   LineSmoother line_smoother_;
-  std::vector<double> factor_, rows_;  // workspace of the inversion of the coarsest level, dense
-  std::vector<float> inverse_;         // of the coarsest level; empty where that is too large
+  math::AlignedVector<Float4> less_elements_;   // (padded nodes of the finest level)
+  std::vector<std::uint32_t> coarsened_nodes_;  // of the elements that the coarser levels have
+  std::vector<double> factor_, rows_;           // workspace of the inversion of the coarsest level, dense
+  std::vector<float> inverse_;                  // of the coarsest level; empty where that is too large
   bool is_inverted_ = false;
 };
 

@@ -33,6 +33,7 @@ LocalSolve::LocalSolve(const OrderedModel& whole, const OrderedSprings& springs)
   for (auto* values : {&springs_.stiffness, &springs_.rest_length}) values->reserve(links);
   model_.rest.reserve(n), model_.shape.reserve(n), model_.strands.reserve(links);
   load_.constant.reserve(n), load_.is_free.reserve(n), load_.contacts.reserve(kMaxContacts);
+  load_.elements.Reserve();
   level_.link_floats = kSpringLinkFloats;
   level_.Reserve({n, links / kSliceNodes});
   linearisation_.Reserve(n, n);
@@ -80,14 +81,15 @@ bool LocalSolve::FindNodes(const OrderedLoad& load, std::span<const Float4> step
       if (!AddNode(whole.graph.others[h])) return false;
     }
   }
-  for (const ContactSpring& contact : load.contacts) {
-    const auto moves = [&](std::uint32_t node) { return local_of_[node] < free_count_; };
-    if (!std::any_of(contact.nodes.begin(), contact.nodes.end(), moves)) continue;
-    for (const std::uint32_t node : contact.nodes) {
-      if (!AddNode(node)) return false;
-    }
-  }
-  return free_count_ > 0;
+  const auto moves = [&](std::uint32_t node) { return local_of_[node] < free_count_; };
+  bool fits = true;
+  const auto add_nodes = [&](const auto& element) {
+    if (!std::any_of(element.nodes.begin(), element.nodes.end(), moves)) return;
+    for (const std::uint32_t node : element.nodes) fits = fits && AddNode(node);
+  };
+  for (const ContactSpring& contact : load.contacts) add_nodes(contact);
+  load.elements.ForEach(add_nodes);
+  return fits && free_count_ > 0;
 }
 
 /// Links with an end that moves, from both ends, as the energy counts them.
@@ -141,21 +143,25 @@ void LocalSolve::SetStrands(std::span<const std::uint8_t> strand_is_intact) noex
 }
 
 void LocalSolve::SetLoad(const OrderedLoad& load) noexcept {
-  load_.constant.clear(), load_.is_free.clear(), load_.contacts.clear();
+  load_.constant.clear(), load_.is_free.clear(), load_.contacts.clear(), load_.elements.Clear();
   for (std::uint32_t a = 0; a < nodes_.size(); ++a) {
     load_.constant.push_back(load.constant[nodes_[a]]);
     load_.is_free.push_back(IsFree(a));
   }
-  for (const ContactSpring& contact : load.contacts) {
-    ContactSpring here = contact;
+  const auto take = [&](const auto& element, auto& to) {
+    auto here = element;
     bool is_known = true, moves = false;
     for (std::uint32_t& node : here.nodes) {
       node = local_of_[node];
       is_known = is_known && node != kNone;
       moves = moves || IsFree(node);
     }
-    if (is_known && moves) load_.contacts.push_back(here);
-  }
+    if (is_known && moves) to.push_back(here);
+  };
+  for (const ContactSpring& contact : load.contacts) take(contact, load_.contacts);
+  load.elements.ForEach([&](const auto& element) {
+    take(element, load_.elements.Of<std::remove_cvref_t<decltype(element)>>());
+  });
   load_.stiffness_scale = load.stiffness_scale, load_.shape_scale = load.shape_scale;
 }
 
@@ -197,6 +203,7 @@ LocalSolve::Report LocalSolve::Solve(const Kernels& kernels, Workers& workers, d
   const auto multiply = [&] {
     RunPass(kernels, workers, level_, LinkPass::kProduct, p_.data(), nullptr, 0.0f, q_.data());
     AddContactLinks(load_, balance_, p_.data(), q_.data());
+    linearisation_.CompleteProduct(level_, p_.data(), q_.data());
   };
   TrustRegion region(edge_length);
   linearise();

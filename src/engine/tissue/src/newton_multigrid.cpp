@@ -76,6 +76,7 @@ NewtonMultigrid::NewtonMultigrid(const SolverModel& made, const OrderedSprings& 
   load_.constant.resize(n);
   load_.is_free.resize(n);
   load_.contacts.reserve(kMaxContacts);
+  load_.elements.Reserve();
   position_.resize(padded), start_.resize(padded);
   balance_.residual.resize(padded);
   balance_.is_pressing.resize(kMaxContacts);
@@ -164,6 +165,7 @@ void NewtonMultigrid::Multiply(Context& c, const Float4* x, Float4* out) noexcep
   RunPass(c.kernels, c.workers, hierarchy_.Finest(), LinkPass::kProduct, x, nullptr, 0.0f, out,
           has_follower_stiffness_ ? pressure_.FollowerStiffness() : nullptr);
   AddContactLinks(load_, balance_, x, out);
+  linearisation_.CompleteProduct(hierarchy_.Finest(), x, out);
 }
 
 // --- phases of a solve
@@ -320,7 +322,7 @@ LocalSolve::Report NewtonMultigrid::SolveLocally(Context& c, const Step& step,
 /// Keeps coarse levels and Ritz value in step with a move.
 void NewtonMultigrid::FollowMove(Context& c, const Step& step, const Advancement& advancement) noexcept {
   c.moved += advancement.share * step.length + advancement.local.longest;
-  if (c.moved > kStaleMove * springs_->mean_length) UpdateCoarseLevels(c);
+  if (c.moved > kStaleMove * springs_->mean_length || hierarchy_.HasNewElements()) UpdateCoarseLevels(c);
   if (advancement.share * step.length > kSnapMove * springs_->mean_length) c.smallest_ritz = INFINITY;
   c.smallest_ritz = math::Min(c.smallest_ritz, kLocalRitzFactor * advancement.local.smallest_ritz);
   // an equilibrium that negative curvature was met next to is a saddle, and not the end

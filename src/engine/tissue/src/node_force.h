@@ -39,6 +39,35 @@ math::Vec3 GatherForce(const TissueModel& model, std::span<const std::uint8_t> s
   return force;
 }
 
+/// Sum of the stiffnesses of a node's springs [N/m].
+inline double SumSpringStiffness(const TissueModel& model, std::uint32_t node) noexcept {
+  double sum = 0;
+  for (auto h = model.spring_starts[node]; h < model.spring_starts[node + 1]; ++h)
+    sum += model.half_springs[h].stiffness;
+  return sum;
+}
+
+/// Calls visit(other) for the node at the other end of each spring and strand, whether or not it holds.
+template <typename Visit>
+void ForEachNeighbour(const TissueModel& model, std::uint32_t node, const Visit& visit) noexcept {
+  for (auto h = model.spring_starts[node]; h < model.spring_starts[node + 1]; ++h)
+    visit(model.half_springs[h].other);
+  for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h)
+    visit(model.half_strands[h].other);
+}
+
+/// Largest force of one spring on a node [N].
+inline double FindLargestTension(const TissueModel& model, double stiffness_scale,
+                                 std::span<const math::Vec3> position, std::uint32_t node) noexcept {
+  double largest = 0;
+  for (auto h = model.spring_starts[node]; h < model.spring_starts[node + 1]; ++h) {
+    const auto& half = model.half_springs[h];
+    const double stretch = math::Distance(position[node], position[half.other]) - half.rest_length;
+    largest = math::Max(largest, stiffness_scale * half.stiffness * std::fabs(stretch));
+  }
+  return largest;
+}
+
 /// By Hooke's law, every spring whole: what the solvers see, whose springs are linearised (spring_linearisation.h).
 inline math::Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
                                   const TissueLoad& load, std::span<const math::Vec3> position,

@@ -15,7 +15,8 @@ SolveReport SolveRelaxationPaper(const TissueModel& model, const IterationSettin
                                  TissueState& state, ConstraintSet* constraints) noexcept {
   const auto n = static_cast<std::uint32_t>(model.Size());
   // half of the bound damps every mode of the linear system without oscillation
-  const double alpha = relaxation.alpha > 0.0 ? relaxation.alpha : 0.5 * CalcLargestAlpha(model, load);
+  const double alpha =
+      relaxation.alpha > 0.0 ? relaxation.alpha : 0.5 * CalcLargestAlpha(model, load, state.position);
   SolveReport report;
   for (report.iterations = 0; report.iterations < settings.max_iterations;) {
     double largest = 0, scale = 0;

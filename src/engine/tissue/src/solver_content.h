@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "accelerated_descent.h"
+#include "element_matrix.h"
 #include "newton_multigrid.h"
 #include "spring_linearisation.h"
 #include "trocar/tissue/equilibrium.h"
@@ -69,7 +70,8 @@ struct ChebyshevScratch {
   std::vector<SliceData> slices;
   std::vector<math::Vec3> constant_force;    // (n) weight and external force
   std::vector<std::uint32_t> strand_nodes;   // those with strands
-  std::vector<std::uint32_t> touched_nodes;  // those with contacts in this solve
+  std::vector<std::uint32_t> touched_nodes;  // those with contacts or elements in this solve
+  ElementMatrix element_bound;               // stiffness of the elements as though all of them acted
   std::vector<SliceReport> chunk_reports;
 };
 

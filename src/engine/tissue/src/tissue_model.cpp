@@ -7,6 +7,7 @@
 #include "node_force.h"
 #include "trocar/base/assert.h"
 #include "trocar/math/state_fields.h"
+#include "trocar/tissue/element_kinds.h"
 
 namespace trocar::base {
 
@@ -150,6 +151,7 @@ void CalcResidual(const TissueModel& model, const TissueState& state, const Tiss
     residual[i] = GatherLawForce(model, state, load, i);
   }
   AddContactForce(load.contacts, state.position, residual);
+  if (HasElements(load)) AddElementForces(*load.elements, state.position, residual);
 }
 
 double CalcEnergy(const TissueModel& model, const TissueState& state, const TissueLoad& load) {
@@ -177,6 +179,7 @@ double CalcEnergy(const TissueModel& model, const TissueState& state, const Tiss
     const double depth = std::max(0.0, CalcContactDepth(contact, x));
     energy += 0.5 * contact.stiffness * depth * depth;
   }
+  if (HasElements(load)) energy += CalcElementEnergy(*load.elements, x);
   return energy;
 }
 

@@ -9,10 +9,10 @@
 #include <random>
 #include <vector>
 
+#include "evaluated.h"
 #include "line_smoother.h"
 #include "linearisation.h"
 #include "local_solve.h"
-#include "solver_model.h"
 #include "test_systems.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar_test/threads.h"
@@ -65,41 +65,6 @@ TissueState Shake(const TissueModel& model, double by, unsigned seed) {
   state.condition[5] = NodeCondition::kPrescribed;
   return state;
 }
-
-/// The balance and the stiffness of one state, in the solvers' order.
-struct Evaluated {
-  SolverModel made;
-  const OrderedModel& model = made.ordered;
-  OrderedSprings springs;
-  OrderedLoad load;
-  LinkHierarchy hierarchy;
-  Linearisation linearisation;
-  Balance balance;
-  std::vector<Double4> position;
-  Workers workers;
-  const Kernels* kernels;
-
-  Evaluated(const TissueModel& from, const TissueLoad& loads, const TissueState& state, base::SimdLevel level)
-      : made(MakeSolverModel(from)),
-        springs(MakeOrderedSprings(from, model)),
-        hierarchy(made.hierarchy, model.graph),
-        linearisation(springs),
-        kernels(&GetKernels(level)) {
-    linearisation.SetModel(model);
-    load.constant.resize(model.Size()), load.is_free.resize(model.Size());
-    load.contacts.reserve(kMaxContacts);
-    SetOrderedLoad(model, loads, state, load);
-    balance.residual.resize(model.layout.PaddedNodes());
-    balance.is_pressing.resize(kMaxContacts);
-    position.resize(model.layout.PaddedNodes());
-    for (std::uint32_t i = 0; i < model.Size(); ++i) {
-      const Vec3& p = state.position[model.old_of_new[i]];
-      position[i] = {p.x, p.y, p.z, 0.0};
-    }
-    linearisation.SetLoad(load, state.strand_is_intact, hierarchy.Finest());
-    linearisation.Linearise(*kernels, workers, position, hierarchy.Finest(), balance);
-  }
-};
 
 double Norm(const Float4& v) {
   return std::sqrt(static_cast<double>(v.x * v.x + v.y * v.y + v.z * v.z));
@@ -397,8 +362,21 @@ TEST(LocalSolve, ComesToRestWhereAllOthersAreHeld) {
     contact.offset +=
         contact.weights[corner] * math::Dot(contact.normal, state.position[contact.nodes[corner]]);
   contact.offset += 1e-4;
-  const TissueLoad load{
-      .gravity = {0, 0.1, -0.9}, .contacts = std::span(&contact, 1), .external_force = external};
+  // a node of the duct against the triangle of the tool
+  ElementArrays elements;
+  SurfaceContact& pressed = elements.Of<SurfaceContact>().emplace_back();
+  pressed = {.nodes = {patient.duct[2], contact.nodes[0], contact.nodes[1], contact.nodes[2]},
+             .stiffness = 50.0};
+  const auto corners = GatherPositions(pressed, [&](std::uint32_t node) { return state.position[node]; });
+  pressed.gap = 1e-4 + CalcContactPlane(pressed, corners).distance;
+  if (!(pressed.gap > 1e-4)) {
+    std::swap(pressed.nodes[2], pressed.nodes[3]);
+    pressed.gap = 2e-4 - pressed.gap;
+  }
+  const TissueLoad load{.gravity = {0, 0.1, -0.9},
+                        .contacts = std::span(&contact, 1),
+                        .external_force = external,
+                        .elements = &elements};
   Evaluated whole(model, load, state, base::FindSimdLevel());
   const std::vector<Double4> before = whole.position;
 

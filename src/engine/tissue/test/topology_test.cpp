@@ -16,6 +16,7 @@
 #include "hierarchy_topology.h"
 #include "test_systems.h"
 #include "trocar/tissue/conservation.h"
+#include "trocar/tissue/element_kinds.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar_test/threads.h"
 
@@ -143,6 +144,31 @@ TEST_P(AfterACut, GoesOnAsIfMadeAnew) {
 }
 INSTANTIATE_TEST_SUITE_P(Every, AfterACut, testing::ValuesIn(kSolverKinds),
                          [](const auto& kind) { return std::string(SolverName(kind.param)); });
+
+// As many elements as a kind may have come and go: a solve that was prepared allocates nothing.
+TEST(Prepared, ElementsAllocateNothing) {
+  const TissueModel model =
+      MakeTissueModel(MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 3), 100.0, 1e5));
+  ElementArrays elements;
+  for (std::uint32_t i = 0; i < SurfaceContact::kCapacity; ++i)
+    elements.Of<SurfaceContact>().push_back(
+        {.nodes = {i, i + 1, i + 2, i + 3}, .stiffness = 3.0, .gap = 0.002});
+  for (std::uint32_t i = 0; i < SlidingConstraint::kCapacity; ++i) {
+    elements.Of<SlidingConstraint>().push_back(
+        {.nodes = {i, i + 1, i + 2, i + 300, i + 301}, .weights = {0.2, 0.3, 0.5}, .stiffness = 0.01});
+  }
+  const SolverSettings settings{.kind = SolverKind::kNewtonMultigrid};
+  EquilibriumSolver solver(model);
+  solver.Prepare(settings, 0);
+  TissueState state = MakeRestState(model);
+  const int before = allocations;
+  for (const bool has_elements : {true, false, true}) {
+    const SolveReport report = solver.Solve(
+        settings, {.gravity = {0, 0, -1}, .elements = has_elements ? &elements : nullptr}, state);
+    EXPECT_GT(report.linear_iterations, 0);
+  }
+  EXPECT_EQ(allocations, before);
+}
 
 TEST(AfterACut, NothingIsAllocatedWithinTheReserve) {
   Theatre theatre(5);

@@ -36,31 +36,31 @@ bool IsDue(double time, double period, double& next) noexcept {
   return true;
 }
 
-std::string FormatTools(const simulation::Snapshot& snapshot) {
+std::string FormatTools(const ToolPoses& poses) {
   const std::array<device::IgtlTool, 3> tools = {{
-      {"LeftTool", RasFromWorld(snapshot.instruments[instrument::kLeft].X_world_tool)},
-      {"RightTool", RasFromWorld(snapshot.instruments[instrument::kRight].X_world_tool)},
-      {"Laparoscope", RasFromWorld(snapshot.X_world_laparoscope)},
+      {"LeftTool", RasFromWorld(poses.X_world_left)},
+      {"RightTool", RasFromWorld(poses.X_world_right)},
+      {"Laparoscope", RasFromWorld(poses.X_world_laparoscope)},
   }};
   std::string bytes;
   for (const device::IgtlTool& tool : tools)
-    bytes += device::FormatIgtlTransform(tool.name, tool.pose, snapshot.time);
-  return bytes + device::FormatIgtlTrackingData("Tools", tools, snapshot.time);
+    bytes += device::FormatIgtlTransform(tool.name, tool.pose, poses.time);
+  return bytes + device::FormatIgtlTrackingData("Tools", tools, poses.time);
 }
 
-std::string FormatOrgans(std::span<const scene::SurfaceInfo> organs, const simulation::Snapshot& snapshot) {
+std::string FormatOrgans(std::span<const scene::SurfaceInfo> organs, const NodePositions& nodes) {
   std::string bytes;
   std::vector<math::Vec3> points;
   std::vector<std::uint32_t> corners;
   for (const scene::SurfaceInfo& organ : organs) {
-    if (organ.first_node + std::size_t{organ.node_count} > snapshot.positions.size()) continue;
+    if (organ.first_node + std::size_t{organ.node_count} > nodes.p_world.size()) continue;
     points.clear();
     corners.clear();
     for (std::uint32_t node = 0; node < organ.node_count; ++node)
-      points.push_back(RasFromWorld(snapshot.positions[organ.first_node + node]));
+      points.push_back(RasFromWorld(nodes.p_world[organ.first_node + node]));
     for (const geometry::Triangle& triangle : organ.triangles)
       corners.insert(corners.end(), triangle.begin(), triangle.end());
-    bytes += device::FormatIgtlPolyData(organ.name, points, corners, snapshot.time);
+    bytes += device::FormatIgtlPolyData(organ.name, points, corners, nodes.time);
   }
   return bytes;
 }
@@ -74,6 +74,11 @@ math::Vec3 RasFromWorld(const math::Vec3& p_world) noexcept {
 math::Pose RasFromWorld(const math::Pose& X_world_tool) {
   return {math::Normalized(RotationRasWorld() * X_world_tool.rotation),
           RasFromWorld(X_world_tool.translation)};
+}
+
+ToolPoses ToolPosesOf(const simulation::Snapshot& snapshot) noexcept {
+  return {snapshot.time, snapshot.instruments[instrument::kLeft].X_world_tool,
+          snapshot.instruments[instrument::kRight].X_world_tool, snapshot.X_world_laparoscope};
 }
 
 IgtlServer::IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<device::TcpListener> listener,
@@ -140,8 +145,8 @@ void IgtlServer::Judge(Viewer& viewer) {
   viewer.offered_then = offered_;
 }
 
-void IgtlServer::Publish(const simulation::Snapshot& snapshot) {
-  const double time = snapshot.time, now = clock_.Now();
+void IgtlServer::Publish(const ToolPoses& poses, const NodePositions& nodes) {
+  const double time = poses.time, now = clock_.Now();
   serving_time_ += std::min(now - last_call_, kPause);
   last_call_ = now;
   // back at the first tick
@@ -149,13 +154,13 @@ void IgtlServer::Publish(const simulation::Snapshot& snapshot) {
   Accept();
   const bool has_tools = IsDue(time, settings_.tool_period, next_tools_);
   const bool has_organs = IsDue(time, settings_.organ_period, next_organs_);
-  const std::string tools = has_tools && !viewers_.empty() ? FormatTools(snapshot) : std::string();
+  const std::string tools = has_tools && !viewers_.empty() ? FormatTools(poses) : std::string();
   offered_ += tools.size();
   std::string organs;
   for (Viewer& viewer : viewers_) {
     // whole sets or none: what does not fit now is left out, the next one is newer
     if (viewer.unsent.empty() && (has_organs || !viewer.has_organs)) {
-      if (organs.empty()) organs = FormatOrgans(organs_, snapshot);
+      if (organs.empty()) organs = FormatOrgans(organs_, nodes);
       viewer.unsent += organs;
       viewer.has_organs = true;
     }

@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 constexpr host::NumberRange kMetricValue{-1e9, 1e9}, kDeviation{0, 1e9}, kAttempts{1, 1e6};
 constexpr host::NumberRange kComposite{-kMostDeviations, kMostDeviations};
 
-const char* NameOf(Better better) {
+const char* NameOfBetter(Better better) {
   return better == Better::kLower ? "at_most" : "at_least";
 }
 
@@ -75,7 +75,7 @@ std::vector<Threshold> ReadThresholds(const std::vector<JsonView>& elements) {
     if (view.Has("at_most") == view.Has("at_least"))
       view.Complain("a threshold has either at_most or at_least", ErrorCode::kProficiencyInvalid);
     threshold.better = view.Has("at_least") ? Better::kHigher : Better::kLower;
-    threshold.value = view.Number(NameOf(threshold.better), kMetricValue);
+    threshold.value = view.Number(NameOfBetter(threshold.better), kMetricValue);
     threshold.purpose = ReadPurpose(view);
     threshold.passes_undefined = host::OneOfOr<bool>(
         view, "undefined", false, {{"fails", false}, {"passes", true}}, ErrorCode::kProficiencyInvalid);
@@ -137,7 +137,7 @@ std::string FormatProficiency(const Proficiency& proficiency) {
   json["thresholds"] = ordered_json::array();
   for (const Threshold& threshold : proficiency.thresholds) {
     ordered_json one = KeyJson(threshold.of);
-    one[NameOf(threshold.better)] = threshold.value;
+    one[NameOfBetter(threshold.better)] = threshold.value;
     one["purpose"] = NameOf(threshold.purpose);
     if (threshold.passes_undefined) one["undefined"] = "passes";
     one["source"] = threshold.source;

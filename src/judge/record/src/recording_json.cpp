@@ -125,7 +125,7 @@ bool ReadEnding(std::string_view text, Ending& ending) {
 }
 
 ordered_json EventJson(const scene::Event& event) {
-  if (event.kind == scene::EventKind::kOperationError && event.error >= 0) {
+  if (event.kind == surgery::FactKind::kVerdict && event.error >= 0) {
     const auto error = static_cast<cholecystectomy::OperationError>(event.error);
     return {{"tick", event.tick},
             {"kind", cholecystectomy::NameOf(error)},
@@ -133,7 +133,7 @@ ordered_json EventJson(const scene::Event& event) {
             {"hand", event.hand},
             {"error", true}};
   }
-  return {{"tick", event.tick}, {"kind", scene::EventName(event.kind)}, {"hand", event.hand}};
+  return {{"tick", event.tick}, {"kind", surgery::FactName(event.kind)}, {"hand", event.hand}};
 }
 
 ordered_json TaskErrorJson(const scene::Task& task, std::uint64_t tick, const scene::TaskError& error) {

@@ -9,6 +9,7 @@
 #include "trocar/host/clock.h"
 #include "trocar/host/threads.h"
 #include "trocar/record/outcome.h"
+#include "trocar/record/recording_source.h"
 #include "trocar/simulation/engine_bits.h"
 #include "trocar/simulation/saved_state.h"
 
@@ -120,7 +121,7 @@ void Replay::Keep() {
 
 void Replay::Step() {
   if (IsAtEnd()) return;
-  simulation_.Step(recording_->inputs[Tick() - recording_->FirstTick()]);
+  simulation_.Step(RecordingSource(recording_).For(Tick() + 1, simulation_.GetSnapshot()));
   const std::uint64_t tick = Tick();
   const auto& hashes = recording_->hashes;
   while (next_hash_ < hashes.size() && hashes[next_hash_].tick < tick) ++next_hash_;

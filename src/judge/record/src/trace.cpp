@@ -21,10 +21,10 @@ namespace {
 
 using cholecystectomy::OperationError;
 using math::Vec3;
-using scene::EventKind;
 using scene::SurfaceInfo;
 using simulation::InstrumentSnapshot;
 using simulation::Snapshot;
+using surgery::FactKind;
 using training::AttemptTrace;
 
 /// Between samples of what ran out [s].
@@ -36,11 +36,6 @@ bool IsMainBileDuct(roles::TubeRole role) {
   return role == TubeRole::kCommonHepaticDuct || role == TubeRole::kCommonBileDuct ||
          role == TubeRole::kRightHepaticDuct || role == TubeRole::kLeftHepaticDuct ||
          role == TubeRole::kAberrantRightDuct;
-}
-
-/// A tool that carries current.
-bool IsElectrode(instrument::ToolKind kind) {
-  return kind == instrument::ToolKind::kHook || kind == instrument::ToolKind::kDissector;
 }
 
 /// From a point to the wall of a tube, as it lies now; 0 inside.
@@ -64,10 +59,11 @@ training::CameraSample SampleCamera(const math::Pose& X_world_laparoscope) {
 }
 
 /// Whether an event is that of closing a clip: around something, or around nothing.
-bool IsOfClip(const scene::Event& event, bool is_lost) {
-  if (!is_lost) return event.kind == EventKind::kClipClosed;
-  return event.kind == EventKind::kOperationError &&
-         event.error == static_cast<std::int32_t>(OperationError::kClipDropped);
+/// Facts of a kind that goes on are one span if no more than this lies between them [s].
+constexpr double kFactPause = 0.1;
+
+bool IsVolume(FactKind kind) {
+  return kind == FactKind::kRinse || kind == FactKind::kAspirate;
 }
 
 /// What a rule says of an operation's error that the judge has found in the same tick is not a second error.
@@ -102,6 +98,8 @@ struct TraceBuilder::Content {
   } last;
   std::uint64_t first_tick = 0, missed = 0, known_events = 0, known_task_errors = 0;
   std::vector<int> clip_tubes;  // surface, or -1
+  std::vector<roles::StrandRole> strand_roles;
+  std::vector<std::size_t> going_on;  // of trace.facts
 
   bool IsEmpty() const { return trace.Ticks() == 0; }
   double TimeOf(std::uint64_t tick) const { return static_cast<double>(tick - first_tick) * trace.dt; }
@@ -112,7 +110,8 @@ struct TraceBuilder::Content {
   void AddEvents(const Snapshot& now);
   void AddEvent(const Snapshot& now, const scene::Event& event, std::vector<OperationError>& found);
   void AddBrokenRules(const Snapshot& now, const std::vector<OperationError>& found);
-  void AddClips(const Snapshot& now, const std::vector<scene::Event>& events);
+  void AddFacts(const Snapshot& now);
+  void AddClips(const Snapshot& now);
   void AddJudgement(const Snapshot& now);
   int TubeAt(const Vec3& p, const std::vector<Vec3>& positions) const;
 };
@@ -121,6 +120,7 @@ TraceBuilder::TraceBuilder(const simulation::Simulation& simulation) : content_(
   const scene::Scene& scene = simulation.GetScene();
   Content& c = *content_;
   c.surfaces.assign(simulation.Surfaces().begin(), simulation.Surfaces().end());
+  for (const scene::StrandInfo& strand : simulation.Strands()) c.strand_roles.push_back(strand.kind);
   for (SurfaceInfo& surface : c.surfaces) {
     surface.triangles.clear();
     c.trace.organ_names.push_back(surface.name);
@@ -131,7 +131,8 @@ TraceBuilder::TraceBuilder(const simulation::Simulation& simulation) : content_(
       auto place = std::find(names.begin(), names.end(), tool.name);
       if (place == names.end()) place = names.insert(names.end(), tool.name);
       c.tool_index[hand].push_back(static_cast<std::int16_t>(place - names.begin()));
-      c.is_electrode[hand].push_back(IsElectrode(tool.kind));
+      c.is_electrode[hand].push_back(instrument::AbilitiesOf(tool.kind).electrode !=
+                                     instrument::Electrode::kNone);
     }
   }
   c.task = scene.task;
@@ -189,13 +190,13 @@ void TraceBuilder::Content::AddEvent(const Snapshot& now, const scene::Event& ev
                                      std::vector<OperationError>& found) {
   training::AttemptEvent entry;
   entry.time = TimeOf(event.tick);
-  entry.kind = scene::EventName(event.kind);
+  entry.kind = surgery::FactName(event.kind);
   entry.hand = event.hand;
   entry.organ = event.organ;
   entry.force = event.force;
   if (event.hand >= 0)
     entry.position = now.instruments[static_cast<std::size_t>(event.hand)].X_world_tool.translation;
-  if (event.kind == EventKind::kOperationError && event.error >= 0) {
+  if (event.kind == FactKind::kVerdict && event.error >= 0) {
     const auto error = static_cast<OperationError>(event.error);
     found.push_back(error);
     entry.kind = cholecystectomy::NameOf(error);
@@ -238,17 +239,44 @@ int TraceBuilder::Content::TubeAt(const Vec3& p, const std::vector<Vec3>& positi
   return nearest;
 }
 
-void TraceBuilder::Content::AddClips(const Snapshot& now, const std::vector<scene::Event>& events) {
-  // clips are only ever added; who closed the new ones stands in the events of the tick
-  std::vector<bool> is_used(events.size(), false);
+/// What is heated, cut, spread, rinsed for a while becomes one span.
+void TraceBuilder::Content::AddFacts(const Snapshot& now) {
+  const double time = TimeOf(now.tick);
+  std::erase_if(going_on, [&](std::size_t i) { return time - trace.facts[i].end > kFactPause; });
+  for (const surgery::Fact& fact : std::span(now.facts).first(now.fact_count)) {
+    std::string part;
+    if (fact.strand >= 0) {
+      part = roles::NameOf(strand_roles[static_cast<std::size_t>(fact.strand)]);
+    } else if (fact.surface >= 0) {
+      part = trace.organ_names[static_cast<std::size_t>(fact.surface)];
+    }
+    const std::string_view kind = surgery::FactName(fact.kind);
+    const auto goes_on = [&](const training::FactSpan& span) {
+      return span.hand == fact.hand && span.kind == kind && span.part == part;
+    };
+    const auto known = std::find_if(going_on.begin(), going_on.end(),
+                                    [&](std::size_t i) { return goes_on(trace.facts[i]); });
+    if (known == going_on.end()) {
+      going_on.push_back(trace.facts.size());
+      trace.facts.push_back({std::string(kind), fact.hand, std::move(part), time, time, fact.amount});
+      continue;
+    }
+    training::FactSpan& span = trace.facts[*known];
+    span.end = time;
+    span.amount = IsVolume(fact.kind) ? span.amount + fact.amount : std::max(span.amount, fact.amount);
+  }
+}
+
+void TraceBuilder::Content::AddClips(const Snapshot& now) {
+  // clips are only ever added; who closed the new ones stands in the facts of the tick, in the same order
+  std::size_t next = 0;
   for (std::size_t i = trace.clips.size(); i < now.operation.clip_count; ++i) {
     const surgery::ClipSnapshot& clip = now.operation.clips[i];
     training::ClipRecord record;
     record.time = TimeOf(now.tick);
-    for (std::size_t e = 0; e < events.size() && record.hand < 0; ++e) {
-      if (is_used[e] || !IsOfClip(events[e], clip.is_lost)) continue;
-      is_used[e] = true;
-      record.hand = events[e].hand;
+    for (; next < now.fact_count && record.hand < 0; ++next) {
+      const FactKind kind = now.facts[next].kind;
+      if (kind == FactKind::kClipClosed || kind == FactKind::kClipLost) record.hand = now.facts[next].hand;
     }
     clip_tubes.push_back(clip.is_lost ? -1 : TubeAt(clip.X_world_clip.translation, now.positions));
     if (!clip.is_lost && record.hand >= 0) {
@@ -265,14 +293,13 @@ void TraceBuilder::Content::AddEvents(const Snapshot& now) {
   const auto ring = static_cast<std::uint64_t>(now.events.size());
   const std::uint64_t oldest = now.event_count > ring ? now.event_count - ring : 0;
   std::vector<OperationError> found;
-  std::vector<scene::Event> events;
   for (std::uint64_t n = std::max(known_events, oldest); n < now.event_count; ++n) {
-    events.push_back(now.events[n % ring]);
-    AddEvent(now, events.back(), found);
+    AddEvent(now, now.events[n % ring], found);
   }
   known_events = now.event_count;
   if (task) AddBrokenRules(now, found);
-  AddClips(now, events);
+  if (now.tick > first_tick) AddFacts(now);
+  AddClips(now);
 }
 
 void TraceBuilder::Content::AddJudgement(const Snapshot& now) {

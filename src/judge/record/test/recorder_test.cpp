@@ -75,7 +75,7 @@ TEST_F(RecorderTest, NotesEvents) {
     (*recorder)->Add(input, simulation);
     const auto& now = simulation.GetSnapshot();
     for (; count < now.event_count; ++count)
-      seen.emplace_back(scene::EventName(now.events[count % simulation::kEventRing].kind));
+      seen.emplace_back(surgery::FactName(now.events[count % simulation::kEventRing].kind));
   }
   ASSERT_TRUE((*recorder)->Finish(simulation).ok());
   EXPECT_FALSE(seen.empty());

@@ -11,7 +11,7 @@
 namespace trocar::record {
 namespace {
 
-using scene::EventKind;
+using surgery::FactKind;
 
 class TraceTest : public RecordedScene {
  protected:
@@ -22,7 +22,7 @@ class TraceTest : public RecordedScene {
     snapshot_ = simulation_->GetSnapshot();
     builder_.emplace(*simulation_);
   }
-  void Emit(EventKind kind, int hand, std::int32_t error = -1) {
+  void Emit(FactKind kind, int hand, std::int32_t error = -1) {
     auto& event = snapshot_.events[snapshot_.event_count++ % snapshot_.events.size()];
     event = {};
     event.kind = kind;
@@ -90,14 +90,14 @@ TEST_F(TraceTest, RollIsHowFarThePictureLeans) {
 }
 
 TEST_F(TraceTest, KeepsEveryEventOnce) {
-  Emit(EventKind::kGrasp, instrument::kLeft);  // before the attempt
+  Emit(FactKind::kGrasp, instrument::kLeft);  // before the attempt
   Add();
   Add();
-  Emit(EventKind::kSlip, instrument::kLeft);
-  Emit(EventKind::kGraspMissed, instrument::kRight);
+  Emit(FactKind::kSlip, instrument::kLeft);
+  Emit(FactKind::kGraspMissed, instrument::kRight);
   Add();
   for (int i = 0; i < 20; ++i) {
-    Emit(EventKind::kGrasp, instrument::kRight);
+    Emit(FactKind::kGrasp, instrument::kRight);
     Add();
   }
   const training::AttemptTrace trace = builder_->Calc();
@@ -109,9 +109,44 @@ TEST_F(TraceTest, KeepsEveryEventOnce) {
   EXPECT_EQ(trace.events[21].kind, "grasp");
 }
 
+TEST_F(TraceTest, WhatGoesOnIsOneSpanAndAPauseParts) {
+  const auto add = [&](FactKind kind, double amount) {
+    surgery::Fact& fact = snapshot_.facts.at(snapshot_.fact_count++);
+    fact = {};
+    fact.kind = kind;
+    fact.hand = instrument::kRight;
+    fact.surface = 1;
+    fact.amount = amount;
+  };
+  add(FactKind::kRinse, 1.0);  // before the attempt
+  Add();
+  for (int i = 0; i < 5; ++i) {
+    snapshot_.fact_count = 0;
+    add(FactKind::kRinse, 1.0);
+    add(FactKind::kPinchDamage, i == 2 ? 9.0 : 4.0);
+    Add();
+  }
+  snapshot_.fact_count = 0;
+  for (int i = 0; i < 20; ++i) Add();
+  add(FactKind::kRinse, 1.0);
+  Add();
+  const training::AttemptTrace trace = builder_->Calc();
+  ASSERT_EQ(trace.facts.size(), 3u);
+  EXPECT_EQ(trace.facts[0].kind, "rinse");
+  EXPECT_EQ(trace.facts[0].part, "gallbladder");
+  EXPECT_EQ(trace.facts[0].hand, instrument::kRight);
+  EXPECT_NEAR(trace.facts[0].start, trace.dt, 1e-12);
+  EXPECT_NEAR(trace.facts[0].end, 5 * trace.dt, 1e-12);
+  EXPECT_EQ(trace.facts[0].amount, 5.0) << "a volume is summed up";
+  EXPECT_EQ(trace.facts[1].kind, "pinch_damage");
+  EXPECT_EQ(trace.facts[1].amount, 9.0) << "of a force the largest";
+  EXPECT_EQ(trace.facts[2].kind, "rinse");
+  EXPECT_EQ(trace.facts[2].start, trace.facts[2].end);
+}
+
 TEST_F(TraceTest, AnErrorOfTheOperationSaysWhichAndWhere) {
   Add();
-  Emit(EventKind::kOperationError, instrument::kRight,
+  Emit(FactKind::kVerdict, instrument::kRight,
        static_cast<int>(cholecystectomy::OperationError::kWrongStructureCut));
   Add();
   const training::AttemptTrace trace = builder_->Calc();

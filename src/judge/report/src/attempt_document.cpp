@@ -149,7 +149,7 @@ Section MakeSummary(const AttemptReport& report) {
   return section;
 }
 
-Section MakeAdvice(const AttemptReport& report) {
+Section MakeAdviceSection(const AttemptReport& report) {
   Section section{host::Translate("What to work on"), {}};
   Advices advices;
   for (const Advice& advice : report.advice) {
@@ -406,7 +406,7 @@ Document MakeDocument(const AttemptReport& report) {
   head(host::Translate("Level"), host::Translate(facts.level));
   head(host::Translate("Patient"), facts.patient);
   document.sections.push_back(MakeSummary(report));
-  if (!report.advice.empty()) document.sections.push_back(MakeAdvice(report));
+  if (!report.advice.empty()) document.sections.push_back(MakeAdviceSection(report));
   document.sections.push_back(MakeCourse(report));
   if (!report.phases.empty())
     document.sections.push_back({host::Translate("Phases of the operation"), {MakePhaseTable(report)}});

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "database.h"
+#include "postgres_part.h"
 
 namespace trocar::store {
 namespace {
@@ -330,10 +331,7 @@ class PostgresDatabase final : public Database {
   bool is_in_transaction_ = false, is_lost_ = false;
 };
 
-}  // namespace
-
-base::Result<std::unique_ptr<Database>> OpenPostgres(const std::string& url, double busy_seconds,
-                                                     double answer_seconds) {
+OpenedDatabase Connect(const std::string& url, double busy_seconds, double answer_seconds) {
   // the shortest that libpq takes is 2 s
   const auto connect_seconds = static_cast<int>(std::max(2.0, answer_seconds));
   const std::string options = url + (url.find('?') == std::string::npos ? "?" : "&") +
@@ -357,4 +355,11 @@ base::Result<std::unique_ptr<Database>> OpenPostgres(const std::string& url, dou
   return std::unique_ptr<Database>(std::move(database));
 }
 
+}  // namespace
 }  // namespace trocar::store
+
+extern "C" __attribute__((visibility("default"))) void TrocarOpenPostgres(
+    const std::string& url, double busy_seconds, double answer_seconds,
+    trocar::store::OpenedDatabase& opened) {
+  opened = trocar::store::Connect(url, busy_seconds, answer_seconds);
+}

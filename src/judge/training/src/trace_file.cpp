@@ -105,6 +105,17 @@ ordered_json EventsJson(const AttemptTrace& trace) {
   return list;
 }
 
+ordered_json FactsJson(const AttemptTrace& trace) {
+  ordered_json list = ordered_json::array();
+  for (const FactSpan& span : trace.facts) {
+    ordered_json entry = {{"kind", span.kind}, {"hand", span.hand}, {"start", span.start}, {"end", span.end}};
+    if (!span.part.empty()) entry["part"] = span.part;
+    if (span.amount != 0.0) entry["amount"] = span.amount;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
 ordered_json EndJson(const AttemptTrace& trace) {
   ordered_json json = {{"stones_spilled", trace.stones_spilled},
                        {"stones_lost", trace.stones_lost},
@@ -200,6 +211,16 @@ AttemptEvent ReadEvent(const JsonView& view, std::size_t organs) {
   return event;
 }
 
+FactSpan ReadFact(const JsonView& view) {
+  view.AllowOnly({"kind", "hand", "start", "end", "part", "amount"});
+  return {view.Text("kind"),
+          ReadHandIndex(view),
+          view.TextOr("part", ""),
+          view.Number("start", kNotNegative),
+          view.Number("end", kNotNegative),
+          view.NumberOr("amount", 0.0)};
+}
+
 ClipRecord ReadClip(const JsonView& view) {
   view.AllowOnly({"time", "hand", "vessel", "is_lost", "is_misplaced", "gap", "angle"});
   ClipRecord clip;
@@ -226,6 +247,7 @@ void ReadHappenings(const JsonView& root, AttemptTrace& trace) {
   };
   for (const JsonView& view : list("events"))
     trace.events.push_back(ReadEvent(view, trace.organ_names.size()));
+  for (const JsonView& view : list("facts")) trace.facts.push_back(ReadFact(view));
   for (const JsonView& view : list("phases")) {
     view.AllowOnly({"name", "start", "end"});
     trace.phases.push_back(
@@ -320,6 +342,7 @@ std::string FormatTraceJson(const AttemptTrace& trace) {
                 [](const CameraSample& s) { return ordered_json(s.roll); });
   }
   json["events"] = EventsJson(trace);
+  if (!trace.facts.empty()) json["facts"] = FactsJson(trace);
   for (const PhaseSpan& span : trace.phases)
     json["phases"].push_back({{"name", span.name}, {"start", span.start}, {"end", span.end}});
   for (const ClipRecord& clip : trace.clips) {
@@ -350,9 +373,26 @@ base::Result<AttemptTrace> ParseTraceJson(std::string_view text, const std::stri
   AttemptTrace trace;
   if (root.Text("format") != kFormat || root.Integer("version") != kVersion)
     root.Complain("format must be \"trocar-trace\" and version 1");
-  root.AllowOnly({"format", "version", "dt", "ticks", "tool_names", "organ_names", "hands", "camera",
-                  "events", "phases", "clips", "fluids", "goals", "stones_spilled", "stones_lost",
-                  "critical_view_time", "is_operation", "outcome", "ideal_path"});
+  root.AllowOnly({"format",
+                  "version",
+                  "dt",
+                  "ticks",
+                  "tool_names",
+                  "organ_names",
+                  "hands",
+                  "camera",
+                  "events",
+                  "facts",
+                  "phases",
+                  "clips",
+                  "fluids",
+                  "goals",
+                  "stones_spilled",
+                  "stones_lost",
+                  "critical_view_time",
+                  "is_operation",
+                  "outcome",
+                  "ideal_path"});
   trace.dt = root.Number("dt", {1e-6, 10.0});
   // two hours at 1 kHz
   const auto ticks = static_cast<std::size_t>(root.Integer("ticks", {0, 7.2e6}));

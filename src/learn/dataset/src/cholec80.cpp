@@ -4,6 +4,7 @@
 
 #include "class_tables.h"
 #include "layout_set.h"
+#include "trocar/cholecystectomy/hand_acts.h"
 #include "trocar/host/safe_file.h"
 
 namespace trocar::dataset {
@@ -31,13 +32,17 @@ class Cholec80Writer : public VideoWriter {
   }
 
   base::Status Add(const Frame& frame, const simulation::Simulation& /*simulation*/) override {
+    // a picture has a million labels
+    static const auto kTools = [] {
+      std::array<std::optional<instrument::ToolKind>, view::kLabelClassCount> tools;
+      for (std::size_t i = 0; i < tools.size(); ++i)
+        tools[i] = view::ToolOf(static_cast<view::LabelClass>(i));
+      return tools;
+    }();
     std::array<bool, kCholec80Tools.size()> is_there{};
     for (const std::uint16_t label : frame.geometry.labels) {
-      const view::LabelClass seen = view::ClassOf(label);
-      if (seen < view::LabelClass::kGrasper || seen > view::LabelClass::kBag) continue;
-      const auto kind = static_cast<instrument::ToolKind>(static_cast<int>(seen) -
-                                                          static_cast<int>(view::LabelClass::kGrasper));
-      is_there[static_cast<std::size_t>(InstrumentOf(kind))] = true;
+      const auto kind = kTools[static_cast<std::size_t>(view::ClassOf(label))];
+      if (kind) is_there[static_cast<std::size_t>(cholecystectomy::InstrumentOf(*kind))] = true;
     }
     tools_ += std::to_string(frame.number);
     for (const bool there : is_there) tools_ += there ? "\t1" : "\t0";

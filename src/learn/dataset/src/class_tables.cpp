@@ -192,16 +192,8 @@ int ToEndoscapes(LabelClass label) noexcept {
       return 4;
     case LabelClass::kGallbladder:
       return 5;
-    case LabelClass::kGrasper:
-    case LabelClass::kDissector:
-    case LabelClass::kHook:
-    case LabelClass::kScissors:
-    case LabelClass::kClipApplier:
-    case LabelClass::kSuctionIrrigator:
-    case LabelClass::kBag:
-      return 6;
     default:
-      return 0;
+      return view::ToolOf(label) ? 6 : 0;
   }
 }
 
@@ -215,27 +207,6 @@ int FindCholecT50Triplet(const cholecystectomy::Triplet& triplet) noexcept {
 
 std::string_view CholecT50Name(cholecystectomy::Phase phase) noexcept {
   return kPhases[static_cast<std::size_t>(phase)];
-}
-
-cholecystectomy::InstrumentKind InstrumentOf(instrument::ToolKind tool) noexcept {
-  using Kind = instrument::ToolKind;
-  switch (tool) {
-    case Kind::kGrasper:
-      return InstrumentKind::kGrasper;
-    case Kind::kDissector:
-      return InstrumentKind::kBipolar;  // the one that carries current between jaws
-    case Kind::kHook:
-      return InstrumentKind::kHook;
-    case Kind::kScissors:
-      return InstrumentKind::kScissors;
-    case Kind::kClipApplier:
-      return InstrumentKind::kClipper;
-    case Kind::kSuctionIrrigator:
-      return InstrumentKind::kIrrigator;
-    case Kind::kBag:
-      return InstrumentKind::kSpecimenBag;
-  }
-  return InstrumentKind::kCount;
 }
 
 }  // namespace trocar::dataset

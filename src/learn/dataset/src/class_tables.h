@@ -37,7 +37,4 @@ std::span<const cholecystectomy::Triplet> CholecT50Triplets() noexcept;
 /// "preparation", "carlot-triangle-dissection", ...: as that data set spells them.
 std::string_view CholecT50Name(cholecystectomy::Phase phase) noexcept;
 
-/// Which instrument of the public data sets a tool is; kCount for none.
-cholecystectomy::InstrumentKind InstrumentOf(instrument::ToolKind tool) noexcept;
-
 }  // namespace trocar::dataset

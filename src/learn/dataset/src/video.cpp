@@ -124,12 +124,12 @@ base::Result<VideoResult> MakeVideo(
   }
 
   const auto writer = make_writer(simulation);
-  ActWatch watch(simulation.GetScene(), simulation.Surfaces());
+  ActWatch watch(simulation.GetScene(), simulation.Surfaces(), simulation.Strands());
   Frame frame;
   const simulation::Snapshot& now = simulation.GetSnapshot();
   const double begin = now.time, half_tick = 0.5 * simulation.GetScene().tick_seconds;
   for (;;) {
-    watch.Look(now, (*player)->LastInput());
+    watch.Look(now);
     writer->Look(simulation, (*player)->LastInput());
     if (now.time - begin + half_tick >= static_cast<double>(frame.index) * plan.every) {
       frame.number = static_cast<std::uint64_t>(std::llround(kFramesPerSecond * (now.time - begin)));

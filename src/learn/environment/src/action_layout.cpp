@@ -38,12 +38,6 @@ std::string InFull(double value) {
   return {text.data(), end};
 }
 
-bool HasKind(const scene::InstrumentSetup& setup, std::initializer_list<instrument::ToolKind> kinds) {
-  return std::any_of(setup.tray.begin(), setup.tray.end(), [&](const instrument::Tool& tool) {
-    return std::find(kinds.begin(), kinds.end(), tool.kind) != kinds.end();
-  });
-}
-
 /// Place in a row of `count` equal parts of -1 to 1.
 std::size_t PartOf(double value, std::size_t count) {
   const double part = 0.5 * (value + 1) * static_cast<double>(count);
@@ -61,17 +55,18 @@ ActionLayout::ActionLayout(const scene::Scene& scene, const EnvironmentSettings&
     : kind_(settings.actions),
       moves_camera_(settings.moves_camera),
       has_assistant_(scene.operation && scene.operation->assistant) {
-  using instrument::ToolKind;
   for (int hand = 0; hand < kHandCount; ++hand) {
     const scene::InstrumentSetup& setup = scene.instruments[hand];
-    if (HasKind(setup, {ToolKind::kHook, ToolKind::kDissector}) && (scene.operation || scene.model)) {
-      pedals_[hand].push_back(Pedal::kCut);
-      pedals_[hand].push_back(Pedal::kCoagulate);
-    }
-    if (HasKind(setup, {ToolKind::kSuctionIrrigator})) {
-      pedals_[hand].push_back(Pedal::kRinse);
-      pedals_[hand].push_back(Pedal::kAspirate);
-    }
+    const bool has_tissue = scene.operation || scene.model;
+    const auto obeys = [&](bool instrument::Pedals::*pedal) {
+      return std::any_of(setup.tray.begin(), setup.tray.end(), [&](const instrument::Tool& tool) {
+        return instrument::AbilitiesOf(tool.kind).pedals.*pedal;
+      });
+    };
+    if (obeys(&instrument::Pedals::cut) && has_tissue) pedals_[hand].push_back(Pedal::kCut);
+    if (obeys(&instrument::Pedals::coagulate) && has_tissue) pedals_[hand].push_back(Pedal::kCoagulate);
+    if (obeys(&instrument::Pedals::rinse)) pedals_[hand].push_back(Pedal::kRinse);
+    if (obeys(&instrument::Pedals::aspirate)) pedals_[hand].push_back(Pedal::kAspirate);
     tools_[hand] = setup.tray.size();
     if (tools_[hand] > 1) pedals_[hand].push_back(Pedal::kNextTool);
 

@@ -125,7 +125,7 @@ struct Buffer {
   }
 };
 
-Matrix4 MakeProjection(const OrbitCamera& camera, int width, int height) {
+Matrix4 MakeOrbitProjection(const OrbitCamera& camera, int width, int height) {
   const auto [near, far] = CalcDepthRange(camera);
   const double focal = 1.0 / std::tan(0.5 * camera.field_of_view);
   Matrix4 m{};
@@ -183,7 +183,7 @@ struct FigureRenderer::Content {
 
   void DrawSurfaces(const OrbitCamera& camera, int width, int height) {
     glUseProgram(surface.name);
-    surface.Set("u_clip_from_camera", MakeProjection(camera, width, height));
+    surface.Set("u_clip_from_camera", MakeOrbitProjection(camera, width, height));
     surface.Set("u_camera_from_world", MakeWorldToCamera(camera));
     surface.Set("u_opacity", 1.0f);
     surface.Set("u_light", 1.0f);

@@ -17,7 +17,7 @@ constexpr double kCornerPixels = 62, kAxisPixels = 36, kLetterPixels = 11;
 float F(double value) {
   return static_cast<float>(value);
 }
-std::array<float, 3> ToFloat(const SrgbColour& colour) {
+std::array<float, 3> ToFloats(const SrgbColour& colour) {
   return {F(colour[0]), F(colour[1]), F(colour[2])};
 }
 
@@ -65,7 +65,7 @@ class Pen {
     constexpr std::array<std::array<float, 2>, 4> kLocal = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
     for (const int i : {0, 1, 2, 0, 2, 3}) {
       const ClipPoint& p = corners[i];
-      out.push_back({{F(p.x), F(p.y), F(p.z), F(p.w)}, ToFloat(colour), {kLocal[i][0], kLocal[i][1], kind}});
+      out.push_back({{F(p.x), F(p.y), F(p.z), F(p.w)}, ToFloats(colour), {kLocal[i][0], kLocal[i][1], kind}});
     }
   }
 

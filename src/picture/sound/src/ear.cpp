@@ -9,8 +9,7 @@ namespace {
 
 bool HoldsElectrode(const scene::InstrumentSetup& setup, std::size_t place) noexcept {
   if (place >= setup.tray.size()) return false;
-  const instrument::ToolKind kind = setup.tray[place].kind;
-  return kind == instrument::ToolKind::kHook || kind == instrument::ToolKind::kDissector;
+  return instrument::AbilitiesOf(setup.tray[place].kind).electrode != instrument::Electrode::kNone;
 }
 
 }  // namespace
@@ -22,7 +21,7 @@ SoundState Ear::Listen(const scene::Scene& scene, const simulation::Snapshot& sn
   // what is no longer in the ring happened too long ago to be heard
   for (std::uint64_t& seen = seen_events_ = std::max(seen_events_, count - std::min(count, ring));
        seen < count; ++seen) {
-    if (snapshot.events[seen % ring].kind == scene::EventKind::kClipClosed) ++clicks_;
+    if (snapshot.events[seen % ring].kind == surgery::FactKind::kClipClosed) ++clicks_;
   }
   SoundState state;
   state.clicks = clicks_;

@@ -21,7 +21,7 @@ scene::Scene MakeScene() {
   return scene;
 }
 
-void Happen(simulation::Snapshot& snapshot, scene::EventKind kind) {
+void Happen(simulation::Snapshot& snapshot, surgery::FactKind kind) {
   snapshot.events[snapshot.event_count++ % snapshot.events.size()].kind = kind;
 }
 
@@ -51,15 +51,15 @@ TEST(Ear, CountsClosedClipsOnceAndGoesOnAfterAReset) {
   Ear ear;
   const auto clicks = [&] { return ear.Listen(scene, snapshot, {}, true).clicks; };
   EXPECT_EQ(clicks(), 0u);
-  Happen(snapshot, scene::EventKind::kGrasp);
-  Happen(snapshot, scene::EventKind::kClipClosed);
+  Happen(snapshot, surgery::FactKind::kGrasp);
+  Happen(snapshot, surgery::FactKind::kClipClosed);
   EXPECT_EQ(clicks(), 1u);
   EXPECT_EQ(clicks(), 1u);
-  for (int i = 0; i < 20; ++i) Happen(snapshot, scene::EventKind::kClipClosed);
+  for (int i = 0; i < 20; ++i) Happen(snapshot, surgery::FactKind::kClipClosed);
   EXPECT_EQ(clicks(), 1u + simulation::kEventRing);  // older ones have left the ring
   snapshot.event_count = 0;
   EXPECT_EQ(clicks(), 1u + simulation::kEventRing);
-  Happen(snapshot, scene::EventKind::kClipClosed);
+  Happen(snapshot, surgery::FactKind::kClipClosed);
   EXPECT_EQ(clicks(), 2u + simulation::kEventRing);
 }
 

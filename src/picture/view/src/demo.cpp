@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "trocar/base/assert.h"
 #include "trocar/base/statistics.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/threads.h"
@@ -41,7 +42,7 @@ base::Result<double> FindDuration(const scene::Scene& scene, const DemoOptions& 
 /// Times at which pictures are kept, ascending and within the demonstration.
 std::vector<double> FindPictureTimes(const DemoOptions& options, double duration) {
   std::vector<double> times = options.picture_times;
-  if (times.empty() && options.surgeon != nullptr) {
+  if (times.empty() && options.is_until_end) {
     for (double time = 1; time <= duration; time *= 2) times.push_back(time);
   } else if (times.empty()) {
     for (int i = 0; i < kDefaultPictures; ++i) times.push_back(duration * (i + 0.5) / kDefaultPictures);
@@ -67,6 +68,7 @@ base::Result<DemoReport> PlayDemonstration(std::shared_ptr<const scene::Scene> s
   if (options.frames_per_second < 1 || options.frames_per_second > 240)
     return WrongUse("1 to 240 frames a second");
   if (options.threads < 1) return WrongUse("at least one thread");
+  TROCAR_ASSERT(options.source != nullptr || !options.is_until_end);
   const auto duration = FindDuration(*scene, options);
   if (!duration) return duration.error();
 
@@ -108,13 +110,12 @@ base::Result<DemoReport> PlayDemonstration(std::shared_ptr<const scene::Scene> s
   const auto play_until = [&](double time) {
     const auto tick_goal = static_cast<std::uint64_t>(std::floor(time / scene->tick_seconds + 1e-6));
     while (report.ticks < tick_goal) {
-      const double now = simulation->GetSnapshot().time;
-      scene::Input input = options.surgeon != nullptr ? options.surgeon->Act(simulation->GetSnapshot())
-                                                      : scene::CalcScriptInput(*scene, now);
-      if (options.change_input) options.change_input(now, input);
+      const simulation::Snapshot& before = simulation->GetSnapshot();
+      const scene::Input input = options.source != nullptr ? options.source->For(before.tick + 1, before)
+                                                           : scene::CalcScriptInput(*scene, before.time);
       simulation->Step(input);
       ++report.ticks;
-      if (options.after_step) options.after_step(*simulation);
+      if (options.after_step) options.after_step(*simulation, input);
       if (options.on_tick) options.on_tick(simulation->GetSnapshot());
     }
   };
@@ -134,7 +135,7 @@ base::Result<DemoReport> PlayDemonstration(std::shared_ptr<const scene::Scene> s
       if (auto status = video->AddFrame(image); !status) return status.error();
     }
     // the last picture may be asked for at the very end, between the last frame and it
-    const bool has_finished = options.surgeon != nullptr && options.surgeon->HasFinished();
+    const bool has_finished = options.is_until_end && options.source->IsAtEnd();
     const bool is_last = frame + 1 == frame_count || has_finished;
     while (next_picture < picture_times.size() &&
            (picture_times[next_picture] <= frame_time + 1e-9 || is_last)) {
@@ -147,7 +148,7 @@ base::Result<DemoReport> PlayDemonstration(std::shared_ptr<const scene::Scene> s
       options.on_progress(static_cast<double>(frame + 1) / static_cast<double>(frame_count));
     if (has_finished) break;
   }
-  if (options.surgeon == nullptr) play_until(*duration);  // what lies behind the last frame
+  if (!options.is_until_end) play_until(*duration);  // what lies behind the last frame
   if (video) {
     if (auto status = video->Finish(); !status) return status.error();
   }

@@ -37,7 +37,7 @@ geometry::TriangleMesh MakeSleeve(double shaft_radius) {
                             24);
 }
 
-Material MaterialOf(ToolKind tool, Kind part) {
+Material MaterialOfPart(ToolKind tool, Kind part) {
   switch (part) {
     case Kind::kShaft:
       return tool == ToolKind::kSuctionIrrigator ? Material::kSteel : Material::kShaft;
@@ -62,7 +62,9 @@ std::vector<double> CalcPouchShares(const geometry::TriangleMesh& pouch) {
 
 /// Current leaves the toe of the hook, else the tips.
 Vec3 FindElectrode(const instrument::Tool& tool, const Pose& X_world_tool) {
-  return X_world_tool * (tool.kind == ToolKind::kHook ? Vec3{0, 0.0032, -0.0005} : Vec3{});
+  return X_world_tool * (instrument::AbilitiesOf(tool.kind).electrode == instrument::Electrode::kToe
+                             ? Vec3{0, 0.0032, -0.0005}
+                             : Vec3{});
 }
 
 void AddSparks(render::Frame& frame, const Vec3& source, std::uint64_t tick, std::uint32_t hand) {
@@ -85,7 +87,7 @@ void HandTools::Add(render::Renderer& renderer, const scene::Scene& scene) {
       const std::vector<double> shares =
           part.kind == Kind::kPouch ? CalcPouchShares(part.mesh) : std::vector<double>{};
       shown.parts.push_back(
-          {part.kind, renderer.AddSurface(part.mesh, MaterialOf(tool.kind, part.kind), shares)});
+          {part.kind, renderer.AddSurface(part.mesh, MaterialOfPart(tool.kind, part.kind), shares)});
     }
     return shown;
   };

@@ -37,7 +37,8 @@ constexpr std::array<std::string_view, kLabelClassCount> kNames = {"nothing",
                                                                    "tissue_model",
                                                                    "object",
                                                                    "mark",
-                                                                   "trainer_box"};
+                                                                   "trainer_box",
+                                                                   "linear_stapler"};
 
 }  // namespace
 
@@ -84,8 +85,17 @@ LabelClass FindLabelClass(instrument::ToolKind tool) noexcept {
       return LabelClass::kSuctionIrrigator;
     case Kind::kBag:
       return LabelClass::kBag;
+    case Kind::kLinearStapler:
+      return LabelClass::kLinearStapler;
   }
   return LabelClass::kNothing;
+}
+
+std::optional<instrument::ToolKind> ToolOf(LabelClass label) noexcept {
+  for (const instrument::Tool& tool : instrument::AllTools()) {
+    if (FindLabelClass(tool.kind) == label) return tool.kind;
+  }
+  return std::nullopt;
 }
 
 LabelClass FindLabelClass(Material material) noexcept {

@@ -84,6 +84,47 @@ TEST_F(DemoTest, PlaysWhatTheSimulationAlonePlays) {
   EXPECT_EQ(report->state_hash, simulation->Hash());
 }
 
+/// The script a little aside, until a tick.
+struct Aside : simulation::InputSource {
+  Aside(const scene::Scene& played, std::uint64_t end) : scene(played), end_tick(end) {}
+  scene::Input For(std::uint64_t tick, const simulation::Snapshot& before) override {
+    EXPECT_EQ(tick, ++last);
+    EXPECT_EQ(before.tick + 1, tick);
+    scene::Input input = scene::CalcScriptInput(scene, before.time);
+    input.hands[0].pan += 0.05;
+    return input;
+  }
+  bool IsAtEnd() const override { return last >= end_tick; }
+  const scene::Scene& scene;
+  std::uint64_t end_tick, last = 0;
+};
+
+TEST_F(DemoTest, PlaysAnySourceAndEndsWithItWhereItIsAskedTo) {
+  options_.has_video = false;
+  const auto script = PlayDemonstration(scene_, options_);
+  ASSERT_TRUE(script.ok()) << script.error().Text();
+  for (const bool is_until_end : {false, true}) {
+    Aside source(*scene_, 9);
+    options_.source = &source;
+    options_.is_until_end = is_until_end;
+    std::uint64_t seen = 0;
+    options_.after_step = [&](simulation::Simulation&, const scene::Input& input) {
+      const double time = static_cast<double>(seen++) * scene_->tick_seconds;
+      EXPECT_NEAR(input.hands[0].pan, scene::CalcScriptInput(*scene_, time).hands[0].pan + 0.05, 1e-6);
+    };
+    const auto report = PlayDemonstration(scene_, options_);
+    ASSERT_TRUE(report.ok()) << report.error().Text();
+    EXPECT_NE(report->state_hash, script->state_hash);
+    EXPECT_EQ(report->ticks, source.last);
+    EXPECT_EQ(report->ticks, seen);
+    if (is_until_end) {
+      EXPECT_LT(report->ticks, 20u);
+    } else {
+      EXPECT_EQ(report->ticks, script->ticks);
+    }
+  }
+}
+
 TEST_F(DemoTest, RefusesOptionsOutOfRange) {
   const auto expect_usage = [&](DemoOptions options) {
     const auto report = PlayDemonstration(scene_, options);

@@ -27,7 +27,7 @@ constexpr NumberRange kClipPull{0.01, 100};
 constexpr NumberRange kPower{1, 100};
 constexpr NumberRange kSlipSpeed{0, 0.1};
 constexpr NumberRange kVolume{0, 0.001};
-constexpr NumberRange kSeconds{0.1, 36000};
+constexpr NumberRange kClotSeconds{0.1, 36000};
 constexpr NumberRange kSpecificHeat{100, 100000};
 constexpr NumberRange kConductivity{0.001, 100};
 constexpr NumberRange kLatentHeat{10000, 100000000.0};
@@ -149,7 +149,7 @@ void ReadJudgement(const JsonView& root, scene::OperationParameters& made) {
 void ReadBed(const JsonView& root, scene::OperationParameters& made) {
   const JsonView group = OpenGroup(root, "bed", {"volume_m3", "clot_s", "source"});
   made.bed.bed_volume = group.Number("volume_m3", kVolume);
-  made.bed.clot_seconds = group.Number("clot_s", kSeconds);
+  made.bed.clot_seconds = group.Number("clot_s", kClotSeconds);
 }
 
 void ReadHeat(const JsonView& root, scene::OperationParameters& made) {

@@ -37,7 +37,7 @@ constexpr host::NumberRange kCoordinateMm{-3000, 3000};
 constexpr host::NumberRange kRadiusMm{0.01, 50};  // of a duct or vessel
 constexpr host::NumberRange kIndex{0, 4294967294.0};
 constexpr host::NumberRange kOrganIndex{0, 1e6};
-constexpr host::NumberRange kParameter{-1e6, 1e6};
+constexpr host::NumberRange kParameterValue{-1e6, 1e6};
 nlohmann::ordered_json PointJson(const math::Vec3& world) {
   const math::Vec3 p = ToLps(world);
   return nlohmann::ordered_json::array({p.x, p.y, p.z});
@@ -241,7 +241,7 @@ base::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
       if (view.Has("text")) {
         parameter.value = view.Text("text");
       } else {
-        parameter.value = view.Number("value", kParameter);
+        parameter.value = view.Number("value", kParameterValue);
       }
       patient.parameters.push_back(std::move(parameter));
     }

@@ -60,10 +60,10 @@ void ReadInstrument(const host::JsonView& root, const char* hand, const patient:
     if (const instrument::Tool* tool = instrument::FindTool(name); tool != nullptr) {
       setup.tray.push_back(*tool);
     } else {
-      view.Complain(
-          "there is no tool \"" + name +
-              "\"; known are grasper, maryland, hook, scissors, clip_applier, suction_irrigator and bag",
-          base::ErrorCode::kUnknownName);
+      std::string known;
+      for (const instrument::Tool& one : instrument::AllTools())
+        known += (known.empty() ? "" : ", ") + one.name;
+      view.Complain("there is no tool \"" + name + "\"; known are " + known, base::ErrorCode::kUnknownName);
     }
   };
   add(view.Text("tool"));

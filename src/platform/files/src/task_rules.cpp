@@ -75,8 +75,8 @@ class RulesReader {
     c.event = ReadEvent(view);
     if (view.Has("region") || view.Has("regions")) c.regions = ReadRegions(view, item);
     c.is_outside = view.BooleanOr("outside", false);
-    if (!c.regions.empty() && c.event != static_cast<int>(scene::EventKind::kClipClosed) &&
-        c.event != static_cast<int>(scene::EventKind::kTubeCut))
+    if (!c.regions.empty() && c.event != static_cast<int>(surgery::FactKind::kClipClosed) &&
+        c.event != static_cast<int>(surgery::FactKind::kTubeCut))
       view.Complain("only clip_closed and tube_cut have a place", ErrorCode::kSceneInvalid);
   }
 
@@ -256,8 +256,8 @@ class RulesReader {
   static int ReadEvent(const JsonView& view) {
     const std::string name = view.Text("event");
     std::string known;
-    for (int i = 0; i <= static_cast<int>(scene::kLastEventKind); ++i) {
-      const auto one = scene::EventName(static_cast<scene::EventKind>(i));
+    for (int i = 0; surgery::IsEvent(static_cast<surgery::FactKind>(i)); ++i) {
+      const auto one = surgery::FactName(static_cast<surgery::FactKind>(i));
       if (one == name) return i;
       known += (i == 0 ? "" : ", ") + std::string(one);
     }

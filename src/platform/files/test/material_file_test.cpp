@@ -14,9 +14,9 @@
 namespace trocar::files {
 
 using scene::CalcScriptInput;
-using scene::EventKind;
 using scene::OrganMaterial;
 using scene::SmallScene;
+using surgery::FactKind;
 namespace {
 
 class MaterialFile : public SmallScene {
@@ -120,14 +120,14 @@ TEST_F(MaterialFile, AWeakBedTearsUnderTractionAndTheEventSaysSo) {
   ASSERT_TRUE(read.ok()) << read.error().Text();
   auto simulation = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*read)));
   ASSERT_TRUE(simulation.ok());
-  std::set<EventKind> seen;
+  std::set<FactKind> seen;
   std::uint64_t events = 0;
   for (int tick = 0; tick < 150; ++tick) {
     simulation->Step(CalcScriptInput(simulation->GetScene(), simulation->GetSnapshot().time));
     const simulation::Snapshot& now = simulation->GetSnapshot();
     for (; events < now.event_count; ++events) seen.insert(now.events[events % now.events.size()].kind);
   }
-  EXPECT_TRUE(seen.count(EventKind::kTear));
+  EXPECT_TRUE(seen.count(FactKind::kTear));
 }
 
 TEST_F(MaterialFile, AWallThatStiffensAndTearsIsRead) {
@@ -168,7 +168,7 @@ TEST_F(MaterialFile, AWeakWallTearsUnderTractionAndLeaks) {
       EXPECT_TRUE(std::isfinite(now.residual));
       for (; events < now.event_count; ++events) {
         const scene::Event& event = now.events[events % now.events.size()];
-        if (event.kind != EventKind::kTear) continue;
+        if (event.kind != FactKind::kTear) continue;
         EXPECT_EQ(event.organ, 1) << "the gallbladder";
         ++tears;
       }

@@ -15,9 +15,8 @@ base::Result<fs::path> FindDataFolder() {
   if (const char* named = std::getenv("TROCAR_DATA_DIR"); named != nullptr && *named != '\0') {
     places.emplace_back(named);  // whoever names a folder wants that one
   } else {
-    const fs::path folder = FindProgramFolder();
-    places.push_back(folder / "../share/trocar");
-    places.push_back(folder);
+    places.push_back(FindInstallationFolder() / "share/trocar");
+    places.push_back(FindProgramFolder());
     places.emplace_back(TROCAR_COMPILED_DATA_FOLDER);
   }
   std::string tried;

@@ -41,9 +41,8 @@ std::string LanguageOf(const char* name) {
 
 fs::path FindLocaleFolder() {
   if (const char* named = std::getenv("TROCAR_LOCALE_DIR"); named != nullptr && *named != '\0') return named;
-  const fs::path folder = FindProgramFolder();
   std::error_code failure;
-  for (const fs::path& place : {folder / "../share/locale", folder / "locale"}) {
+  for (const fs::path& place : {FindInstallationFolder() / "share/locale", FindProgramFolder() / "locale"}) {
     if (fs::exists(place / "es/LC_MESSAGES/trocar.mo", failure)) return place.lexically_normal();
   }
   return {};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "trocar/tissue/element_kinds.h"
+
 namespace trocar::tissue_cuda {
 namespace {
 
@@ -41,7 +43,7 @@ tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings
                                           const tissue::TissueLoad& load, tissue::TissueState& state,
                                           tissue::ConstraintSet* constraints,
                                           std::span<const math::Vec3> extrapolation) noexcept {
-  if (gpu_ && RunsOnGpu(settings.kind) && HasPlainSprings(state)) {
+  if (gpu_ && RunsOnGpu(settings.kind) && HasPlainSprings(state) && !tissue::HasElements(load)) {
     const base::Result<tissue::SolveReport> report =
         gpu_->Solve(MakeGpuSettings(settings), load, state, constraints);
     if (report) return *report;

@@ -6,6 +6,7 @@
 
 #include "gpu_solve.h"
 #include "trocar/base/assert.h"
+#include "trocar/tissue/element_kinds.h"
 
 namespace trocar::tissue_cuda {
 
@@ -16,6 +17,12 @@ base::Error NotHookes() {
           "the GPU's springs follow Hooke's law and are whole; cut, weakened and stiffening springs are "
           "solved on "
           "the processor"};
+}
+
+base::Error HasNoElements() {
+  return {
+      base::ErrorCode::kGpuLayout,
+      "the GPU solves springs, strands and contacts of tools; other elements are solved on the processor"};
 }
 
 }  // namespace
@@ -67,6 +74,7 @@ base::Result<tissue::SolveReport> GpuSolver::Solve(const GpuSettings& settings,
   for (const double factor : state.spring_factor) {
     if (factor != 1.0) return NotHookes();
   }
+  if (tissue::HasElements(load)) return HasNoElements();
   if (base::Status status = content_->gpu->Enter(); !status) {
     content_->failed = status.error();
     return status.error();

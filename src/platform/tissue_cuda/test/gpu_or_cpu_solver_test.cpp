@@ -6,6 +6,7 @@
 #include "check_systems.h"
 #include "gpu_solve.h"
 #include "stand_in.h"
+#include "trocar/tissue/element_kinds.h"
 
 namespace trocar::tissue_cuda {
 
@@ -83,6 +84,28 @@ TEST(GpuOrCpuSolver, CutSpringsAreSolvedOnTheProcessorAndTheGpuIsKept) {
   ASSERT_TRUE(alone);
   EXPECT_EQ(alone->Solve(MakeGpuSettings(kChebyshev), kLoad, state).error().code,
             base::ErrorCode::kGpuLayout);
+}
+
+TEST(GpuOrCpuSolver, ElementsAreSolvedOnTheProcessorAndTheGpuIsKept) {
+  const StandIn stand_in;
+  const TissueModel model = MakeModel();
+  GpuOrCpuSolver solver(model, base::Threads{}, MakeGpuSolver(model, {}, StandIn::Source()));
+  ASSERT_NE(solver.Gpu(), nullptr);
+  TissueState state = MakeMovedState(model, 3e-4), expected = state, other = state;
+  tissue::ElementArrays elements;
+  elements.Of<tissue::AnchorElement>().push_back({.nodes = {7}, .stiffness = 20.0, .anchor = model.rest[9]});
+  tissue::TissueLoad load = kLoad;
+  load.elements = &elements;
+  tissue::EquilibriumSolver cpu(model);
+  (void)cpu.Solve(kChebyshev, load, expected);
+  (void)solver.Solve(kChebyshev, load, state);
+  EXPECT_EQ(state.position, expected.position);
+  (void)cpu.Solve(kChebyshev, kLoad, other);
+  EXPECT_NE(state.position, other.position) << "the element does nothing";
+  EXPECT_NE(solver.Gpu(), nullptr);
+  base::Result<GpuSolver> alone = MakeGpuSolver(model, {}, StandIn::Source());
+  ASSERT_TRUE(alone);
+  EXPECT_EQ(alone->Solve(MakeGpuSettings(kChebyshev), load, state).error().code, base::ErrorCode::kGpuLayout);
 }
 
 TEST(GpuOrCpuSolver, SpringsThatStiffenAreRefused) {

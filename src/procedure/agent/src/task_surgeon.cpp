@@ -227,7 +227,7 @@ void TaskSurgeon::PlanStep(const Snapshot& seen, const scene::Goal& goal, std::u
       return;
     case ConditionKind::kEvent:
       // tissue is taken where the step before has brought the tip
-      if (c.event == static_cast<int>(scene::EventKind::kGrasp) && c.hand != kAnyHand && step > 0 &&
+      if (c.event == static_cast<int>(surgery::FactKind::kGrasp) && c.hand != kAnyHand && step > 0 &&
           goal.steps[step - 1].kind == ConditionKind::kTipInRegion) {
         const int before = goal.steps[step - 1].regions.front();
         GraspTissue(seen, c.hand, task.regions[static_cast<std::size_t>(before)].centre);

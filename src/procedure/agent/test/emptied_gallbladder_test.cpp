@@ -20,14 +20,14 @@ using instrument::kLeft;
 using instrument::kRight;
 using math::Vec3;
 using scene::CalcScriptInput;
-using scene::EventKind;
-using scene::EventName;
 using scene::Input;
 using scene::Scene;
 using scene::SurfaceInfo;
 using simulation::OrganSnapshot;
 using simulation::Simulation;
 using simulation::Snapshot;
+using surgery::FactKind;
+using surgery::FactName;
 
 namespace {
 
@@ -104,9 +104,9 @@ class EmptiedGallbladder : public testing::Test {
         input_.hands[hand] = hands_[hand].Step(scene_->tick_seconds);
       simulation_->Step(input_);
       for (std::uint64_t e = events; e < Seen().event_count; ++e) {
-        const EventKind kind = Seen().events[e % Seen().events.size()].kind;
-        ASSERT_TRUE(kind != EventKind::kStateRestored && kind != EventKind::kOrganFrozen)
-            << EventName(kind) << " at " << Seen().time << " s";
+        const FactKind kind = Seen().events[e % Seen().events.size()].kind;
+        ASSERT_TRUE(kind != FactKind::kStateRestored && kind != FactKind::kOrganFrozen)
+            << FactName(kind) << " at " << Seen().time << " s";
       }
       most_contacts_ = std::max(most_contacts_, Seen().contacts);
       if (Seen().tick % 40 == 0) deepest_ = std::max(deepest_, DeepestInLiver());

@@ -36,7 +36,6 @@ using math::Vec3;
 using scene::CalcScriptInput;
 using scene::ConnectiveTissue;
 using scene::Event;
-using scene::EventKind;
 using scene::Fibre;
 using scene::FibreEnd;
 using scene::Input;
@@ -46,6 +45,7 @@ using simulation::OperationResult;
 using simulation::OperationScene;
 using simulation::Simulation;
 using simulation::Snapshot;
+using surgery::FactKind;
 
 namespace {
 
@@ -125,7 +125,7 @@ TEST(Operation, ExchangesToolsButNotWhileHolding) {
   EXPECT_EQ(simulation.GetSnapshot().operation.tools[kLeft], 0);
   const Snapshot& after = simulation.GetSnapshot();
   EXPECT_TRUE(std::any_of(after.events.begin(), after.events.end(),
-                          [](const Event& event) { return event.kind == EventKind::kExchangeRefused; }));
+                          [](const Event& event) { return event.kind == FactKind::kExchangeRefused; }));
 }
 
 TEST(Operation, BloodAndBileAreAccountedFor) {

@@ -123,7 +123,7 @@ TEST(SimulationStateGuard, TakesABadTickBackAfterRestoringAsBefore) {
   for (Simulation* each : {&simulation, &fresh}) each->Step(input);
   const simulation::Snapshot& seen = simulation.GetSnapshot();
   ASSERT_GT(seen.event_count, 0U);
-  EXPECT_EQ(seen.events[(seen.event_count - 1) % seen.events.size()].kind, scene::EventKind::kStateRestored);
+  EXPECT_EQ(seen.events[(seen.event_count - 1) % seen.events.size()].kind, surgery::FactKind::kStateRestored);
   EXPECT_EQ(fresh.Hash(), simulation.Hash());
   EXPECT_EQ(CalcPublishedHash(fresh), CalcPublishedHash(simulation));
 

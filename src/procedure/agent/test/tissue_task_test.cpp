@@ -26,7 +26,6 @@ using scene::CalcScriptInput;
 using scene::Condition;
 using scene::ConditionKind;
 using scene::Event;
-using scene::EventKind;
 using scene::Input;
 using scene::ModelBand;
 using scene::RegionMark;
@@ -37,6 +36,7 @@ using simulation::OperationSnapshot;
 using simulation::Simulation;
 using simulation::TaskMonitor;
 using surgery::ClipSnapshot;
+using surgery::FactKind;
 
 namespace {
 
@@ -219,7 +219,7 @@ class TissueWords : public testing::Test {
     ++snapshot_.tick;
     monitor_.Update(scene_, snapshot_, snapshot_.task);
   }
-  void Happens(EventKind kind, const Vec3& p_rest, int error = -1) {
+  void Happens(FactKind kind, const Vec3& p_rest, int error = -1) {
     Event event{kind, snapshot_.tick, kRight, -1, 0};
     event.p_rest = p_rest;
     event.error = error;
@@ -285,11 +285,11 @@ TEST_F(TissueWords, AnUnclippedCutIsOneWithTooFewGoodClips) {
   for (ClipSnapshot& clip : snapshot_.operation.clips) clip.closure = 1.0;
   snapshot_.operation.clip_count = 4;
   snapshot_.operation.clips[3].closure = 0.5;
-  Happens(EventKind::kTubeCut, {});
+  Happens(FactKind::kTubeCut, {});
   Tick();
   EXPECT_EQ(snapshot_.task.errors[0], 0u) << "three hold it";
   snapshot_.operation.clips[2].is_lost = true;
-  Happens(EventKind::kTubeCut, {});
+  Happens(FactKind::kTubeCut, {});
   Tick();
   EXPECT_EQ(snapshot_.task.errors[0], 1u);
   Tick();
@@ -298,23 +298,23 @@ TEST_F(TissueWords, AnUnclippedCutIsOneWithTooFewGoodClips) {
 
 TEST_F(TissueWords, EventsHaveAPlaceAndSurgerysErrorsAName) {
   Condition astray = Of(ConditionKind::kEvent, {0});
-  astray.event = static_cast<int>(EventKind::kClipClosed);
+  astray.event = static_cast<int>(FactKind::kClipClosed);
   astray.is_outside = true;
   Start(astray);
-  Happens(EventKind::kClipClosed, {0, 0, -0.1});
+  Happens(FactKind::kClipClosed, {0, 0, -0.1});
   Tick();
   EXPECT_EQ(snapshot_.task.errors[0], 0u);
-  Happens(EventKind::kClipClosed, {0.01, 0, -0.1});
+  Happens(FactKind::kClipClosed, {0.01, 0, -0.1});
   Tick();
   EXPECT_EQ(snapshot_.task.errors[0], 1u);
 
   Condition partial = Of(ConditionKind::kOperationError);
   partial.error = static_cast<int>(cholecystectomy::OperationError::kClipPartial);
   Start(partial);
-  Happens(EventKind::kOperationError, {}, static_cast<int>(cholecystectomy::OperationError::kClipCrossed));
+  Happens(FactKind::kVerdict, {}, static_cast<int>(cholecystectomy::OperationError::kClipCrossed));
   Tick();
   EXPECT_EQ(snapshot_.task.errors[0], 0u);
-  Happens(EventKind::kOperationError, {}, static_cast<int>(cholecystectomy::OperationError::kClipPartial));
+  Happens(FactKind::kVerdict, {}, static_cast<int>(cholecystectomy::OperationError::kClipPartial));
   Tick();
   EXPECT_EQ(snapshot_.task.errors[0], 1u);
 }
@@ -422,7 +422,7 @@ TEST(ClipAndCut, LeavesThreeGoodClipsOnTheirMarksAndTwoStumps) {
 }
 
 /// Steps for some seconds, and counts the events of one kind.
-int CountEvents(Simulation& simulation, const Input& input, double seconds, EventKind kind) {
+int CountEvents(Simulation& simulation, const Input& input, double seconds, FactKind kind) {
   int count = 0;
   for (int tick = 0; tick < static_cast<int>(seconds * 120); ++tick) {
     const std::uint64_t before = simulation.GetSnapshot().event_count;
@@ -444,7 +444,7 @@ TEST(ImpossibleActs, AnEmptyClipApplierSaysSoEachTimeItIsClosed) {
     int count = 0;
     for (const double jaw : {0.7, 0.0}) {
       input.hands[kRight].jaw = jaw;
-      count += CountEvents(*simulation, input, 0.15, EventKind::kNoClipsLeft);
+      count += CountEvents(*simulation, input, 0.15, FactKind::kNoClipsLeft);
     }
     return count;
   };
@@ -462,12 +462,12 @@ TEST(ImpossibleActs, ToolsThatAreOutOfTheirTrocarsSaySoOnceATry) {
   ASSERT_TRUE(simulation.ok());
   Input input = CalcScriptInput(*scene, 0);
   input.controls[kRight].coagulate = true;
-  EXPECT_EQ(CountEvents(*simulation, input, 0.5, EventKind::kUsedOutside), 0) << "it is in";
+  EXPECT_EQ(CountEvents(*simulation, input, 0.5, FactKind::kUsedOutside), 0) << "it is in";
   input.controls[kRight].coagulate = false;
   input.hands[kRight].depth = 0;
-  EXPECT_EQ(CountEvents(*simulation, input, 0.5, EventKind::kUsedOutside), 0) << "and does nothing";
+  EXPECT_EQ(CountEvents(*simulation, input, 0.5, FactKind::kUsedOutside), 0) << "and does nothing";
   input.controls[kRight].coagulate = true;
-  EXPECT_EQ(CountEvents(*simulation, input, 0.5, EventKind::kUsedOutside), 1);
+  EXPECT_EQ(CountEvents(*simulation, input, 0.5, FactKind::kUsedOutside), 1);
   EXPECT_FALSE(simulation->GetSnapshot().operation.has_current[kRight]);
 }
 

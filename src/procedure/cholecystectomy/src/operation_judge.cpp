@@ -7,62 +7,120 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::cholecystectomy {
+
+using surgery::FactKind;
+
 namespace {
 
 constexpr int kClipsThatStay = 2;  // on the patient's side of a cut: the rule that is taught
 
 }  // namespace
 
-OperationJudge::OperationJudge(DissectionMonitor dissection, bool has_critical_view,
+OperationJudge::OperationJudge(JudgedAnatomy anatomy, DissectionMonitor dissection,
                                const JudgementSettings& settings)
-    : has_view_(has_critical_view), settings_(settings), dissection_(std::move(dissection)) {}
+    : anatomy_(std::move(anatomy)), settings_(settings), dissection_(std::move(dissection)) {}
 
-void OperationJudge::JudgeAct(const EmittedAct& act, double time) noexcept {
-  const auto report = [&](OperationError error) { errors_.Add({error, time, act.position, act.hand}); };
-  switch (act.kind) {
-    case EmittedAct::Kind::kError:
-      report(act.error);
+void OperationJudge::Report(OperationError error, const surgery::Fact& fact, double time) noexcept {
+  errors_.Add({error, time, fact.position, fact.hand});
+}
+
+void OperationJudge::JudgeFact(const surgery::Fact& fact, const surgery::OperationObservation& now) noexcept {
+  const Target target = anatomy_.targets.Of(fact);
+  switch (fact.kind) {
+    case FactKind::kOrganCut:
+      if (!anatomy_.may_cut_organs && target != Target::kGallbladder)
+        Report(OperationError::kStructureTorn, fact, now.time);
       break;
-    case EmittedAct::Kind::kClip:
-      if (act.clip.kind == surgery::ClipResult::Kind::kLost) {
-        report(OperationError::kClipDropped);
-        break;
-      }
-      if (!act.vessel.may_be_divided) report(OperationError::kWrongStructureClipped);
-      if (has_view_ && !was_achieved_) report(OperationError::kClipBeforeCriticalView);
-      if (act.clip.is_crossed) report(OperationError::kClipCrossed);
-      if (act.clip.kind == surgery::ClipResult::Kind::kPartial) report(OperationError::kClipPartial);
+    case FactKind::kOrganOpened:
+      Report(OperationError::kGallbladderPerforated, fact, now.time);
       break;
-    case EmittedAct::Kind::kCut:
-      if (!act.vessel.may_be_divided) {
-        report(OperationError::kWrongStructureCut);
+    case FactKind::kOrganBurnt:
+      if (target == Target::kGallbladder) Report(OperationError::kGallbladderPerforated, fact, now.time);
+      if (target == Target::kLiver) Report(OperationError::kLiverBurnt, fact, now.time);
+      break;
+    case FactKind::kClipLost:
+      Report(OperationError::kClipDropped, fact, now.time);
+      break;
+    case FactKind::kClipSlipped:
+      Report(OperationError::kClipSlipped, fact, now.time);
+      break;
+    case FactKind::kClipClosed:
+    case FactKind::kTubeCut:
+    case FactKind::kTubeBurnt:
+    case FactKind::kTubeTornOff:
+      JudgeTube(fact, now);
+      break;
+    case FactKind::kCurrentOn:
+      JudgeCurrent(fact, now);
+      break;
+    default:
+      break;
+  }
+}
+
+/// What was done to a duct or artery.
+void OperationJudge::JudgeTube(const surgery::Fact& fact, const surgery::OperationObservation& now) noexcept {
+  const auto tube = static_cast<std::uint32_t>(static_cast<std::size_t>(fact.surface) - anatomy_.organ_count);
+  const surgery::TubePlace place{tube, fact.along};
+  const VesselJudgement vessel = JudgePlace(anatomy_.biliary, now.vessels, place);
+  switch (fact.kind) {
+    case FactKind::kClipClosed:
+      if (!vessel.may_be_divided) Report(OperationError::kWrongStructureClipped, fact, now.time);
+      if (anatomy_.has_critical_view && !was_achieved_)
+        Report(OperationError::kClipBeforeCriticalView, fact, now.time);
+      if (fact.is_crossed) Report(OperationError::kClipCrossed, fact, now.time);
+      if (fact.is_partial) Report(OperationError::kClipPartial, fact, now.time);
+      break;
+    case FactKind::kTubeCut:
+      if (!vessel.may_be_divided) {
+        Report(OperationError::kWrongStructureCut, fact, now.time);
         break;
       }
       // a second cut of what is divided already closes nothing and opens nothing
-      if (act.vessel.cuts > 1) break;
-      if (act.vessel.staying_clips == 0) report(OperationError::kUnclippedCut);
-      if (act.vessel.staying_clips > 0 && act.vessel.staying_clips < kClipsThatStay)
-        report(OperationError::kTooFewClips);
+      if (fact.amount > 1.0) break;
+      if (vessel.staying_clips == 0) Report(OperationError::kUnclippedCut, fact, now.time);
+      if (vessel.staying_clips > 0 && vessel.staying_clips < kClipsThatStay)
+        Report(OperationError::kTooFewClips, fact, now.time);
       break;
-    case EmittedAct::Kind::kHole:
-      if (!act.vessel.may_be_divided) {
-        report(OperationError::kWrongStructureBurnt);
-      } else if (act.vessel.staying_clips == 0) {
-        report(OperationError::kUnclippedCut);
+    default:
+      // of what is divided already only the gallbladder's side came off
+      if (fact.kind == FactKind::kTubeTornOff && fact.amount > 0.0) break;
+      if (!vessel.may_be_divided) {
+        Report(OperationError::kWrongStructureBurnt, fact, now.time);
+      } else if (vessel.staying_clips == 0) {
+        Report(OperationError::kUnclippedCut, fact, now.time);
       }
       break;
   }
 }
 
-void OperationJudge::JudgeHand(int hand, const OperationObservation& now) noexcept {
+/// An electrode's pedal is down.
+void OperationJudge::JudgeCurrent(const surgery::Fact& fact,
+                                  const surgery::OperationObservation& now) noexcept {
+  if (!instrument::IsInView(now.camera.X_world_camera, now.camera.field_of_view, fact.position))
+    Report(OperationError::kEnergyOutOfView, fact, now.time);
+  if (fact.amount > settings_.idle_seconds) Report(OperationError::kEnergyWithoutContact, fact, now.time);
+  if (fact.amount > 0.0) return;  // nothing is touched
+  const bool is_near =
+      std::any_of(anatomy_.main_ducts.begin(), anatomy_.main_ducts.end(), [&](std::uint32_t node) {
+        return math::Distance(now.tissue.position[node], fact.position) < settings_.near_duct;
+      });
+  if (is_near) Report(OperationError::kEnergyNearDuct, fact, now.time);
+}
+
+void OperationJudge::JudgeHand(int hand, const surgery::OperationObservation& now) noexcept {
   const auto h = static_cast<std::size_t>(hand);
-  const ObservedHand& seen = now.hands[h];
+  const surgery::HandObservation& seen = now.hands[h];
   const auto report = [&](OperationError error) { errors_.Add({error, now.time, seen.p_world_tip, hand}); };
-  if (seen.is_retracting && seen.is_holding_liver) report(OperationError::kLiverGrasped);
+  if (seen.is_holding && anatomy_.targets.OfSurface(seen.held_surface) == Target::kLiver)
+    report(OperationError::kLiverGrasped);
   if (seen.change == surgery::GraspChange::kSlipped || seen.change == surgery::GraspChange::kDamaged)
     report(OperationError::kExcessForce);
   HandState& state = hands_[h];
-  if (now.acts.WasExchanged(hand)) state = {true, 0.0};
+  const bool was_exchanged = std::any_of(now.facts.begin(), now.facts.end(), [&](const surgery::Fact& fact) {
+    return fact.kind == FactKind::kToolExchanged && fact.hand == hand;
+  });
+  if (was_exchanged) state = {true, 0.0};
   if (!state.is_inserting) return;
   if (instrument::IsInView(now.camera.X_world_camera, now.camera.field_of_view, seen.p_world_tip)) {
     state.is_inserting = false;
@@ -75,22 +133,32 @@ void OperationJudge::JudgeHand(int hand, const OperationObservation& now) noexce
   }
 }
 
-void OperationJudge::JudgePhase(const OperationObservation& now) noexcept {
-  // what a hand holds it retracts, whatever else it has done
-  EmittedActs acts = now.acts;
-  for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
-    if (now.hands[hand].is_retracting)
-      acts.Add({InstrumentKind::kGrasper, Verb::kRetract, now.hands[hand].held}, static_cast<int>(hand));
+void OperationJudge::JudgePhase(const surgery::OperationObservation& now) noexcept {
+  HandActs acts;
+  for (const surgery::Fact& fact : now.facts) {
+    if (const auto triplet = TripletOf(fact, anatomy_.targets)) acts.Add(*triplet, fact.hand);
   }
-  std::array<Triplet, EmittedActs::kMostHandActs> triplets;
-  std::size_t count = 0;
-  for (const HandAct& act : acts.HandActs()) triplets[count++] = act.triplet;
-  phases_.Update(std::span(triplets).first(count), now.facts, now.seconds);
+  // what a hand holds it retracts, whatever else it has done
+  for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
+    const surgery::HandObservation& seen = now.hands[hand];
+    if (seen.is_holding)
+      acts.Add({InstrumentKind::kGrasper, Verb::kRetract, anatomy_.targets.OfSurface(seen.held_surface)},
+               static_cast<int>(hand));
+  }
+  const auto& [is_free, is_in_bag, is_leaving] = now.retrieval;
+  phases_.Update(acts.Triplets(), {is_free, is_in_bag, is_leaving}, now.seconds);
 }
 
-void OperationJudge::Update(const OperationObservation& now) noexcept {
+void OperationJudge::SeeTools(const surgery::OperationObservation& now) noexcept {
   errors_before_ = errors_.Entries().size();
-  for (const EmittedAct& act : now.acts.Acts()) JudgeAct(act, now.time);
+  for (const surgery::Fact& fact : now.facts) JudgeFact(fact, now);
+  facts_seen_ = now.facts.size();
+}
+
+void OperationJudge::Update(const surgery::OperationObservation& now) noexcept {
+  if (facts_seen_ == 0) errors_before_ = errors_.Entries().size();
+  for (const surgery::Fact& fact : now.facts.subspan(facts_seen_)) JudgeFact(fact, now);
+  facts_seen_ = 0;
   for (int hand = 0; hand < instrument::kHandCount; ++hand) JudgeHand(hand, now);
 
   dissection_.Update(now.tissue, now.vessels, now.organs, now.camera);
@@ -99,7 +167,7 @@ void OperationJudge::Update(const OperationObservation& now) noexcept {
   JudgePhase(now);
   if (now.blood_lost > settings_.much_blood && errors_.Count(OperationError::kBleeding) == 0)
     errors_.Add({OperationError::kBleeding, now.time, now.p_pool, -1});
-  const bool is_completed = now.facts.is_bag_leaving;
+  const bool is_completed = now.retrieval.is_leaving;
   if (is_completed && !was_completed_ && now.spilled_stones > 0)
     errors_.Add({OperationError::kStonesLeft, now.time, now.p_pool, -1});
   was_completed_ = is_completed;
@@ -116,7 +184,9 @@ void OperationJudge::VisitState(base::StateArchive& archive) {
   }
   archive.Field("was_achieved", was_achieved_);
   archive.Field("was_completed", was_completed_);
-  if (archive.IsRestoring()) errors_before_ = errors_.Entries().size();
+  if (!archive.IsRestoring()) return;
+  errors_before_ = errors_.Entries().size();
+  facts_seen_ = 0;
 }
 
 }  // namespace trocar::cholecystectomy

@@ -473,7 +473,7 @@ void SimulatorWindow::MakeSound(const presenter::Options& options) {
 void SimulatorWindow::HearFrame(const simulation::Snapshot& snapshot) {
   if (sound_ == nullptr) return;
   presenter::SessionControl& control = *presenter_->Control();
-  sound_->Hear(control.GetScene(), snapshot, control.GetSentInput(), !control.IsPaused());
+  sound_->Hear(control.GetScene(), snapshot, control.LastInput(), !control.IsPaused());
   // what an instructor would say: what to do, or that something went wrong
   const presenter::SimulatorPage& page = presenter_->Page();
   sound_->Say(!page.tutorial.empty() ? page.tutorial : page.is_event_warning ? page.event : std::string());

@@ -20,6 +20,8 @@ constexpr BenchmarkSuite kSuites[] = {
     {"haptics", "the 1 kHz loop with both hands in contact, beside a bare loop", RunHapticsBenchmark},
     {"recording", "what recording costs a tick; how quickly a replay runs, seeks and branches",
      RunRecordingBenchmark},
+    {"snapshot", "a tick of the operation as bytes for a network: whole, as a difference, for pictures",
+     RunSnapshotBenchmark},
     {"soak",
      "random actions, pedals too, in every environment, each twice: finite and the same states, no growth "
      "(--steps, --seed)",

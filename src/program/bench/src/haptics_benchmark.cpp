@@ -18,6 +18,7 @@
 #include "trocar/render/offscreen_target.h"
 #include "trocar/session/haptic_loop.h"
 #include "trocar/session/runner.h"
+#include "trocar/session/session_input.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::bench {
@@ -224,7 +225,11 @@ base::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
     leads[hand].inwards = math::Normalized(leads[hand].tissue);
   }
   session::HapticLink link;
-  session::Runner runner(std::move(*simulation), &link);
+  session::SessionInput input(simulation->GetScene());
+  input.UseHaptics(link);
+  session::RunnerSettings running;
+  running.haptics = &link;
+  session::Runner runner(std::move(*simulation), input, std::move(running));
   runner.SetPaused(false);
   const Onlooker onlooker(runner);
 

@@ -21,6 +21,7 @@
 #include "trocar/scene/scene.h"
 #include "trocar/session/haptic_loop.h"
 #include "trocar/session/runner.h"
+#include "trocar/session/session_input.h"
 
 namespace trocar::bench {
 namespace {
@@ -210,9 +211,12 @@ base::Result<double> TimeHapticTick(const Played& played, int threads, const std
   if (!settings) return settings.error();
   settings->supervisor.clear();
   session::HapticLink link;
-  std::optional<session::AttemptKeeping> keeping;
-  if (!folder.empty()) keeping = {folder, Describe()};
-  session::Runner runner(std::move(*simulation), &link, std::move(keeping));
+  session::SessionInput input(simulation->GetScene());
+  input.UseHaptics(link);
+  session::RunnerSettings running;
+  running.haptics = &link;
+  if (!folder.empty()) running.keeping = {folder, Describe()};
+  session::Runner runner(std::move(*simulation), input, std::move(running));
   auto loop = session::HapticLoop::Start(std::move(*driver), *settings, link);
   if (!loop) return loop.error();
   runner.SetPaused(false);

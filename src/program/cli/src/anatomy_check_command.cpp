@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "label_console.h"
 #include "trocar/anatomy/patient_lint.h"
@@ -18,7 +19,7 @@ using host::PrintLine;
 
 namespace {
 
-void PrintForProgram(const anatomy::LintReport& report) {
+void PrintFindingsJson(const anatomy::LintReport& report) {
   nlohmann::ordered_json json;
   json["meshes"] = nlohmann::ordered_json::array();
   for (const anatomy::MeshSummary& mesh : report.meshes) {
@@ -42,7 +43,7 @@ void PrintForProgram(const anatomy::LintReport& report) {
   PrintJson(json);
 }
 
-void PrintForPerson(const anatomy::LintReport& report) {
+void PrintFindings(const anatomy::LintReport& report) {
   std::vector<std::vector<std::string>> rows = {
       {"organ", "triangles", "closed", "manifold", "self-intersections", "volume [mL]"}};
   for (const anatomy::MeshSummary& mesh : report.meshes) {
@@ -77,8 +78,8 @@ void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome) {
   CLI::App* check = anatomy.add_subcommand("check", "Say what is wrong with a patient, and where");
   auto arguments = std::make_shared<Arguments>();
   check->add_option("patient", arguments->patient, "Patient folder")->required()->type_name("PATIENT");
-  check->add_flag(
-      "--json", arguments->is_json,
+  AddJsonFlag(
+      *check, arguments->is_json,
       "Machine-readable: {\"meshes\": [{name, triangles, closed, manifold, self_intersections, "
       "volume_ml}],\n\"labels\": [{label, taken_as, reason, doubt}], \"findings\": [{code, where, text}]}");
   check->footer(
@@ -90,7 +91,7 @@ void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome) {
       outcome.status = report.error();
       return;
     }
-    arguments->is_json ? PrintForProgram(*report) : PrintForPerson(*report);
+    arguments->is_json ? PrintFindingsJson(*report) : PrintFindings(*report);
     outcome.has_finding = !report->findings.empty();
   });
 }

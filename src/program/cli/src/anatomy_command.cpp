@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "anatomy_settings.h"
 #include "command.h"
 #include "console.h"
 #include "image_options.h"
@@ -117,10 +118,7 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
                    "The CT that the labels were drawn on: their densities are compared with what they are "
                    "taken for")
       ->type_name("PATH");
-  command->add_option("--series", options->opening.series, "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 999999999))
-      ->needs("--images")
-      ->type_name("N");
+  AddSeriesOption(*command, options->opening.series)->needs("--images");
   command->add_flag(
       "--mirrored", options->is_mirrored,
       "Left and right of the map are swapped, or it is situs inversus: take it the other way round");
@@ -154,7 +152,7 @@ base::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::ve
 }
 
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* anatomy = app.add_subcommand("anatomy", "A patient from cross-sections, or from none");
+  CLI::App* anatomy = AddListed(app, "anatomy");
   anatomy->require_subcommand(1);
   CLI::App* build =
       anatomy->add_subcommand("build", "Build a patient from control points placed on cross-sections");
@@ -175,9 +173,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
           "Grey values to find edges in, as they were shown when the points were placed (default: the "
           "window that trocar anatomy images suggests)")
       ->type_name("CENTRE,WIDTH");
-  build->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 999999999))
-      ->type_name("N");
+  AddSeriesOption(*build, arguments->series);
   build->add_option("-o,--output", arguments->output, "Patient folder to write")
       ->required()
       ->type_name("PATIENT");

@@ -13,7 +13,9 @@
 #include <variant>
 #include <vector>
 
+#include "anatomy_settings.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/anatomy/unseen_anatomy.h"
@@ -92,7 +94,7 @@ base::Result<std::vector<Completion>> Plan(const CompleteArguments& arguments,
   return planned;
 }
 
-ordered_json MakeJson(const std::vector<Completion>& all, bool keeps_tubes) {
+ordered_json MakeVariantsJson(const std::vector<Completion>& all, bool keeps_tubes) {
   ordered_json json = {{"keeps_seen_tubes", keeps_tubes}, {"variants", ordered_json::array()}};
   for (const Completion& one : all) {
     ordered_json parameters = ordered_json::array(), findings = ordered_json::array();
@@ -116,7 +118,7 @@ ordered_json MakeJson(const std::vector<Completion>& all, bool keeps_tubes) {
   return json;
 }
 
-void PrintForPerson(const std::vector<Completion>& all, bool keeps_tubes) {
+void PrintVariants(const std::vector<Completion>& all, bool keeps_tubes) {
   std::vector<std::vector<std::string>> rows;
   if (all.size() == 1) {
     rows = {{"what the images do not show", "value", "unit", "from"}};
@@ -182,9 +184,9 @@ base::Status Complete(const CompleteArguments& arguments, Outcome& outcome) {
   }
   const bool keeps_tubes = anatomy::HasSeenTubes(*patient);
   if (arguments.is_json) {
-    PrintJson(MakeJson(*planned, keeps_tubes));
+    PrintJson(MakeVariantsJson(*planned, keeps_tubes));
   } else {
-    PrintForPerson(*planned, keeps_tubes);
+    PrintVariants(*planned, keeps_tubes);
   }
   return {};
 }
@@ -231,8 +233,8 @@ void AddAnatomyCompleteCommand(CLI::App& anatomy, Outcome& outcome) {
                    "What is known, as from a cholangiogram, name=value; may be given several times")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  complete->add_flag(
-      "--json", arguments->is_json,
+  AddJsonFlag(
+      *complete, arguments->is_json,
       "Machine-readable: {\"variants\": [{what, output, probability, difficulty, parameters, findings}]}");
   complete->footer(
       "Names and distributions: trocar anatomy generate --list. The patient's file keeps each value with its "

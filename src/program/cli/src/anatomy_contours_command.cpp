@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/App.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "image_options.h"
 #include "start_window.h"
 
 namespace trocar::cli {
@@ -12,8 +14,8 @@ namespace {
 
 struct ContoursArguments {
   std::string images, points, reference, axes, pattern, script;
-  double pixel_mm = 0, slice_mm = 0;  // 0: the files say it
-  int series = 0;                     // 0: there is one
+  std::optional<double> pixel_mm, slice_mm;  // none: the files say it
+  int series = 0;                            // 0: there is one
 };
 
 base::Status Start(const ContoursArguments& arguments) {
@@ -26,8 +28,8 @@ base::Status Start(const ContoursArguments& arguments) {
   add("--axes", arguments.axes);
   add("--pattern", arguments.pattern);
   add("--script", arguments.script);
-  if (arguments.pixel_mm > 0) add("--pixel-mm", std::to_string(arguments.pixel_mm));
-  if (arguments.slice_mm > 0) add("--slice-mm", std::to_string(arguments.slice_mm));
+  if (arguments.pixel_mm) add("--pixel-mm", std::to_string(*arguments.pixel_mm));
+  if (arguments.slice_mm) add("--slice-mm", std::to_string(*arguments.slice_mm));
   if (arguments.series > 0) add("--series", std::to_string(arguments.series));
   return StartWindow(words);
 }
@@ -52,22 +54,9 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome) {
   command
       ->add_option("--reference", arguments->reference, "Label map (NIfTI, NRRD) to show beside the contours")
       ->type_name("LABELS");
-  command->add_option("--pixel-mm", arguments->pixel_mm, "Side of a pixel, where the files do not say it")
-      ->check(CLI::Range(0.01, 20.0))
-      ->type_name("MM");
-  command
-      ->add_option("--slice-mm", arguments->slice_mm,
-                   "Distance from one slice number to the next, where the files do not say it")
-      ->check(CLI::Range(0.01, 50.0))
-      ->type_name("MM");
-  command
-      ->add_option(
-          "--pattern", arguments->pattern,
-          "Only pictures with such names, where a folder holds several stacks: image-{slice:04}.jpeg")
-      ->type_name("NAME");
-  command->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 999999999))
-      ->type_name("N");
+  AddSpacingOptions(*command, arguments->pixel_mm, arguments->slice_mm);
+  AddPatternOption(*command, arguments->pattern);
+  AddSeriesOption(*command, arguments->series);
   command
       ->add_option(
           "--axes", arguments->axes,

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "anatomy_settings.h"
 #include "command.h"
 #include "console.h"
 #include "trocar/anatomy/generate_patient.h"

@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "image_options.h"
 #include "trocar/contours/contour_workspace.h"
 #include "trocar/host/printable.h"
 
@@ -74,11 +75,7 @@ void AddAnatomyGrowCommand(CLI::App& anatomy, Outcome& outcome) {
   command
       ->add_option("--points", arguments->options.points, "Contours of other organs, which stay as they are")
       ->type_name("FILE");
-  command
-      ->add_option("--series", arguments->options.series.series,
-                   "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 999999999))
-      ->type_name("N");
+  AddSeriesOption(*command, arguments->options.series.series);
   command->footer(
       "Correct what grew in the window: trocar anatomy contours. How it grows: docs/contours.md.\n"
       "Example: trocar anatomy phantom --ct portal --seed 1 -o out/ct\n"

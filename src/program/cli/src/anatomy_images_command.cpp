@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "image_options.h"
 #include "trocar/host/printable.h"
@@ -43,7 +44,7 @@ std::string FormatSlices(const images::ImageSeriesInfo& info) {
       {count, from, std::to_string(last), std::to_string(step)});
 }
 
-void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
+void PrintSeries(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
   const auto number = [](double value) { return host::ShownNumber(value); };
   std::vector<std::vector<std::string>> rows = {{"what", "found"}};
   const auto add = [&rows](const std::string& what, const std::string& found) {
@@ -78,7 +79,7 @@ void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWi
   host::PrintTable(rows);
 }
 
-void PrintForProgram(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
+void PrintSeriesJson(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
   nlohmann::ordered_json json;
   json["format"] = info.format;
   json["pattern"] = info.pattern;
@@ -135,7 +136,7 @@ base::Status Show(ImagesArguments arguments) {
     if (auto status = images::WritePng(arguments.preview, *sheet); !status) return status;
   }
   bar.Finish();
-  arguments.is_json ? PrintForProgram(info, shown) : PrintForPerson(info, shown);
+  arguments.is_json ? PrintSeriesJson(info, shown) : PrintSeries(info, shown);
   if (!arguments.preview.empty() && !arguments.is_json) host::Say("\nWrote {1}\n", arguments.preview);
   return {};
 }
@@ -151,31 +152,15 @@ void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome) {
                    "(.nii, .nii.gz), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), TIFF of several pages")
       ->required()
       ->type_name("PATH");
-  images
-      ->add_option("--pixel-mm", arguments->options.pixel_mm,
-                   "Side of a pixel, where the files do not say it")
-      ->check(CLI::Range(0.01, 20.0))
-      ->type_name("MM");
-  images
-      ->add_option("--slice-mm", arguments->options.slice_mm,
-                   "Distance from one slice number to the next, where the files do not say it")
-      ->check(CLI::Range(0.01, 50.0))
-      ->type_name("MM");
+  AddSpacingOptions(*images, arguments->options.pixel_mm, arguments->options.slice_mm);
   images
       ->add_option(
           "--axes", arguments->axes,
           "Where columns, rows and slice numbers grow to in the patient, where the files do not say it: one "
           "each of left/right, anterior/posterior, superior/inferior")
       ->type_name("COLUMN,ROW,SLICE");
-  images
-      ->add_option(
-          "--pattern", arguments->options.pattern,
-          "Only pictures with such names, where a folder holds several stacks: image-{slice:04}.jpeg")
-      ->type_name("NAME");
-  images
-      ->add_option("--series", arguments->options.series, "Which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 999999999))
-      ->type_name("N");
+  AddPatternOption(*images, arguments->options.pattern);
+  AddSeriesOption(*images, arguments->options.series);
   images
       ->add_option("--window", arguments->window,
                    "Grey values to show: centre and width, in the file's units (HU for CT)")
@@ -186,7 +171,7 @@ void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome) {
       ->check(CLI::Range(1.0, 1048576.0))
       ->capture_default_str()
       ->type_name("MB");
-  images->add_flag("--json", arguments->is_json, "Machine-readable: the same as one JSON object");
+  AddJsonFlag(*images, arguments->is_json, "Machine-readable: the same as one JSON object");
   images->footer(
       "Nothing is changed. Files are read by a process of its own with little memory, no network and a time "
       "limit, so "

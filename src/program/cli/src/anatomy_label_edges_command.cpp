@@ -6,6 +6,7 @@
 #include <string>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/contours/label_edges.h"
 
@@ -15,13 +16,13 @@ using host::ShownFixed;
 
 namespace {
 
-struct Arguments {
+struct LabelEdgesArguments {
   contours::LabelEdgeOptions options;
   std::string control_points, images, reference;
   bool is_json = false;
 };
 
-base::Status Measure(const Arguments& arguments) {
+base::Status MeasureEdges(const LabelEdgesArguments& arguments) {
   contours::LabelEdgeOptions options = arguments.options;
   options.control_points = arguments.control_points;
   options.images = arguments.images;
@@ -46,7 +47,7 @@ base::Status Measure(const Arguments& arguments) {
 void AddAnatomyLabelEdgesCommand(CLI::App& anatomy, Outcome& outcome) {
   CLI::App* command = anatomy.add_subcommand(
       "label-edges", "Measure how far a label map's borders lie from the edges that the pictures show");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<LabelEdgesArguments>();
   auto& options = arguments->options;
   command->add_option("--images", arguments->images, "Folder of slices")->required()->type_name("DIR");
   command->add_option("--reference", arguments->reference, "Label map (NIfTI, NRRD)")
@@ -69,13 +70,13 @@ void AddAnatomyLabelEdgesCommand(CLI::App& anatomy, Outcome& outcome) {
       ->type_name("N")
       ->check(CLI::Range(0, 20))
       ->capture_default_str();
-  command->add_flag("--json", arguments->is_json, "The table as JSON");
+  AddJsonFlag(*command, arguments->is_json, "The table as JSON");
   command->footer(
       "Tells whether a label map can judge an edge follower at all, and whether it lies beside the pictures\n"
       "as a whole. Signed: positive where the edge lies outside the label.\n"
       "Example: trocar anatomy label-edges --images SLICES --reference LABELS.nii.gz \\\n"
       "           --control-points assets/patients/visible-human-male/control_points.json");
-  command->callback([arguments, &outcome] { outcome.status = Measure(*arguments); });
+  command->callback([arguments, &outcome] { outcome.status = MeasureEdges(*arguments); });
 }
 
 }  // namespace trocar::cli

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/anatomy/shape_measures.h"
 #include "trocar/files/patient_file.h"
@@ -33,7 +34,7 @@ const anatomy::ShapeRange* FindRange(std::string_view measure) {
   return nullptr;
 }
 
-ordered_json MakeJson(const std::vector<Measured>& all) {
+ordered_json MakeMeasuresJson(const std::vector<Measured>& all) {
   ordered_json json = {{"patients", ordered_json::array()}, {"literature", ordered_json::array()}};
   for (const Measured& one : all) {
     ordered_json measures = ordered_json::array();
@@ -60,7 +61,7 @@ std::string FormatCell(const Measured& one, std::string_view name) {
   return "-";
 }
 
-void PrintForPerson(const std::vector<Measured>& all) {
+void PrintMeasures(const std::vector<Measured>& all) {
   std::vector<std::vector<std::string>> rows = {{"measure", "unit"}};
   for (const Measured& one : all) {
     const std::filesystem::path folder = one.folder;
@@ -80,7 +81,7 @@ void PrintForPerson(const std::vector<Measured>& all) {
   host::Say("\n*: hangs on a duct that was placed by landmarks, not seen.\n");
 }
 
-base::Status Measure(const std::vector<std::string>& folders, bool is_json) {
+base::Status MeasurePatients(const std::vector<std::string>& folders, bool is_json) {
   std::vector<Measured> all;
   for (const std::string& folder : folders) {
     const auto patient = files::ReadPatient(folder);
@@ -90,9 +91,9 @@ base::Status Measure(const std::vector<std::string>& folders, bool is_json) {
     all.push_back({folder, std::move(*measures)});
   }
   if (is_json) {
-    PrintJson(MakeJson(all));
+    PrintJson(MakeMeasuresJson(all));
   } else {
-    PrintForPerson(all);
+    PrintMeasures(all);
   }
   return {};
 }
@@ -109,15 +110,14 @@ void AddAnatomyMeasureCommand(CLI::App& anatomy, Outcome& outcome) {
   measure->add_option("patients", arguments->patients, "Patient folders, one column each")
       ->required()
       ->type_name("PATIENT...");
-  measure->add_flag(
-      "--json", arguments->is_json,
-      "Machine-readable: {\"patients\": [{patient, measures: [{name, value, unit, about, seen}]}],\n"
-      "\"literature\": [{name, low, high, source}]}");
+  AddJsonFlag(*measure, arguments->is_json,
+              "Machine-readable: {\"patients\": [{patient, measures: [{name, value, unit, about, "
+              "seen}]}],\n\"literature\": [{name, low, high, source}]}");
   measure->footer(
       "docs/shapes.md compares generated patients with a real one and with the literature.\n"
       "Example: trocar anatomy measure assets/patients/visible-human-male/patient out/seven");
   measure->callback(
-      [arguments, &outcome] { outcome.status = Measure(arguments->patients, arguments->is_json); });
+      [arguments, &outcome] { outcome.status = MeasurePatients(arguments->patients, arguments->is_json); });
 }
 
 }  // namespace trocar::cli

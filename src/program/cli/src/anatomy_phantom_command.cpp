@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "anatomy_settings.h"
 #include "command.h"
 #include "console.h"
 #include "trocar/anatomy/ct_phantom.h"

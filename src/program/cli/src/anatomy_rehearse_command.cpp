@@ -7,20 +7,21 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/contours/contour_rehearsal.h"
 
 namespace trocar::cli {
 namespace {
 
-struct Arguments {
+struct RehearseArguments {
   contours::RehearsalOptions options;
   std::string control_points, images, reference, overlays;
   std::vector<int> points = {8, 12};
   bool is_json = false;
 };
 
-base::Status Rehearse(const Arguments& arguments) {
+base::Status Rehearse(const RehearseArguments& arguments) {
   contours::RehearsalOptions options = arguments.options;
   options.control_points = arguments.control_points;
   options.images = arguments.images;
@@ -44,7 +45,7 @@ base::Status Rehearse(const Arguments& arguments) {
 void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome) {
   CLI::App* command = anatomy.add_subcommand(
       "rehearse", "Simulate a user who clicks contours, and measure what the chain makes of the clicks");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RehearseArguments>();
   auto& clicks = arguments->options.clicks;
   command->add_option("--images", arguments->images, "Folder of slices")->required()->type_name("DIR");
   command
@@ -90,7 +91,7 @@ void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome) {
       ->capture_default_str();
   command->add_option("--overlays", arguments->overlays, "Folder for pictures of the first run")
       ->type_name("DIR");
-  command->add_flag("--json", arguments->is_json, "Every run as JSON");
+  AddJsonFlag(*command, arguments->is_json, "Every run as JSON");
   command->footer(
       "Point error: mean distance to the reference's outline. Dice: of the finished mesh against the "
       "reference.\n"

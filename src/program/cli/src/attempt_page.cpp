@@ -236,9 +236,8 @@ void RunReport::Follow(view::DemoOptions& options) {
     watch_.Start(simulation);
     return {};
   };
-  options.change_input = [this](double, scene::Input& input) { controls_ = input.controls; };
-  options.after_step = [this](simulation::Simulation& simulation) {
-    watch_.AfterStep(simulation, controls_);
+  options.after_step = [this](simulation::Simulation& simulation, const scene::Input& input) {
+    watch_.AfterStep(simulation, input.controls);
   };
 }
 

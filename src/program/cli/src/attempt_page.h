@@ -82,7 +82,6 @@ class RunReport {
   std::string path_;
   report::AttemptFacts facts_;
   ReportWatch watch_;
-  std::array<scene::HandControls, instrument::kHandCount> controls_{};
 };
 
 }  // namespace trocar::cli

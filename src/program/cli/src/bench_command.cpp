@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/bench/benchmark.h"
 
@@ -55,7 +56,7 @@ void PrintForPerson(const std::string& suite, const bench::BenchmarkResult& resu
   host::PrintTable(rows);
 }
 
-base::Status Run(const BenchArguments& arguments) {
+base::Status RunSuite(const BenchArguments& arguments) {
   if (arguments.is_list) {
     host::PrintLines(ListSuites());
     return {};
@@ -76,15 +77,11 @@ base::Status Run(const BenchArguments& arguments) {
 }  // namespace
 
 void AddBenchCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand(
-      "bench", "Measure how fast this computer is; a wrong result is an error, and gets no time");
+  CLI::App* command = AddListed(app, "bench");
   auto arguments = std::make_shared<BenchArguments>();
   command->add_option("suite", arguments->suite, "Which suite (--list)")->type_name("SUITE");
   command->add_flag("--list", arguments->is_list, "List the suites");
-  command->add_option("--threads", arguments->options.threads, "For what can use more than one")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, arguments->options.threads, "For what can use more than one");
   command->add_option("--repeats", arguments->options.repeats, "The quickest of so many runs counts")
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
@@ -108,11 +105,11 @@ void AddBenchCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("URL");
   command->add_option("--labels", arguments->options.labels, "Label map of liver and gallbladder for growth")
       ->type_name("FILE");
-  command->add_flag("--json", arguments->is_json, "Machine-readable: suite, machine, cases, ratios");
+  AddJsonFlag(*command, arguments->is_json, "Machine-readable: suite, machine, cases, ratios");
   command->footer(
       "A case whose answer is wrong ends the suite with E-BEN-001 and exit status 1.\n"
       "Example: trocar bench tissue --threads 2");
-  command->callback([arguments, &outcome] { outcome.status = Run(*arguments); });
+  command->callback([arguments, &outcome] { outcome.status = RunSuite(*arguments); });
 }
 
 }  // namespace trocar::cli

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "judgement_text.h"
 #include "passphrase.h"
@@ -67,7 +68,7 @@ base::Status Issue(const CertificateArguments& arguments) {
   return {};
 }
 
-base::Status Verify(const CertificateArguments& arguments) {
+base::Status VerifyCertificate(const CertificateArguments& arguments) {
   std::string signer;
   if (!arguments.key.empty()) {
     auto key = assessment::ReadPublicKey(arguments.key);
@@ -104,8 +105,7 @@ base::Status Verify(const CertificateArguments& arguments) {
 }  // namespace
 
 void AddCertificateCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("certificate", "Signed certificates of exams: make keys, issue, verify offline");
+  CLI::App* command = AddListed(app, "certificate");
   command->require_subcommand(1);
   CLI::App* keygen = command->add_subcommand("keygen", "Make a key to sign with, and one to publish");
   auto name = std::make_shared<std::string>();
@@ -119,21 +119,14 @@ void AddCertificateCommand(CLI::App& app, Outcome& outcome) {
   keygen->callback([=, &outcome] { outcome.status = MakeKeys(*name); });
   auto a = std::make_shared<CertificateArguments>();
   const auto add_common = [a](CLI::App& one) {
-    one.add_option("--cache", a->cache, "Folder for the patient; the user's cache folder if not given")
-        ->type_name("DIR");
-    one.add_option("--threads", a->threads, "Of the solver; the result is the same for any number")
-        ->check(CLI::Range(1, 256))
-        ->type_name("T")
-        ->capture_default_str();
+    AddCacheOption(one, a->cache);
+    AddThreadsOption(one, a->threads);
   };
   CLI::App* issue =
       command->add_subcommand("issue", "Replay the recording of an exam, and sign what it came to");
   issue->add_option("exam", a->exam, "File of the exam")->required()->type_name("EXAM");
   issue->add_option("recording", a->recording, "Recording of it")->required()->type_name("RECORDING");
-  issue->add_option("--examinee", a->examinee, "Pseudonym of who was examined")
-      ->required()
-      ->check(ComplainOfPseudonym)
-      ->type_name("PSEUDONYM");
+  AddPseudonymOption(*issue, "--examinee", a->examinee, "Pseudonym of who was examined")->required();
   issue
       ->add_option("--key", a->key,
                    "Private key; its passphrase is taken from TROCAR_KEY_PASSPHRASE or asked for")
@@ -151,7 +144,7 @@ void AddCertificateCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("RECORDING");
   verify->add_option("--key", a->key, "Public key that must have signed")->type_name("FILE");
   add_common(*verify);
-  verify->callback([a, &outcome] { outcome.status = Verify(*a); });
+  verify->callback([a, &outcome] { outcome.status = VerifyCertificate(*a); });
   command->footer("Example: trocar certificate verify finals-7.json finals-7.trocar --key centre.pub");
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/record/trace.h"
 #include "trocar/training/attempt_metrics.h"
@@ -107,8 +108,7 @@ base::Status Coach(const CoachArguments& arguments) {
 }  // namespace
 
 void AddCoachCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand(
-      "coach", "Say what cost most in a recorded attempt, where to look, and what to practise");
+  CLI::App* command = AddListed(app, "coach");
   auto a = std::make_shared<CoachArguments>();
   command->add_option("file", a->file, "Recording")->required()->type_name("FILE");
   command->add_option("--rules", a->rules, "Rules in place of assets/coach/rules.json")->type_name("FILE");
@@ -116,11 +116,8 @@ void AddCoachCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--validity", a->validity,
                    "Expert sets in place of assets/validity.json, as trocar study writes them")
       ->type_name("FILE");
-  command->add_option("--threads", a->threads, "Of the solver; the words are the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
-  command->add_flag("--json", a->is_json, "Machine-readable, with every rule's numbers");
+  AddThreadsOption(*command, a->threads, "Of the solver; the words are the same for any number");
+  AddJsonFlag(*command, a->is_json, "Machine-readable, with every rule's numbers");
   command->footer(
       "Every sentence comes from one rule and its numbers; none is a judgement of competence.\n"
       "Example: trocar play wanders --task peg_transfer --record attempt.trocar && trocar coach "

@@ -2,15 +2,13 @@
 /// \file command.h  The subcommands. Each lives in a file of its own and adds itself to the command line.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <memory>
+#include <span>
+#include <string_view>
 
-#include "trocar/anatomy/patient_parameters.h"
 #include "trocar/base/result.h"
+#include "trocar/cli/parts.h"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls it so
-class App;
-}
 namespace trocar::device {
 struct DeviceStore;
 }
@@ -22,6 +20,12 @@ struct Outcome {
   base::Status status;       ///< an error is printed by RunCommand
   bool has_finding = false;  ///< ran well, and what it found is not good (doctor): exit status 1
 };
+
+/// Every command of `trocar` with its line of the help, and options of those that `own` has.
+/// \pre `outcome` lives as long as what is returned
+std::unique_ptr<CLI::App> MakeCommandLine(std::span<const Command> own, Outcome& outcome);
+/// Adds a command with its line of the help (command_list.h).
+CLI::App* AddListed(CLI::App& app, std::string_view name);
 
 void AddWindowCommand(CLI::App& app, Outcome& outcome);
 void AddDemoCommand(CLI::App& app, Outcome& outcome);
@@ -43,9 +47,6 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome);
 void AddMetricsCommand(CLI::App& app, Outcome& outcome);
 void AddStoreCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
-/// Words like "hydrops=0.5".
-/// \return kUsage for one that is not like that
-base::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::vector<std::string>& texts);
 /// Below `trocar anatomy`.
 void AddAnatomyGenerateCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyGrowCommand(CLI::App& anatomy, Outcome& outcome);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "judgement_text.h"
 #include "trocar/assessment/attempt.h"
@@ -57,7 +58,7 @@ std::string PassesOf(const Step& step) {
   return text;
 }
 
-base::Status List() {
+base::Status ListCourses() {
   const auto courses = assessment::ListCourses();
   if (!courses.ok()) return courses.error();
   std::vector<std::vector<std::string>> rows = {{"course", "steps", "name"}};
@@ -79,7 +80,7 @@ void PrintStep(const Step& step) {
   for (const auto& threshold : step.proficiency.thresholds) PrintLine("  " + DescribeThreshold(threshold));
 }
 
-base::Status Show(const std::string& name, const std::string& step_key) {
+base::Status ShowCourse(const std::string& name, const std::string& step_key) {
   const auto course = assessment::FindCourse(name);
   if (!course.ok()) return course.error();
   if (!step_key.empty()) {
@@ -145,7 +146,7 @@ struct JudgeArguments {
   bool is_json = false;
 };
 
-base::Status Judge(const JudgeArguments& arguments, Outcome& outcome) {
+base::Status JudgeStep(const JudgeArguments& arguments, Outcome& outcome) {
   const auto course = assessment::FindCourse(arguments.course);
   if (!course.ok()) return course.error();
   const auto step = assessment::FindStep(*course, arguments.step);
@@ -270,7 +271,7 @@ base::Result<assessment::CourseDates> ReadDates(const ProgressArguments& argumen
   return dates;
 }
 
-base::Status Progress(const ProgressArguments& arguments) {
+base::Status ShowProgress(const ProgressArguments& arguments) {
   const auto course = assessment::FindCourse(arguments.course);
   if (!course.ok()) return course.error();
   const auto attempts = assessment::ReadAttempts(arguments.attempts);
@@ -339,12 +340,8 @@ void AddStart(CLI::App& course, Outcome& outcome) {
       ->required()
       ->type_name("COURSE");
   command->add_option("step", *step, "Key of the step")->required()->type_name("STEP");
-  command->add_option("--cache", *cache, "Folder for what is made; the user's cache folder if not given")
-      ->type_name("DIR");
-  command->add_option("--threads", *threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddCacheOption(*command, *cache, "Folder for what is made; the user's cache folder if not given");
+  AddThreadsOption(*command, *threads);
   command->footer(
       "The first time the scripted expert operates up to the step, which takes minutes; then its state is "
       "kept.\n"
@@ -362,16 +359,12 @@ void AddJudge(CLI::App& course, Outcome& outcome) {
   command->add_option("recording", a->recording, "Recording of the attempt")->required()->type_name("FILE");
   command->add_option("--attempts", a->attempts, "Add the attempt to this file, for trocar course progress")
       ->type_name("FILE.json");
-  command->add_option("--cache", a->cache, "Folder for what is made; the user's cache folder if not given")
-      ->type_name("DIR");
-  command->add_option("--threads", a->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
-  command->add_flag("--json", a->is_json, "Machine-readable");
+  AddCacheOption(*command, a->cache, "Folder for what is made; the user's cache folder if not given");
+  AddThreadsOption(*command, a->threads);
+  AddJsonFlag(*command, a->is_json);
   command->footer(
       "Example: trocar course judge basic-skills peg_transfer attempt.trocar --attempts mine.json");
-  command->callback([a, &outcome] { outcome.status = Judge(*a, outcome); });
+  command->callback([a, &outcome] { outcome.status = JudgeStep(*a, outcome); });
 }
 
 void AddProgress(CLI::App& course, Outcome& outcome) {
@@ -385,24 +378,23 @@ void AddProgress(CLI::App& course, Outcome& outcome) {
   command->add_option("--started", a->started, "Day on which the course began, for what is due")
       ->type_name("DAY");
   command->add_option("--today", a->today, "In place of the computer's day")->type_name("DAY");
-  command->add_flag("--json", a->is_json, "Machine-readable");
+  AddJsonFlag(*command, a->is_json);
   command->footer("Example: trocar course progress basic-skills --attempts mine.json --started 2026-11-02");
-  command->callback([a, &outcome] { outcome.status = Progress(*a); });
+  command->callback([a, &outcome] { outcome.status = ShowProgress(*a); });
 }
 
 }  // namespace
 
 void AddCourseCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("course", "Courses: steps with goals, thresholds, and words before and after");
+  CLI::App* command = AddListed(app, "course");
   command->require_subcommand(1);
   CLI::App* list = command->add_subcommand("list", "List the courses that are delivered");
-  list->callback([&outcome] { outcome.status = List(); });
+  list->callback([&outcome] { outcome.status = ListCourses(); });
   CLI::App* show = command->add_subcommand("show", "Print a course, or one of its steps with all its words");
   auto name = std::make_shared<std::string>(), step = std::make_shared<std::string>();
   show->add_option("course", *name, "Course, or its file")->required()->type_name("COURSE");
   show->add_option("step", *step, "Key of a step")->type_name("STEP");
-  show->callback([=, &outcome] { outcome.status = Show(*name, *step); });
+  show->callback([=, &outcome] { outcome.status = ShowCourse(*name, *step); });
   CLI::App* check =
       command->add_subcommand("check", "Say whether a course can be used, and if not, where and why");
   auto file = std::make_shared<std::string>();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "picture_size.h"
 #include "trocar/dataset/dataset.h"
@@ -106,9 +107,7 @@ base::Status Verify(const std::string& folder) {
 }  // namespace
 
 void AddDatasetCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand(
-      "dataset",
-      "Make a labelled data set from scripted or recorded attempts, in a layout that loaders read");
+  CLI::App* command = AddListed(app, "dataset");
   auto a = std::make_shared<DatasetArguments>();
   command
       ->add_option("--layout", a->layout,
@@ -143,7 +142,7 @@ void AddDatasetCommand(CLI::App& app, Outcome& outcome) {
                        "A video of each recorded attempt in place of scripted ones; they are numbered from 1")
           ->type_name("FILE");
   for (CLI::Option* option : scripted) recording->excludes(option);
-  command->add_option("--size", a->size, "Of each picture [pixels]")->type_name("WxH")->capture_default_str();
+  AddSizeOption(*command, a->size, "Of each picture [pixels]");
   command->add_option("--every", a->plan.every, "Between two frames [s]")
       ->check(CLI::Range(0.04, 60.0))
       ->type_name("S")

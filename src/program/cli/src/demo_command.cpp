@@ -17,10 +17,10 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
-#include "device_input.h"
-#include "haptic_input.h"
 #include "igtl_option.h"
+#include "live_input.h"
 #include "own_json.h"
 #include "part_folder.h"
 #include "picture_size.h"
@@ -132,7 +132,7 @@ void PrintSummary(const view::DemoReport& played, const scene::Scene& scene, con
       played.video.filename());
 }
 
-base::Status Play(const DemoArguments& arguments) {
+base::Status PlayDemo(const DemoArguments& arguments) {
   view::DemoOptions options;
   const auto size = ReadSize(arguments.size);
   if (!size) return size.error();
@@ -146,7 +146,9 @@ base::Status Play(const DemoArguments& arguments) {
   std::optional<record::TraceBuilder> trace;
   std::array<scene::HandControls, instrument::kHandCount> controls{};
   std::unique_ptr<net::IgtlServer> server;
-  std::unique_ptr<HapticInput> haptics;
+  auto live = LiveInput::Open(arguments.device, **scene);
+  if (!live) return live.error();
+  options.source = live->get();
   options.on_start = [&](const simulation::Simulation& simulation) -> base::Status {
     trace.emplace(simulation);
     trace->Add(simulation.GetSnapshot());
@@ -155,30 +157,15 @@ base::Status Play(const DemoArguments& arguments) {
       if (!listening) return listening.error();
       server = std::move(*listening);
     }
-    if (!arguments.haptics.name.empty()) {
-      auto opened = HapticInput::Open(arguments.haptics, simulation);
-      if (!opened) return opened.error();
-      haptics = std::move(*opened);
-    }
-    return {};
+    return (*live)->UseHaptics(arguments.haptics, simulation);
   };
-  options.after_step = [&](simulation::Simulation& simulation) {
-    if (haptics != nullptr) haptics->AfterStep(simulation);
+  options.after_step = [&](simulation::Simulation& simulation, const scene::Input& input) {
+    (*live)->AfterStep(simulation);
+    controls = input.controls;
   };
   options.on_tick = [&](const simulation::Snapshot& snapshot) {
     trace->Add(snapshot, controls);
     if (server != nullptr) server->Publish(snapshot);
-  };
-  std::unique_ptr<DeviceInput> device;
-  if (!arguments.device.empty()) {
-    auto opened = DeviceInput::Open(arguments.device, **scene);
-    if (!opened) return opened.error();
-    device = std::move(*opened);
-  }
-  options.change_input = [&](double time, scene::Input& input) {
-    if (device != nullptr) device->Apply(time, input);
-    if (haptics != nullptr) haptics->Apply(time, input);
-    controls = input.controls;
   };
   host::ProgressBar progress("playing", 1.0);
   options.on_progress = [&](double done) { progress.Show(done); };
@@ -186,11 +173,12 @@ base::Status Play(const DemoArguments& arguments) {
   progress.Finish();
   if (!played) return played.error();
 
+  const HapticInput* haptics = (*live)->Haptics();
   const training::AttemptTrace attempt = trace->Calc();
   const base::Result<training::AttemptMetrics> metrics = training::CalcAttemptMetrics(attempt);
   if (!metrics) return metrics.error();
-  const std::string metrics_text = FormatDemoMetrics(*metrics, **scene, *played, haptics.get());
-  const base::Result<std::string> page = MakePage(**scene, *played, attempt, haptics.get());
+  const std::string metrics_text = FormatDemoMetrics(*metrics, **scene, *played, haptics);
+  const base::Result<std::string> page = MakePage(**scene, *played, attempt, haptics);
   if (!page) return page.error();
   if (auto status = host::WriteFile(part.Path() / "metrics.json", metrics_text); !status) return status;
   if (auto status = host::WriteFile(part.Path() / "report.html", *page); !status) return status;
@@ -205,8 +193,7 @@ base::Status Play(const DemoArguments& arguments) {
 }  // namespace
 
 void AddDemoCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("demo", "Play a scene's script into pictures, a video, metrics and a report");
+  CLI::App* command = AddListed(app, "demo");
   auto arguments = std::make_shared<DemoArguments>();
   command
       ->add_option("scene,--scene", arguments->scene,
@@ -214,29 +201,21 @@ void AddDemoCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("FILE");
   command->add_option("--patient", arguments->patient, "Patient folder in place of the scene's")
       ->type_name("PATIENT");
-  command
-      ->add_option("--device", arguments->device,
-                   "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
-      ->type_name("DEVICE");
+  AddDeviceOption(*command, arguments->device);
   command->add_option("-o,--output", arguments->output, "Folder to write")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--size", arguments->size, "Of pictures and video [pixels]")
-      ->type_name("WxH")
-      ->capture_default_str();
+  AddSizeOption(*command, arguments->size);
   command->add_option("--seconds", arguments->seconds, "Play so much of the script; all of it if not given")
       ->check(CLI::Range(0.01, 3600.0))
       ->type_name("S");
-  command->add_option("--threads", arguments->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, arguments->threads);
   AddIgtlOption(*command, arguments->igtl_port);
   AddHapticOptions(*command, arguments->haptics);
   command->footer(
       "Needs OpenGL (in software will do) and no display. When anything fails, the folder stays as it was.\n"
       "Example: trocar demo -o out/demo --size 640x360 --seconds 5");
-  command->callback([arguments, &outcome] { outcome.status = Play(*arguments); });
+  command->callback([arguments, &outcome] { outcome.status = PlayDemo(*arguments); });
 }
 
 }  // namespace trocar::cli

@@ -1,15 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device_input.h"
 
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
 #include "command.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/host/log.h"
+#include "trocar/session/device_thread.h"
 
 namespace trocar::cli {
 
+void AddDeviceOption(CLI::App& command, std::string& spec) {
+  command
+      .add_option("--device", spec,
+                  "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
+      ->type_name("DEVICE");
+}
+
 base::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& spec,
                                                              const scene::Scene& scene) {
-  std::unique_ptr<DeviceInput> input(new DeviceInput(scene));
+  std::unique_ptr<DeviceInput> input(new DeviceInput);
   input->clock_ = spec.starts_with("play:") ? &input->simulated_ : &device::SystemClock();
   const device::DeviceStore store = LoadStoreOrWarn();
   auto driver = device::MakeDriver(spec, store, *input->clock_);
@@ -34,39 +46,29 @@ void DeviceInput::TellHeldBack() {
     host::Log(host::LogLevel::kWarning, driver_->GetName() + ": " + reasons[told_]);
 }
 
-void DeviceInput::Apply(double time, scene::Input& input) {
-  if (clock_ == &simulated_) {
-    simulated_.Set(time);
-  } else {
-    clock_->Sleep(start_ + time - clock_->Now());
-  }
+void DeviceInput::Await(double time) {
+  if (clock_ != &simulated_) clock_->Sleep(start_ + time - clock_->Now());
+}
+
+const session::DeviceReport& DeviceInput::Look(double time) {
+  if (clock_ == &simulated_) simulated_.Set(time);
   if (time >= next_look_) {
     next_look_ = time + 1.0;
     TellHeldBack();
   }
-  if (!is_lost_ && driver_->Read(samples_) == device::ReadStatus::kLost) {
-    is_lost_ = true;
+  if (report_.losses == 0 && driver_->Read(report_.samples) == device::ReadStatus::kLost) {
+    report_.losses = 1;
     TellHeldBack();
     buttons_.ReleaseAll();
     host::Log(host::LogLevel::kWarning, Check().error().Text());
   }
-  if (has_held_) {
-    input.hands = held_.hands;
-    input.laparoscope = held_.laparoscope;
-    input.assistant = held_.assistant;
-    for (std::size_t hand = 0; hand < input.controls.size(); ++hand)
-      input.controls[hand].tool = held_.controls[hand].tool;
-  }
-  if (!is_lost_) buttons_.See(samples_, time);
-  hands_.Step(buttons_.Acts(), input);
-  hands_.Move(samples_, buttons_.Acts(), input);
-  held_ = input;
-  has_held_ = true;
-  session::PressPedals(buttons_.Acts(), input);
+  if (report_.losses == 0) buttons_.See(report_.samples, time);
+  report_.acts = buttons_.Acts();
+  return report_;
 }
 
 base::Status DeviceInput::Check() const {
-  if (!is_lost_) return {};
+  if (report_.losses == 0) return {};
   return base::Error{base::ErrorCode::kDeviceLost,
                      driver_->GetName() + " was lost on the way; its hands stood still from there on"};
 }

@@ -8,42 +8,46 @@
 #include "trocar/base/result.h"
 #include "trocar/device/driver.h"
 #include "trocar/device/ports.h"
-#include "trocar/session/device_hands.h"
-#include "trocar/session/device_thread.h"
+#include "trocar/scene/scene.h"
+#include "trocar/session/hand_device.h"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls it so
+class App;
+}
 
 namespace trocar::cli {
 
+/// --device of the commands that play a scene's script.
+/// \param[out] spec  as DeviceInput::Open() takes it; lives as long as the command
+void AddDeviceOption(CLI::App& command, std::string& spec);
+
 /// A recording (play:FILE) runs on simulated time: the same file gives the same bits. Any other device runs in real time.
-class DeviceInput {
+class DeviceInput final : public session::HandDevice {
  public:
   /// \return the device's error
   static base::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec, const scene::Scene& scene);
 
-  /// Says in the log what came in and was not used, as Apply() does as soon as it is so.
-  ~DeviceInput();
+  /// Says in the log what came in and was not used, as Look() does as soon as it is so.
+  ~DeviceInput() override;
 
-  /// Replaces the hands that the device sees, presses its pedals and changes tools. A hand that it does not see, and all once
-  /// it is lost, stay where they were; no pedal does.
-  ///
-  /// \param time  of the tick [s]; with a real device, waits until so much time has passed since Open()
-  void Apply(double time, scene::Input& input);
+  /// With a real device, waits until so much time [s] has passed since Open().
+  void Await(double time);
+  /// Reads the device. Once it is lost, hands are where they were last seen, and every pedal is up.
+  /// \param time  of the tick [s]
+  const session::DeviceReport& Look(double time) override;
   /// kDeviceLost once the device was lost.
   base::Status Check() const;
 
  private:
-  explicit DeviceInput(const scene::Scene& scene) : hands_(scene) {}
+  DeviceInput() = default;
   void TellHeldBack();
 
   device::ManualClock simulated_;
   device::Clock* clock_ = nullptr;
   double start_ = 0;  // [s]
   std::unique_ptr<device::Driver> driver_;
-  session::DeviceSamples samples_;
   device::HandButtons buttons_;
-  session::DeviceHands hands_;
-  scene::Input held_;
-  bool has_held_ = false;
-  bool is_lost_ = false;
+  session::DeviceReport report_;
   double next_look_ = 0;  // at what was held back [s]
   std::size_t told_ = 0;  // reasons of it
 };

@@ -72,7 +72,7 @@ void PrintQuality(const char* what, const device::FitQuality& quality, std::size
   host::PrintLine("  " + Translate(what) + " " + device::FormatQuality(quality, poses));
 }
 
-base::Status Keep(const device::DeviceStore& store) {
+base::Status KeepCalibration(const device::DeviceStore& store) {
   const auto path = device::FindDeviceStore();
   base::Status saved = device::SaveDeviceStore(path, store);
   if (saved) Say("Wrote {1}\n", path);
@@ -115,7 +115,7 @@ base::Status CalibrateTracker(const CalibrateOptions& options, bool is_tip) {
     PrintQuality(Mark("trocar"), fit->quality, poses->size());
   }
   store.trackers[spec->kind] = entry;
-  return Keep(store);
+  return KeepCalibration(store);
 }
 
 base::Result<std::vector<int>> CollectRaw(const std::string& spec, int tool, double seconds) {
@@ -149,7 +149,7 @@ base::Status CalibrateJaw(const CalibrateOptions& options) {
   fit->max_jaw = kept.max_jaw;
   kept = *fit;
   Say("  closed {1}, open {2} of 0 to 1023\n", kept.closed, kept.open);
-  return Keep(store);
+  return KeepCalibration(store);
 }
 
 CLI::App* AddStep(CLI::App& calibrate, const char* name, const char* text, CalibrateOptions& options) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "device_console.h"
 #include "trocar/device/device_spec.h"
@@ -68,7 +69,7 @@ void PrintButtons(const device::DeviceStore& store) {
   PrintLines(host::FormatTable(rows));
 }
 
-void List(bool is_json) {
+void ListDevices(bool is_json) {
   const device::DeviceStore store = LoadStoreOrWarn();
   const std::vector<device::FoundDevice> found = device::ListDevices();
   if (is_json) {
@@ -168,7 +169,7 @@ base::Status Record(const std::string& spec, const std::string& path, double sec
   return report->is_lost ? LostError(**driver) : base::Status{};
 }
 
-base::Status Play(const std::string& path, double seconds) {
+base::Status PlayDevice(const std::string& path, double seconds) {
   device::HandPlayer player(path, device::SystemClock());
   // once for its length; a file that is no recording is refused here
   if (base::Status good = player.Configure(); !good) return good;
@@ -203,8 +204,7 @@ device::DeviceStore LoadStoreOrWarn() {
 }
 
 void AddDevicesCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* devices =
-      app.add_subcommand("devices", "Trackers, jaw sensors and other hands: find, try, calibrate, record");
+  CLI::App* devices = AddListed(app, "devices");
   devices->require_subcommand(1);
   devices->footer(
       "Examples:\n"
@@ -216,12 +216,12 @@ void AddDevicesCommand(CLI::App& app, Outcome& outcome) {
 
   auto options = std::make_shared<DeviceOptions>();
   CLI::App* list = devices->add_subcommand("list", "What is plugged in, and which kinds of device there are");
-  list->add_flag("--json", options->is_json, "Machine-readable");
-  list->callback([options] { List(options->is_json); });
+  AddJsonFlag(*list, options->is_json);
+  list->callback([options] { ListDevices(options->is_json); });
 
   CLI::App* test = AddWatching(*devices, "test", "Show what a device says, live", *options);
   test->add_option("device", options->spec, kSpecHelp)->required()->type_name("DEVICE");
-  test->add_flag("--json", options->is_json, "Machine-readable, at the end, without what it shows live");
+  AddJsonFlag(*test, options->is_json, "Machine-readable, at the end, without what it shows live");
   test->callback(
       [options, &outcome] { outcome.status = Test(options->spec, options->seconds, options->is_json); });
 
@@ -233,7 +233,7 @@ void AddDevicesCommand(CLI::App& app, Outcome& outcome) {
 
   CLI::App* play = AddWatching(*devices, "play", "Show a recording", *options);
   play->add_option("file", options->file, "File of trocar devices record")->required()->type_name("FILE");
-  play->callback([options, &outcome] { outcome.status = Play(options->file, options->seconds); });
+  play->callback([options, &outcome] { outcome.status = PlayDevice(options->file, options->seconds); });
 
   AddDevicesCalibrateCommand(*devices, outcome);
   AddDevicesEmulateCommand(*devices, outcome);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/doctor/doctor_checks.h"
 #include "trocar/host/text_table.h"
@@ -20,7 +21,7 @@ namespace {
 using doctor::Finding;
 using doctor::Health;
 
-void PrintForProgram(const std::vector<Finding>& findings) {
+void PrintChecksJson(const std::vector<Finding>& findings) {
   nlohmann::ordered_json json;
   json["checks"] = nlohmann::ordered_json::array();
   for (const Finding& finding : findings) {
@@ -41,7 +42,7 @@ std::string ShownFound(const std::string& found) {
   return found.substr(0, space + 1) + TranslateComposed(found.substr(space + 1));
 }
 
-void PrintForPerson(const std::vector<Finding>& findings) {
+void PrintChecks(const std::vector<Finding>& findings) {
   std::vector<std::vector<std::string>> rows;
   for (const Finding& finding : findings) {
     rows.push_back({finding.name, host::TranslateIn("health", doctor::HealthName(finding.health)),
@@ -60,19 +61,16 @@ void PrintForPerson(const std::vector<Finding>& findings) {
 }  // namespace
 
 void AddDoctorCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand(
-      "doctor",
-      "Check graphics, GPU, display, real-time permission, devices, sound and data; say how to mend them");
+  CLI::App* command = AddListed(app, "doctor");
   auto is_json = std::make_shared<bool>(false);
-  command->add_flag("--json", *is_json,
-                    "Machine-readable: {\"checks\": [{name, state, found, meaning, remedy}]}");
+  AddJsonFlag(*command, *is_json, "Machine-readable: {\"checks\": [{name, state, found, meaning, remedy}]}");
   command->footer(
       "A state is \"good\", \"limited\" (Trocar runs, and something is slower or absent) or \"missing\" (a "
       "command does\n"
       "not work). Exit status 1 if anything is missing.");
   command->callback([is_json, &outcome] {
     const std::vector<Finding> findings = doctor::CheckAll();
-    *is_json ? PrintForProgram(findings) : PrintForPerson(findings);
+    *is_json ? PrintChecksJson(findings) : PrintChecks(findings);
     outcome.has_finding = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
       return finding.health == Health::kMissing;
     });

@@ -13,7 +13,7 @@
 namespace trocar::cli {
 namespace {
 
-void PrintForPerson() {
+void PrintErrors() {
   std::vector<std::vector<std::string>> rows = {{"code", "meaning"}};
   for (const base::ErrorEntry& entry : base::ErrorTable()) {
     if (entry.code != base::ErrorCode::kNone)
@@ -44,10 +44,10 @@ void PrintMarkdown() {
 }  // namespace
 
 void AddErrorsCommand(CLI::App& app, Outcome&) {
-  CLI::App* command = app.add_subcommand("errors", "List every error code and what it means");
+  CLI::App* command = AddListed(app, "errors");
   auto is_markdown = std::make_shared<bool>(false);
   command->add_flag("--markdown", *is_markdown, "As the page docs/errors.md");
-  command->callback([is_markdown] { *is_markdown ? PrintMarkdown() : PrintForPerson(); });
+  command->callback([is_markdown] { *is_markdown ? PrintMarkdown() : PrintErrors(); });
 }
 
 }  // namespace trocar::cli

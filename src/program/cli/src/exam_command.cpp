@@ -8,6 +8,7 @@
 
 #include "attempt_recording.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/assessment/exam.h"
@@ -136,12 +137,8 @@ void AddRun(CLI::App& exam, Outcome& outcome) {
       ->check(CLI::Range(1.0, 3600.0))
       ->type_name("S")
       ->capture_default_str();
-  command->add_option("--cache", a->cache, "Folder for the patient; the user's cache folder if not given")
-      ->type_name("DIR");
-  command->add_option("--threads", a->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddCacheOption(*command, a->cache);
+  AddThreadsOption(*command, a->threads);
   command->footer("Example: trocar exam run finals.json --surgeon expert --record finals-7.trocar");
   command->callback([a, &outcome] { outcome.status = RunExam(*a); });
 }
@@ -149,8 +146,7 @@ void AddRun(CLI::App& exam, Outcome& outcome) {
 }  // namespace
 
 void AddExamCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("exam", "Exams whose settings nobody knows before, and nobody changes after");
+  CLI::App* command = AddListed(app, "exam");
   command->require_subcommand(1);
   AddSeal(*command, outcome);
   AddRun(*command, outcome);

@@ -75,9 +75,8 @@ base::Result<std::unique_ptr<HapticInput>> HapticInput::Open(const HapticOptions
   return input;
 }
 
-void HapticInput::Apply(double time, scene::Input& input) {
+void HapticInput::Await(double time) {
   device::SystemClock().Sleep(time - since_start_.Seconds());
-  hands_.Take(link_, input);
 }
 
 void HapticInput::AfterStep(simulation::Simulation& simulation) {

@@ -32,8 +32,10 @@ class HapticInput {
   static base::Result<std::unique_ptr<HapticInput>> Open(const HapticOptions& options,
                                                          const simulation::Simulation& simulation);
 
-  /// Waits until `time` [s] has passed since Open(), and replaces the hands that the devices hold.
-  void Apply(double time, scene::Input& input);
+  /// Waits until `time` [s] has passed since Open().
+  void Await(double time);
+  /// The loop's end, for who puts hands together.
+  session::HapticLink& Link() { return link_; }
   /// Gives the tissue round the tools to the loop.
   void AfterStep(simulation::Simulation& simulation);
 
@@ -48,7 +50,6 @@ class HapticInput {
 
   session::HapticLink link_;
   std::unique_ptr<session::HapticLoop> loop_;
-  session::HapticHandsReader hands_;
   session::HapticRecord record_;
   host::Stopwatch since_start_;
   bool wants_force_ = false;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image_options.h"
 
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -30,6 +34,30 @@ std::optional<double> ParseNumber(const std::string& text) {
 }
 
 }  // namespace
+
+CLI::Option* AddSeriesOption(CLI::App& command, int& series) {
+  return command.add_option("--series", series, "Which DICOM series, where a folder holds several")
+      ->check(CLI::Range(1, 999999999))
+      ->type_name("N");
+}
+
+CLI::Option* AddPatternOption(CLI::App& command, std::string& pattern) {
+  return command
+      .add_option("--pattern", pattern,
+                  "Only pictures with such names, where a folder holds several stacks: image-{slice:04}.jpeg")
+      ->type_name("NAME");
+}
+
+void AddSpacingOptions(CLI::App& command, std::optional<double>& pixel_mm, std::optional<double>& slice_mm) {
+  command.add_option("--pixel-mm", pixel_mm, "Side of a pixel, where the files do not say it")
+      ->check(CLI::Range(0.01, 20.0))
+      ->type_name("MM");
+  command
+      .add_option("--slice-mm", slice_mm,
+                  "Distance from one slice number to the next, where the files do not say it")
+      ->check(CLI::Range(0.01, 50.0))
+      ->type_name("MM");
+}
 
 base::Result<std::array<std::string, 3>> ParseAxes(const std::string& text) {
   const auto parts = SplitAtCommas(text);

@@ -9,7 +9,19 @@
 #include "trocar/base/result.h"
 #include "trocar/images/image_series.h"
 
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls it so
+class App;
+class Option;
+}  // namespace CLI
+
 namespace trocar::cli {
+
+/// --series N. What options fill lives as long as the command.
+CLI::Option* AddSeriesOption(CLI::App& command, int& series);
+/// --pattern NAME
+CLI::Option* AddPatternOption(CLI::App& command, std::string& pattern);
+/// --pixel-mm and --slice-mm [mm]
+void AddSpacingOptions(CLI::App& command, std::optional<double>& pixel_mm, std::optional<double>& slice_mm);
 
 /// "left,posterior,superior".
 /// \return kUsage unless there are three words

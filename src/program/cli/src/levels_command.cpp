@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "judgement_text.h"
 #include "trocar/assessment/attempt.h"
@@ -80,8 +81,8 @@ base::Result<Threshold> ParseMetric(const std::string& text) {
   return threshold;
 }
 
-base::Result<std::vector<Attempt>> Replay(const std::vector<std::string>& files, int threads,
-                                          host::ProgressBar& bar, double& done) {
+base::Result<std::vector<Attempt>> ReplayAll(const std::vector<std::string>& files, int threads,
+                                             host::ProgressBar& bar, double& done) {
   std::vector<Attempt> attempts;
   for (const std::string& file : files) {
     auto recording = record::ReadRecording(file);
@@ -109,13 +110,13 @@ std::vector<assessment::AttemptResult> ResultsOf(const std::vector<Attempt>& att
   return results;
 }
 
-base::Status Make(const LevelsArguments& arguments) {
+base::Status MakeLevels(const LevelsArguments& arguments) {
   host::ProgressBar bar("replaying",
                         static_cast<double>(arguments.experts.size() + arguments.novices.size()));
   double done = 0;
-  const auto experts = Replay(arguments.experts, arguments.threads, bar, done);
+  const auto experts = ReplayAll(arguments.experts, arguments.threads, bar, done);
   if (!experts.ok()) return experts.error();
-  const auto novices = Replay(arguments.novices, arguments.threads, bar, done);
+  const auto novices = ReplayAll(arguments.novices, arguments.threads, bar, done);
   if (!novices.ok()) return novices.error();
   bar.Finish();
   const Attempt& first = experts->front();
@@ -146,7 +147,7 @@ base::Status Make(const LevelsArguments& arguments) {
   return {};
 }
 
-base::Status List() {
+base::Status ListLevels() {
   const auto all = assessment::ListProficiencies();
   if (!all.ok()) return all.error();
   std::vector<std::vector<std::string>> rows = {{"thresholds", "task", "level", "source"}};
@@ -158,7 +159,7 @@ base::Status List() {
   return {};
 }
 
-base::Status Show(const std::string& name) {
+base::Status ShowLevels(const std::string& name) {
   const auto one = assessment::FindProficiency(name);
   if (!one.ok()) return one.error();
   PrintLine(
@@ -180,15 +181,14 @@ base::Status Show(const std::string& name) {
 }  // namespace
 
 void AddLevelsCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* levels =
-      app.add_subcommand("levels", "Thresholds of proficiency: those delivered, and a site's own");
+  CLI::App* levels = AddListed(app, "levels");
   levels->require_subcommand(1);
   CLI::App* list = levels->add_subcommand("list", "List the thresholds that are delivered");
-  list->callback([&outcome] { outcome.status = List(); });
+  list->callback([&outcome] { outcome.status = ListLevels(); });
   CLI::App* show = levels->add_subcommand("show", "Print thresholds with the source of each");
   auto name = std::make_shared<std::string>();
   show->add_option("thresholds", *name, "Name of delivered ones, or a file")->required()->type_name("LEVELS");
-  show->callback([=, &outcome] { outcome.status = Show(*name); });
+  show->callback([=, &outcome] { outcome.status = ShowLevels(*name); });
 
   CLI::App* from =
       levels->add_subcommand("from", "Compute thresholds from recordings of experts, ten or more");
@@ -215,16 +215,13 @@ void AddLevelsCommand(CLI::App& app, Outcome& outcome) {
           "--metric", a->metrics,
           "What to ask for, in place of the usual: PURPOSE:METRIC[:HAND], as economy:path_length:left")
       ->type_name("METRIC");
-  from->add_option("--threads", a->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*from, a->threads);
   from->footer(
       "Each recording is replayed. Of safety the worst completed attempt counts, of all else the mean or "
       "best quartile.\n"
       "Example: trocar levels from experts/*.trocar --source \"6 consultants, 2 attempts each\" -o "
       "our-peg-transfer.json");
-  from->callback([a, &outcome] { outcome.status = Make(*a); });
+  from->callback([a, &outcome] { outcome.status = MakeLevels(*a); });
   levels->footer("Example: trocar levels show peg_transfer-normal");
 }
 

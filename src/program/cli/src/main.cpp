@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/cli/run_command.h"
+#include "trocar/cli/parts.h"
 
 int main(int argc, char** argv) {
-  return trocar::cli::RunCommand(argc, argv);
+  return trocar::cli::RunCommandOf(trocar::cli::SimulatorCommands(), argc, argv);
 }

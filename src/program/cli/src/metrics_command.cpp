@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "metric_text.h"
 #include "own_json.h"
@@ -111,7 +112,7 @@ base::Status PutOut(const std::string& text, const std::string& output) {
   return {};
 }
 
-base::Status List(const MetricsArguments& arguments) {
+base::Status ListDefinitions(const MetricsArguments& arguments) {
   if (arguments.is_json) return PutOut(std::string(training::MetricDefinitionsJson()), arguments.output);
   if (arguments.is_markdown) return PutOut(training::FormatMetricDefinitionsPage(), arguments.output);
   std::vector<std::vector<std::string>> rows = {{"id", "name", "unit", "better", "what it is"}};
@@ -123,8 +124,8 @@ base::Status List(const MetricsArguments& arguments) {
   return PutOut(host::FormatShownTable(rows), arguments.output);
 }
 
-base::Status Measure(const MetricsArguments& arguments) {
-  if (arguments.is_list) return List(arguments);
+base::Status MeasureAttempt(const MetricsArguments& arguments) {
+  if (arguments.is_list) return ListDefinitions(arguments);
   if (arguments.file.empty())
     return base::Error{base::ErrorCode::kUsage, "name a recording, or --list to see what is measured"};
   auto traced = TraceAttempt(arguments);
@@ -147,15 +148,14 @@ base::Status Measure(const MetricsArguments& arguments) {
 }  // namespace
 
 void AddMetricsCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("metrics", "Measure a recorded attempt: motion, force, view, clips, errors");
+  CLI::App* command = AddListed(app, "metrics");
   auto arguments = std::make_shared<MetricsArguments>();
   command
       ->add_option("file", arguments->file,
                    "Recording, which is replayed, or a trace that --trace has written (.json)")
       ->type_name("FILE");
-  auto* json = command->add_flag("--json", arguments->is_json,
-                                 "Machine-readable, in SI units, with all phases and tools");
+  auto* json =
+      AddJsonFlag(*command, arguments->is_json, "Machine-readable, in SI units, with all phases and tools");
   command->add_flag("--csv", arguments->is_csv, "The same as lines of comma-separated values")
       ->excludes(json);
   command->add_flag("--parts", arguments->has_parts, "In words, also of each phase and of each tool");
@@ -168,16 +168,12 @@ void AddMetricsCommand(CLI::App& app, Outcome& outcome) {
                                  "Say what each metric is; with --json the definitions of docs/metrics.json");
   command->add_flag("--markdown", arguments->is_markdown, "With --list: as the page docs/metrics.md")
       ->needs(list);
-  command
-      ->add_option("--threads", arguments->threads, "Of the replay; the numbers are the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, arguments->threads, "Of the replay; the numbers are the same for any number");
   command->footer(
       "The same recording gives the same numbers. They are training feedback, not certified assessment.\n"
       "Examples: trocar metrics attempt.trocar --parts\n"
       "          trocar metrics attempt.trocar --json -o metrics.json --trace trace.csv");
-  command->callback([arguments, &outcome] { outcome.status = Measure(*arguments); });
+  command->callback([arguments, &outcome] { outcome.status = MeasureAttempt(*arguments); });
 }
 
 }  // namespace trocar::cli

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "part_folder.h"
 #include "picture_size.h"
@@ -70,15 +71,12 @@ base::Status MakePictures(const PicturesArguments& arguments, Outcome& outcome) 
 }  // namespace
 
 void AddPicturesCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("pictures", "Draw twenty-three pictures of the operation and of the training tasks");
+  CLI::App* command = AddListed(app, "pictures");
   auto arguments = std::make_shared<PicturesArguments>();
   command->add_option("-o,--output", arguments->output, "Folder to write")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--size", arguments->size, "Of each picture [pixels]")
-      ->type_name("WxH")
-      ->capture_default_str();
+  AddSizeOption(*command, arguments->size, "Of each picture [pixels]");
   command
       ->add_option(
           "--moments", arguments->moments,
@@ -91,10 +89,7 @@ void AddPicturesCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, arguments->threads);
   command->add_flag("--plain", arguments->is_plain,
                     "In the lowest quality, which the window takes where no GPU draws");
   command->add_flag("--list", arguments->is_list, "Say which there are, and do nothing");

@@ -13,6 +13,7 @@
 #include "attempt_page.h"
 #include "attempt_recording.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "part_folder.h"
 #include "picture_size.h"
@@ -29,6 +30,7 @@
 #include "trocar/host/threads.h"
 #include "trocar/host/version.h"
 #include "trocar/scene/task.h"
+#include "trocar/session/input_sources.h"
 #include "trocar/simulation/attempt_end.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/demo.h"
@@ -45,8 +47,6 @@ namespace {
 
 using scene::TaskPhase;
 using simulation::Snapshot;
-
-constexpr double kMillilitre = 1e6;  // per m^3
 
 struct PlayArguments {
   std::string surgeon, task, patient, output;
@@ -113,7 +113,7 @@ class Watcher {
   std::vector<scene::TaskError> errors_;
 };
 
-nlohmann::ordered_json ErrorJson(const scene::Scene& scene, const scene::TaskError& error) {
+nlohmann::ordered_json TaskErrorJson(const scene::Scene& scene, const scene::TaskError& error) {
   const scene::ErrorRule& rule = scene.task->errors[static_cast<std::size_t>(error.rule)];
   const auto& p = error.position;
   nlohmann::ordered_json json = {{"error", rule.name},
@@ -134,7 +134,7 @@ void PrintForProgram(const scene::Scene& scene, const PlayReport& report) {
   for (const scene::TaskError& error : report.errors) {
     const bool is_critical = scene.task->errors[static_cast<std::size_t>(error.rule)].severity ==
                              cholecystectomy::Severity::kCritical;
-    json[is_critical ? "critical_errors" : "errors"].push_back(ErrorJson(scene, error));
+    json[is_critical ? "critical_errors" : "errors"].push_back(TaskErrorJson(scene, error));
   }
   json.update({{"blood_ml", report.blood_ml},
                {"bile_ml", report.bile_ml},
@@ -163,7 +163,7 @@ std::string FormatShownScore(const scene::Task& task, const scene::TaskSnapshot&
              : host::TranslateWith("{1} points", {score});
 }
 
-void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
+void PrintTaskResult(const scene::Scene& scene, const PlayReport& report) {
   const auto done = std::count_if(report.task.goals.begin(), report.task.goals.end(),
                                   [](const auto& goal) { return goal.is_done; });
   Say("{1}, level {2}: {3} after {4} s, {5} of {6} goals, score {7}\n",
@@ -297,7 +297,9 @@ base::Result<PlayReport> PlayForTheEye(std::shared_ptr<const scene::Scene> scene
   options.output_folder = part.Path();
   Watcher watcher(*scene);
   host::ProgressBar progress("playing", static_cast<double>(scene->task->goals.size()));
-  options.surgeon = &surgeon;
+  session::SurgeonSource source(surgeon);
+  options.source = &source;
+  options.is_until_end = true;
   options.duration = arguments.most_seconds;
   Snapshot last;
   options.on_tick = [&](const Snapshot& now) {
@@ -367,7 +369,7 @@ base::Status Play(const PlayArguments& arguments, Outcome& outcome) {
   const auto report = arguments.output.empty() ? PlayBlind(scene, **surgeon, arguments)
                                                : PlayForTheEye(scene, **surgeon, arguments);
   if (!report) return report.error();
-  arguments.is_json ? PrintForProgram(*scene, *report) : PrintForPerson(*scene, *report);
+  arguments.is_json ? PrintForProgram(*scene, *report) : PrintTaskResult(*scene, *report);
   outcome.has_finding = false;
   return {};
 }
@@ -375,7 +377,7 @@ base::Status Play(const PlayArguments& arguments, Outcome& outcome) {
 }  // namespace
 
 void AddPlayCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand("play", "Let a scripted surgeon do a task, and judge it");
+  CLI::App* command = AddListed(app, "play");
   auto arguments = std::make_shared<PlayArguments>();
   command->add_option("surgeon", arguments->surgeon, "expert, novice, or one who errs (--list)")
       ->type_name("SURGEON");
@@ -392,10 +394,7 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(0, 2147483647))
       ->type_name("K")
       ->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, arguments->threads);
   command
       ->add_option("--seconds", arguments->most_seconds,
                    "Simulated time after which a surgeon is stopped, counted from the attempt's start")
@@ -404,9 +403,7 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "Folder for pictures and a video; none if not given")
       ->type_name("DIR");
-  command->add_option("--size", arguments->size, "Of pictures and video [pixels]")
-      ->type_name("WxH")
-      ->capture_default_str();
+  AddSizeOption(*command, arguments->size);
   command->add_option("--save", arguments->files.save, "Write the state and the surgeon's memory at the end")
       ->type_name("FILE");
   command
@@ -418,12 +415,10 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--report", arguments->report,
                    "Write what it came to: .html (one file, no network), .pdf, .csv or .json")
       ->type_name("FILE");
-  command->add_option("--person", arguments->person, "Pseudonym that stands in the report")
-      ->check(ComplainOfPseudonym)
-      ->type_name("PSEUDONYM");
-  command->add_flag("--json", arguments->is_json,
-                    "Machine-readable; of an operation also how it ended (\"end\": completed, conversion or\n"
-                    "unfinished) and why it was ended early (\"bail_out\")");
+  AddPseudonymOption(*command, "--person", arguments->person, "Pseudonym that stands in the report");
+  AddJsonFlag(*command, arguments->is_json,
+              "Machine-readable; of an operation also how it ended (\"end\": completed, conversion "
+              "or\nunfinished) and why it was ended early (\"bail_out\")");
   command->add_flag("--list", arguments->is_list, "Show tasks and surgeons, and do nothing");
   command->footer(
       "The same task, level, surgeon and seed give the same hash.\n"

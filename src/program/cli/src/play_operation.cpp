@@ -16,6 +16,7 @@
 #include "trocar/host/json.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/translate.h"
+#include "trocar/session/input_sources.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/demo.h"
 
@@ -30,8 +31,6 @@ namespace {
 using nlohmann::ordered_json;
 using simulation::OperationResult;
 using simulation::Snapshot;
-
-constexpr double kMillilitre = 1e6;  // per m^3
 
 struct Run {
   std::vector<double> tick_ms;
@@ -53,7 +52,7 @@ double Left(const OperationResult& result, surgery::Fluid fluid) {
   return kMillilitre * result.fluids.fluids[static_cast<std::size_t>(fluid)].left;
 }
 
-ordered_json ErrorJson(const cholecystectomy::ErrorEntry& entry) {
+ordered_json OperationErrorJson(const cholecystectomy::ErrorEntry& entry) {
   constexpr const char* kHands[] = {"left", "right"};
   ordered_json json = {{"error", cholecystectomy::NameOf(entry.error)},
                        {"severity", cholecystectomy::NameOf(cholecystectomy::SeverityOf(entry.error))},
@@ -77,7 +76,7 @@ ordered_json MakeJson(const OperationResult& result, const Run& run, const std::
                        {"errors", ordered_json::array()}};
   for (const cholecystectomy::ErrorEntry& entry : result.errors.Entries()) {
     const bool is_critical = cholecystectomy::SeverityOf(entry.error) == cholecystectomy::Severity::kCritical;
-    json[is_critical ? "critical_errors" : "errors"].push_back(ErrorJson(entry));
+    json[is_critical ? "critical_errors" : "errors"].push_back(OperationErrorJson(entry));
   }
   json.update({{"blood_ml", Left(result, surgery::Fluid::kBlood)},
                {"bile_ml", Left(result, surgery::Fluid::kBile)},
@@ -102,8 +101,8 @@ ordered_json MakeJson(const OperationResult& result, const Run& run, const std::
   return json;
 }
 
-void PrintForPerson(const scene::Scene& scene, const OperationResult& result, const Run& run,
-                    const std::string& bail_out) {
+void PrintOperationResult(const scene::Scene& scene, const OperationResult& result, const Run& run,
+                          const std::string& bail_out) {
   Say(result.is_completed ? "{1}: completed after {2} s\n" : "{1}: not completed after {2} s\n",
       host::TranslateComposed(scene.name), ShownNumber(run.seconds, 4));
   if (!bail_out.empty()) {
@@ -141,7 +140,7 @@ void PrintForPerson(const scene::Scene& scene, const OperationResult& result, co
   Say("Training feedback, not certified assessment.\n");
 }
 
-std::string Progress(const Snapshot& now, std::string_view doing) {
+std::string DescribeProgress(const Snapshot& now, std::string_view doing) {
   return host::TranslateWith(
       "{1} s, {2}: fat cleared {3} %, bed free {4} %, errors {5}",
       {ShownNumber(now.time, 4), Translate(doing), ShownNumber(100 * now.operation.facts.cleared_share, 3),
@@ -178,7 +177,7 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
   const auto see = [&](const Snapshot& now) {
     run.See(now);
     if (now.tick % 60 != 0) return;
-    progress.SetLabel(Progress(now, surgeon.Doing()));
+    progress.SetLabel(DescribeProgress(now, surgeon.Doing()));
     progress.Show(Share(now));
   };
   if (play.output.empty()) {
@@ -210,7 +209,9 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     options.threads = play.threads;
     PartFolder part(play.output);
     options.output_folder = part.Path();
-    options.surgeon = &surgeon;
+    session::SurgeonSource source(surgeon);
+    options.source = &source;
+    options.is_until_end = true;
     options.duration = play.most_seconds;
     options.on_tick = see;
     play.report.Follow(options);
@@ -226,7 +227,7 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
   if (play.is_json) {
     PrintJson(MakeJson(result, run, bail_out));
   } else {
-    PrintForPerson(*scene, result, run, bail_out);
+    PrintOperationResult(*scene, result, run, bail_out);
   }
   return {};
 }

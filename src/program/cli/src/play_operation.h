@@ -16,6 +16,8 @@
 
 namespace trocar::cli {
 
+inline constexpr double kMillilitre = 1e6;  ///< per m^3
+
 struct OperationPlay {
   std::filesystem::path output;  ///< folder for pictures and a video, or empty
   int width = 1280, height = 720;

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// A check of options that take a pseudonym.
+/// \file pseudonym_option.h  Options that take a pseudonym.
 #pragma once
 
 #include <string>
 
-#include "trocar/host/translate.h"
-#include "trocar/store/people.h"
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls it so
+class App;
+class Option;
+}  // namespace CLI
 
 namespace trocar::cli {
 
-/// Complaint about a pseudonym; empty where it is valid.
-inline std::string ComplainOfPseudonym(const std::string& text) {
-  const base::Status sound = store::CheckPseudonym(text);
-  return sound.ok() ? std::string() : host::TranslateComposed(sound.error().message);
-}
+/// \param name          "--person"
+/// \param[out] person  lives as long as the command
+/// \return the option, which refuses what is no pseudonym
+CLI::Option* AddPseudonymOption(CLI::App& command, const char* name, std::string& person, const char* about);
 
 }  // namespace trocar::cli

@@ -11,6 +11,7 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "pseudonym_option.h"
 #include "trocar/host/safe_file.h"
@@ -62,7 +63,7 @@ struct EnterArguments {
   std::string output;
 };
 
-base::Status Enter(EnterArguments arguments) {
+base::Status EnterRating(EnterArguments arguments) {
   const auto form = report::FindRatingForm(arguments.rating.form);
   if (!form.ok()) return form.error();
   auto points = report::ParsePoints(*form, arguments.points);
@@ -114,7 +115,7 @@ void PrintAgreement(const report::RatingForm& form, const report::FormAgreement&
       "value alone.\n");
 }
 
-base::Status Compare(const AgreementArguments& arguments) {
+base::Status CompareRatings(const AgreementArguments& arguments) {
   std::vector<report::Rating> ratings;
   for (const std::string& file : arguments.files) {
     auto rating = report::ReadRating(file);
@@ -166,15 +167,12 @@ void AddEnter(CLI::App& rating, Outcome& outcome) {
   command->add_option("--attempt", arguments->rating.attempt, "What was rated: the recording")
       ->required()
       ->type_name("FILE");
-  command->add_option("--rater", arguments->rating.rater, "Pseudonym of the rater")
-      ->required()
-      ->check(ComplainOfPseudonym)
-      ->type_name("PSEUDONYM");
+  AddPseudonymOption(*command, "--rater", arguments->rating.rater, "Pseudonym of the rater")->required();
   command->add_option("--date", arguments->rating.rated, "When, such as 2026-11-24T22:50:20+01:00")
       ->type_name("DATE");
   command->add_option("--remarks", arguments->rating.remarks, "Free text")->type_name("TEXT");
   command->add_option("-o,--output", arguments->output, "File to write; none: print it")->type_name("FILE");
-  command->callback([arguments, &outcome] { outcome.status = Enter(*arguments); });
+  command->callback([arguments, &outcome] { outcome.status = EnterRating(*arguments); });
 }
 
 void AddAgreement(CLI::App& rating, Outcome& outcome) {
@@ -188,15 +186,14 @@ void AddAgreement(CLI::App& rating, Outcome& outcome) {
       ->check(CLI::Range(50.0, 99.9))
       ->type_name("P")
       ->capture_default_str();
-  command->add_flag("--json", arguments->is_json, "Machine-readable, with all six coefficients");
-  command->callback([arguments, &outcome] { outcome.status = Compare(*arguments); });
+  AddJsonFlag(*command, arguments->is_json, "Machine-readable, with all six coefficients");
+  command->callback([arguments, &outcome] { outcome.status = CompareRatings(*arguments); });
 }
 
 }  // namespace
 
 void AddRatingCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand(
-      "rating", "What people think of an attempt: GOALS and OSATS forms, and how well raters agree");
+  CLI::App* command = AddListed(app, "rating");
   command->require_subcommand(1);
   AddForm(*command, outcome);
   AddEnter(*command, outcome);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/host/json.h"
@@ -96,7 +97,7 @@ std::string HowItEnded(const Recording& recording) {
 }
 
 /// "    12.30 s  "
-std::string At(std::uint64_t tick, const record::Description& description) {
+std::string FormatMoment(std::uint64_t tick, const record::Description& description) {
   const std::string time = host::ShownFixed(static_cast<double>(tick) * description.tick_seconds, 2);
   return std::string(time.size() < 10 ? 10 - time.size() : 0, ' ') + time + " s  ";
 }
@@ -135,11 +136,12 @@ void PrintInfo(const Recording& recording) {
   std::size_t shown = 0;
   for (const record::EventMark& event : recording.events) {
     if (!event.is_error || ++shown > kShownErrors) continue;
-    PrintLine(At(event.tick, d) + host::Translate(event.kind) +
+    PrintLine(FormatMoment(event.tick, d) + host::Translate(event.kind) +
               (event.about.empty() ? "" : ": " + TranslateComposed(event.about)));
   }
   if (shown > kShownErrors) Say("  and {1} more (--json)\n", shown - kShownErrors);
-  for (const record::TextMark& mark : recording.marks) PrintLine(At(mark.tick, d) + "\"" + mark.text + "\"");
+  for (const record::TextMark& mark : recording.marks)
+    PrintLine(FormatMoment(mark.tick, d) + "\"" + mark.text + "\"");
 }
 
 void AddInfo(CLI::App& record, Outcome& outcome) {
@@ -147,7 +149,7 @@ void AddInfo(CLI::App& record, Outcome& outcome) {
   auto path = std::make_shared<std::string>();
   auto is_json = std::make_shared<bool>(false);
   command->add_option("file", *path, "Recording")->required()->type_name("FILE");
-  command->add_flag("--json", *is_json, "Machine-readable, with all events");
+  AddJsonFlag(*command, *is_json, "Machine-readable, with all events");
   command->callback([path, is_json, &outcome] {
     const auto recording = record::ReadRecording(*path);
     if (!recording.ok()) {
@@ -247,10 +249,7 @@ void AddIndex(CLI::App& record, Outcome& outcome) {
       ->check(CLI::Range(0.1, 600.0))
       ->type_name("S")
       ->capture_default_str();
-  command->add_option("--threads", *threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, *threads);
   command->callback(
       [path, seconds, threads, &outcome] { outcome.status = MakeIndex(*path, *seconds, *threads); });
 }
@@ -258,8 +257,7 @@ void AddIndex(CLI::App& record, Outcome& outcome) {
 }  // namespace
 
 void AddRecordCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("record", "Look at a recording, check it, repair it, or make seeking in it quick");
+  CLI::App* command = AddListed(app, "record");
   command->require_subcommand(1);
   AddInfo(*command, outcome);
   AddVerify(*command, outcome);

@@ -13,6 +13,7 @@
 
 #include "attempt_recording.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "own_json.h"
 #include "picture_size.h"
@@ -43,7 +44,7 @@ using nlohmann::ordered_json;
 using record::Recording;
 using record::Replay;
 
-struct ReplayArguments {
+struct ReplayChoices {
   std::string file, beside;
   std::string surgeon, save, record;
   ReplayVideoOptions video;
@@ -53,14 +54,7 @@ struct ReplayArguments {
   bool is_verify = false, is_json = false, hides_forces = false, is_critical_view = false;
 };
 
-std::uint64_t TickAt(const Recording& recording, double seconds) {
-  const double last = static_cast<double>(recording.LastTick());
-  const double tick = std::floor(std::min(seconds / recording.description.tick_seconds, last) + 0.5);
-  return tick <= static_cast<double>(recording.FirstTick()) ? recording.FirstTick()
-                                                            : static_cast<std::uint64_t>(tick);
-}
-
-base::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& outcome) {
+base::Status Verify(Replay& replay, const ReplayChoices& arguments, Outcome& outcome) {
   const Recording& recording = replay.GetRecording();
   ProgressBar progress("replaying", 1.0);
   const host::Stopwatch watch;
@@ -128,7 +122,7 @@ view::CriticalViewMoments FindCriticalView(Replay& replay) {
 }
 
 /// Pictures of the moments at which the two views came to count, or of `at`, or of the end.
-base::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) {
+base::Status DrawCriticalView(Replay& replay, const ReplayChoices& arguments) {
   const auto size = ReadSize(arguments.video.size);
   if (!size.ok()) return size.error();
   if (!replay.GetSimulation().GetOperationResult())
@@ -188,7 +182,7 @@ base::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) 
 }
 
 /// "What if": somebody else goes on from here.
-base::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
+base::Status TakeOver(const Replay& replay, const ReplayChoices& arguments) {
   record::Description description =
       record::DescribeBranch(replay.GetRecording(), arguments.file, replay.Tick());
   const std::uint64_t seed = description.seed;
@@ -232,7 +226,7 @@ base::Result<Replay> OpenReplay(Recording recording, const std::string& path, in
   return Replay::Open(std::move(recording), settings);
 }
 
-base::Status Draw(Replay& replay, const ReplayArguments& arguments) {
+base::Status DrawVideo(Replay& replay, const ReplayChoices& arguments) {
   ReplayVideoOptions options = arguments.video;
   options.has_forces = !arguments.hides_forces;
   if (arguments.beside.empty()) return MakeReplayVideo(replay, nullptr, options);
@@ -243,7 +237,7 @@ base::Status Draw(Replay& replay, const ReplayArguments& arguments) {
   return MakeReplayVideo(replay, &*other, options);
 }
 
-base::Status DoReplay(const ReplayArguments& arguments, Outcome& outcome) {
+base::Status DoReplay(const ReplayChoices& arguments, Outcome& outcome) {
   const bool branches = !arguments.surgeon.empty() || !arguments.save.empty();
   if (arguments.is_critical_view && (branches || arguments.video.output.empty()))
     return base::Error{base::ErrorCode::kUsage,
@@ -272,7 +266,7 @@ base::Status DoReplay(const ReplayArguments& arguments, Outcome& outcome) {
   if (arguments.is_verify || (arguments.video.output.empty() && !branches)) {
     if (const auto status = Verify(*replay, arguments, outcome); !status.ok()) return status;
   }
-  if (!arguments.video.output.empty()) return Draw(*replay, arguments);
+  if (!arguments.video.output.empty()) return DrawVideo(*replay, arguments);
   if (!branches) return {};
   if (const auto status = replay->Seek(TickAt(replay->GetRecording(), first)); !status.ok()) return status;
   if (!arguments.save.empty()) {
@@ -285,9 +279,8 @@ base::Status DoReplay(const ReplayArguments& arguments, Outcome& outcome) {
 }  // namespace
 
 void AddReplayCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand(
-      "replay", "Play a recording again: verify it to the bit, draw it, or go on from any moment of it");
-  auto a = std::make_shared<ReplayArguments>();
+  CLI::App* command = AddListed(app, "replay");
+  auto a = std::make_shared<ReplayChoices>();
   command->add_option("file", a->file, "Recording")->required()->type_name("FILE");
   command->add_flag(
       "--verify", a->is_verify,
@@ -300,9 +293,7 @@ void AddReplayCommand(CLI::App& app, Outcome& outcome) {
   command->add_option("--until", a->video.until, "Where the video ends [s]")
       ->check(CLI::Range(0.0, 1e6))
       ->type_name("S");
-  command->add_option("--size", a->video.size, "Of video and pictures [pixels]")
-      ->type_name("WxH")
-      ->capture_default_str();
+  AddSizeOption(*command, a->video.size, "Of video and pictures [pixels]");
   command
       ->add_option(
           "--side-by-side", a->beside,
@@ -336,11 +327,8 @@ void AddReplayCommand(CLI::App& app, Outcome& outcome) {
   command->add_option("--save", a->save, "Write the state at that moment, for --restore of simulate")
       ->type_name("FILE");
   AddRecordOption(*command, a->record);
-  command->add_option("--threads", a->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
-  command->add_flag("--json", a->is_json, "Machine-readable");
+  AddThreadsOption(*command, a->threads);
+  AddJsonFlag(*command, a->is_json);
   command->footer(
       "Examples:\n"
       "  trocar play novice --task peg_transfer --record attempt.trocar\n"

@@ -26,14 +26,15 @@ constexpr int kFramesPerSecond = 30;
 constexpr double kTrailSeconds = 4;  // of the tips' ways that are shown
 
 /// One replay and what is drawn over it.
-struct Shown {
+struct ShownRecording {
   Replay* replay;
   record::TipPath path;
   std::optional<math::Pose> X_world_camera;
 };
 
-Shown MakeShown(Replay& replay, std::optional<render::Viewpoint> viewpoint) {
-  Shown shown{&replay, record::CalcTipPath(replay.GetSimulation().GetScene(), replay.GetRecording()), {}};
+ShownRecording MakeShown(Replay& replay, std::optional<render::Viewpoint> viewpoint) {
+  ShownRecording shown{
+      &replay, record::CalcTipPath(replay.GetSimulation().GetScene(), replay.GetRecording()), {}};
   if (viewpoint) {
     const auto& now = replay.GetSimulation().GetSnapshot();
     shown.X_world_camera = view::PoseOf(view::MakeFreeCamera(now.X_world_laparoscope, *viewpoint));
@@ -41,7 +42,7 @@ Shown MakeShown(Replay& replay, std::optional<render::Viewpoint> viewpoint) {
   return shown;
 }
 
-view::Overlay MakeOverlay(const Shown& shown, const Shown* other, bool has_ghosts) {
+view::Overlay MakeOverlay(const ShownRecording& shown, const ShownRecording* other, bool has_ghosts) {
   view::Overlay overlay;
   overlay.X_world_camera = shown.X_world_camera;
   if (!has_ghosts) return overlay;
@@ -54,17 +55,17 @@ view::Overlay MakeOverlay(const Shown& shown, const Shown* other, bool has_ghost
   return overlay;
 }
 
-std::uint64_t TickAt(const Recording& recording, double seconds) {
-  const double tick = std::floor(seconds / recording.description.tick_seconds + 0.5);
-  return static_cast<std::uint64_t>(std::clamp(tick, static_cast<double>(recording.FirstTick()),
-                                               static_cast<double>(recording.LastTick())));
-}
-
 double EndOf(const Recording& recording) {
   return static_cast<double>(recording.LastTick()) * recording.description.tick_seconds;
 }
 
 }  // namespace
+
+std::uint64_t TickAt(const record::Recording& recording, double seconds) {
+  const double tick = std::floor(seconds / recording.description.tick_seconds + 0.5);
+  return static_cast<std::uint64_t>(std::clamp(tick, static_cast<double>(recording.FirstTick()),
+                                               static_cast<double>(recording.LastTick())));
+}
 
 std::vector<std::string> ListReplayCameras() {
   std::vector<std::string> names = {kRecorded};
@@ -85,7 +86,7 @@ base::Status MakeReplayVideo(Replay& replay, Replay* other, const ReplayVideoOpt
   const auto viewpoint = options.camera == kRecorded ? std::nullopt : render::FindViewpoint(options.camera);
   std::vector<Replay*> replays = {&replay};
   if (other != nullptr) replays.push_back(other);
-  std::vector<Shown> shown;
+  std::vector<ShownRecording> shown;
   std::vector<const simulation::Simulation*> simulations;
   for (Replay* each : replays) {
     if (const auto status = each->Seek(TickAt(each->GetRecording(), options.from)); !status.ok())
@@ -111,12 +112,12 @@ base::Status MakeReplayVideo(Replay& replay, Replay* other, const ReplayVideoOpt
   std::vector<view::FilmMaker::Side> sides(shown.size());
   for (std::uint64_t frame = 0; frame < frames; ++frame) {
     const double time = options.from + static_cast<double>(frame) * options.speed / kFramesPerSecond;
-    for (Shown& each : shown) {
+    for (ShownRecording& each : shown) {
       if (const auto status = each.replay->Seek(TickAt(each.replay->GetRecording(), time)); !status.ok())
         return status;
     }
     for (std::size_t i = 0; i < shown.size(); ++i) {
-      const Shown* beside = shown.size() == 2 ? &shown[1 - i] : nullptr;
+      const ShownRecording* beside = shown.size() == 2 ? &shown[1 - i] : nullptr;
       sides[i] = {&shown[i].replay->GetSimulation().GetSnapshot(),
                   MakeOverlay(shown[i], beside, options.has_ghosts)};
     }

@@ -2,6 +2,7 @@
 /// \file replay_video.h  A recording, or two beside each other, as a video.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -19,6 +20,9 @@ struct ReplayVideoOptions {
   std::string camera = "recorded";  ///< or a side of the patient from which it looks
   bool has_forces = true, has_ghosts = false;
 };
+
+/// The recording's tick that is nearest to a moment [s].
+std::uint64_t TickAt(const record::Recording& recording, double seconds);
 
 /// "recorded", and the names of sides.
 std::vector<std::string> ListReplayCameras();

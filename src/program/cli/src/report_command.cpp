@@ -12,6 +12,7 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "group_values.h"
 #include "pseudonym_option.h"
@@ -102,8 +103,7 @@ base::Status Report(ReportArguments arguments) {
 }  // namespace
 
 void AddReportCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("report", "Write what a recorded attempt came to, for people or for other programs");
+  CLI::App* command = AddListed(app, "report");
   auto arguments = std::make_shared<ReportArguments>();
   command
       ->add_option("files", arguments->files,
@@ -114,9 +114,7 @@ void AddReportCommand(CLI::App& app, Outcome& outcome) {
                    "What to write: .html (one file, no network), .pdf, .csv or .json [the recording's name "
                    "with .html]")
       ->type_name("FILE");
-  command->add_option("--person", arguments->person, "Pseudonym of whose attempt it is")
-      ->check(ComplainOfPseudonym)
-      ->type_name("PSEUDONYM");
+  AddPseudonymOption(*command, "--person", arguments->person, "Pseudonym of whose attempt it is");
   command
       ->add_option(
           "--group", arguments->group,
@@ -130,10 +128,7 @@ void AddReportCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--as", arguments->store.viewer,
                    "Ask the store as this person: see what their role allows")
       ->type_name("PSEUDONYM");
-  command->add_option("--threads", arguments->threads, "Of the solver; the report is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, arguments->threads, "Of the solver; the report is the same for any number");
   command->add_flag("--dictionary", arguments->is_dictionary,
                     "Only write what every column of CSV and field of JSON means, as CSV");
   command->footer(

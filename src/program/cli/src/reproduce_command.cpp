@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "trocar/bench/benchmark.h"
 #include "trocar/bench/experiment.h"
@@ -25,8 +26,8 @@ struct Arguments {
   bool is_json = false;
 };
 
-base::Result<std::vector<bench::Experiment>> Run(std::span<const bench::ExperimentEntry> entries,
-                                                 const Arguments& arguments) {
+base::Result<std::vector<bench::Experiment>> RunExperiments(std::span<const bench::ExperimentEntry> entries,
+                                                            const Arguments& arguments) {
   std::vector<bench::Experiment> done;
   bench::ExperimentStore store;
   for (const bench::ExperimentEntry& entry : entries) {
@@ -84,7 +85,7 @@ base::Status Reproduce(std::span<const bench::ExperimentEntry> entries, const Ar
                        bool is_all) {
   const std::string machine = bench::DescribeMachine() + ", " + std::to_string(arguments.options.threads) +
                               (arguments.options.threads == 1 ? " thread" : " threads");
-  const auto experiments = Run(entries, arguments);
+  const auto experiments = RunExperiments(entries, arguments);
   if (!experiments) return experiments.error();
   if (arguments.is_json) host::PrintLines(bench::FormatExperimentsJson(*experiments, machine));
   if (!arguments.folder.empty()) {
@@ -103,22 +104,18 @@ void AddOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) 
                   "Folder for the page (HTML), the plots (SVG) and the numbers (JSON)")
       ->type_name("FOLDER");
   command.add_flag("--quick", arguments->options.is_quick, "Smaller meshes: seconds instead of minutes");
-  command.add_option("--threads", arguments->options.threads, "Of the solvers that can use more than one")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(command, arguments->options.threads, "Of the solvers that can use more than one");
   command.add_option("--repeats", arguments->options.repeats, "The quickest of so many runs counts")
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
-  command.add_flag("--json", arguments->is_json, "Machine-readable, in place of the tables");
+  AddJsonFlag(command, arguments->is_json, "Machine-readable, in place of the tables");
 }
 
 }  // namespace
 
 void AddReproduceCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* reproduce =
-      app.add_subcommand("reproduce", "Repeat the paper's experiments, its figures beside ours");
+  CLI::App* reproduce = AddListed(app, "reproduce");
   reproduce->require_subcommand(1);
   for (const bench::ExperimentEntry& entry : bench::Experiments()) {
     CLI::App* command = reproduce->add_subcommand(std::string(entry.name), std::string(entry.description));

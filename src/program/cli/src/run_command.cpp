@@ -1,25 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/cli/run_command.h"
-
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <memory>
 #include <new>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command.h"
+#include "command_list.h"
 #include "help_language.h"
+#include "start_program.h"
 #include "trocar/base/simd_choice.h"
 #include "trocar/host/console.h"
 #include "trocar/host/partial_path.h"
 #include "trocar/host/printable_output.h"
+#include "trocar/host/program.h"
 #include "trocar/host/translate.h"
 #include "trocar/host/version.h"
 
@@ -81,41 +87,35 @@ std::string Explain(const CLI::App& app, const CLI::ParseError& complaint) {
   return "there is no subcommand \"" + unknown.front() + "\"";
 }
 
-void AddCommands(CLI::App& app, Outcome& outcome) {
-  app.set_version_flag("--version", "trocar " + std::string(host::VersionText()));
-  app.footer(kExamples);
-  app.require_subcommand(1);
-  AddWindowCommand(app, outcome);
-  AddDemoCommand(app, outcome);
-  AddPlayCommand(app, outcome);
-  AddPicturesCommand(app, outcome);
-  AddSimulateCommand(app, outcome);
-  AddReplayCommand(app, outcome);
-  AddCoachCommand(app, outcome);
-  AddDatasetCommand(app, outcome);
-  AddStudyCommand(app, outcome);
-  AddMetricsCommand(app, outcome);
-  AddReportCommand(app, outcome);
-  AddRatingCommand(app, outcome);
-  AddXapiCommand(app, outcome);
-  AddRecordCommand(app, outcome);
-  AddCourseCommand(app, outcome);
-  AddLevelsCommand(app, outcome);
-  AddExamCommand(app, outcome);
-  AddCertificateCommand(app, outcome);
-  AddStoreCommand(app, outcome);
-  AddAnatomyCommand(app, outcome);
-  AddDevicesCommand(app, outcome);
-  AddBenchCommand(app, outcome);
-  AddReproduceCommand(app, outcome);
-  AddDoctorCommand(app, outcome);
-  AddErrorsCommand(app, outcome);
+const Command* FindOwn(std::span<const Command> own, std::string_view name) {
+  const auto found =
+      std::find_if(own.begin(), own.end(), [&](const Command& each) { return each.name == name; });
+  return found == own.end() ? nullptr : &*found;
 }
 
-int ParseAndRun(int argc, char** argv) {
-  CLI::App app(kDescription, "trocar");
+/// Starts the program whose command was called, where it is not this one: then this does not come back.
+base::Status StartElsewhere(std::span<const Command> own, int argc, char** argv) {
+  if (argc < 2 || FindOwn(own, argv[1]) != nullptr) return {};
+  const ListedCommand* const called = FindListed(argv[1]);
+  if (called == nullptr) return {};
+  const std::filesystem::path program = called->program == "trocar"
+                                            ? host::FindMainProgram(called->program)
+                                            : host::FindCompanionProgram(called->program);
+  const int why = ReplaceProgram(program, {argv, argv + argc});
+  const std::string name(called->name), part(called->program);
+  if (why == ENOENT) {
+    return base::Error{base::ErrorCode::kFileMissing, part + " is not beside this program: build it (./run " +
+                                                          name + " --help, or ninja command-" + name +
+                                                          " in the build folder), or install Trocar again"};
+  }
+  return base::Error{base::ErrorCode::kFileUnreadable, part + " does not start: " + std::strerror(why) +
+                                                           "; build it again (ninja command-" + name + ")"};
+}
+
+int ParseAndRun(std::span<const Command> own, int argc, char** argv) {
   Outcome outcome;
-  AddCommands(app, outcome);
+  const std::unique_ptr<CLI::App> made = MakeCommandLine(own, outcome);
+  CLI::App& app = *made;
   TranslateHelp(app);
   try {
     app.parse(argc, argv);
@@ -171,61 +171,35 @@ constexpr const char* kNoMemory =
   std::abort();
 }
 
-void ListBelow(const CLI::App& app, std::vector<std::string>& words,
-               std::vector<std::vector<std::string>>& all) {
-  all.push_back(words);
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    words.push_back(command->get_name());
-    ListBelow(*command, words, all);
-    words.pop_back();
-  }
-}
-
 }  // namespace
 
-std::vector<std::vector<std::string>> ListCommands() {
-  CLI::App app(kDescription, "trocar");
-  Outcome outcome;
-  AddCommands(app, outcome);
-  std::vector<std::string> words;
-  std::vector<std::vector<std::string>> all;
-  ListBelow(app, words, all);
-  return all;
-}
-
-std::vector<CommandOption> ListOptions(const std::vector<std::string>& words) {
-  CLI::App app(kDescription, "trocar");
-  Outcome outcome;
-  AddCommands(app, outcome);
-  const CLI::App* command = &app;
-  for (const std::string& word : words) command = command->get_subcommand(word);
-  std::vector<CommandOption> options;
-  for (const CLI::Option* option : command->get_options()) {
-    const bool is_positional = option->get_positional();
-    const bool takes_value = option->get_items_expected_max() > 0;
-    std::string type = takes_value ? option->get_type_name() : "";
-    if (takes_value && type.empty()) type = "TEXT";
-    options.push_back({option->get_name(is_positional), type, is_positional, option->get_required()});
+std::unique_ptr<CLI::App> MakeCommandLine(std::span<const Command> own, Outcome& outcome) {
+  auto app = std::make_unique<CLI::App>(kDescription, "trocar");
+  app->set_version_flag("--version", "trocar " + std::string(host::VersionText()));
+  app->footer(kExamples);
+  app->require_subcommand(1);
+  for (const ListedCommand& listed : ListedCommands()) {
+    if (const Command* const command = FindOwn(own, listed.name)) {
+      command->add(*app, outcome);
+    } else {
+      AddListed(*app, listed.name);
+    }
   }
-  return options;
+  return app;
 }
 
-void ListHelpTexts(const TextVisitor& visit) {
-  CLI::App app(kDescription, "trocar");
-  Outcome outcome;
-  AddCommands(app, outcome);
-  VisitHelpTexts(app, visit);
-}
-
-int RunCommand(int argc, char** argv) {
+int RunCommandOf(std::span<const Command> own, int argc, char** argv) {
+  // first of all: the other program sets up its output and its signals itself
+  const base::Status started = StartElsewhere(own, argc, argv);
   const host::PrintableOutput fence;
   host::RemovePartialPathsOnSignals();
   std::set_terminate(OnTerminate);
   host::UseLanguage(host::FindLocaleFolder());
+  if (!started) return Fail(started.error(), kExitError);
   if (const base::Status level = base::CheckSimdLevel(); !level) return Fail(level.error(), kExitUsage);
   // the last fence: nothing below should throw, and if memory ends the person still gets a line
   try {
-    return CheckOutput(ParseAndRun(argc, argv));
+    return CheckOutput(ParseAndRun(own, argc, argv));
   } catch (const std::bad_alloc&) {
     std::fputs(kNoMemory, stderr);
     return kExitError;

@@ -14,10 +14,10 @@
 
 #include "attempt_recording.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
-#include "device_input.h"
-#include "haptic_input.h"
 #include "igtl_option.h"
+#include "live_input.h"
 #include "own_json.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/base/statistics.h"
@@ -94,12 +94,8 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     const auto restored = files::ReadStateFile(options.restore, simulation);
     if (!restored) return restored.error();
   }
-  std::unique_ptr<DeviceInput> device;
-  if (!options.device.empty()) {
-    auto opened = DeviceInput::Open(options.device, *scene);
-    if (!opened) return opened.error();
-    device = std::move(*opened);
-  }
+  auto live = LiveInput::Open(options.device, *scene);
+  if (!live) return live.error();
 
   std::unique_ptr<net::IgtlServer> server;
   if (options.igtl_port >= 0) {
@@ -108,12 +104,7 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     server = std::move(*listening);
   }
 
-  std::unique_ptr<HapticInput> haptics;
-  if (!options.haptics.name.empty()) {
-    auto opened = HapticInput::Open(options.haptics, simulation);
-    if (!opened) return opened.error();
-    haptics = std::move(*opened);
-  }
+  if (const base::Status used = (*live)->UseHaptics(options.haptics, simulation); !used) return used.error();
 
   const std::string player = options.haptics.name.empty()
                                  ? (options.device.empty() ? std::string("script") : options.device)
@@ -132,12 +123,10 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   SimulateReport report;
   host::ProgressBar progress("simulating", options.ticks);
   for (int tick = 0; tick < options.ticks; ++tick) {
-    scene::Input input = scene::CalcScriptInput(*scene, simulation.GetSnapshot().time);
-    if (device != nullptr) device->Apply(simulation.GetSnapshot().time, input);
-    if (haptics != nullptr) haptics->Apply(simulation.GetSnapshot().time, input);
+    const scene::Input input = (*live)->For(simulation.GetSnapshot().tick + 1, simulation.GetSnapshot());
     const host::Stopwatch stopwatch;
     simulation.Step(input);
-    if (haptics != nullptr) haptics->AfterStep(simulation);
+    (*live)->AfterStep(simulation);
     recording->Add(input, simulation);
     tick_ms.push_back(1e3 * stopwatch.Seconds());
     const simulation::Snapshot& snapshot = simulation.GetSnapshot();
@@ -155,9 +144,7 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     if (const base::Status saved = files::WriteStateFile(options.save, simulation); !saved)
       return saved.error();
   }
-  if (device != nullptr) {
-    if (const base::Status whole = device->Check(); !whole) return whole.error();
-  }
+  if (const base::Status whole = (*live)->Check(); !whole) return whole.error();
 
   if (report.gpu.empty()) report.gpu = simulation.DeviceName();
   report.hash = base::HashText(simulation.Hash());
@@ -169,14 +156,14 @@ base::Result<SimulateReport> Simulate(const SimulateOptions& options) {
                              base::CalcPercentile(times, 0.5), base::CalcPercentile(times, 0.99)});
   }
   report.tick_p99_ms = base::CalcPercentile(tick_ms, 0.99);
-  if (haptics != nullptr) {
+  if (const HapticInput* haptics = (*live)->Haptics(); haptics != nullptr) {
     report.haptics = haptics->Record().CalcSummary();
     if (const base::Status saved = haptics->SaveRecord(); !saved) return saved.error();
   }
   return report;
 }
 
-void PrintForProgram(const SimulateReport& report) {
+void PrintRunJson(const SimulateReport& report) {
   nlohmann::ordered_json json = {
       {"hash", report.hash}, {"ticks", report.ticks}, {"residual", report.residual}};
   json["stages"] = nlohmann::ordered_json::array();
@@ -194,7 +181,7 @@ void PrintForProgram(const SimulateReport& report) {
   PrintJson(json);
 }
 
-void PrintForPerson(const SimulateReport& report) {
+void PrintRun(const SimulateReport& report) {
   std::vector<std::vector<std::string>> rows = {{"stage", "median [ms]", "p99 [ms]"}};
   for (const StageTimes& stage : report.stages) {
     rows.push_back({ShownName(stage.name), ShownNumber(stage.median_ms, 3), ShownNumber(stage.p99_ms, 3)});
@@ -214,8 +201,7 @@ void PrintForPerson(const SimulateReport& report) {
 }  // namespace
 
 void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("simulate", "Run a scene's script without pictures; print hash and times");
+  CLI::App* command = AddListed(app, "simulate");
   auto options = std::make_shared<SimulateOptions>();
   command->add_option("scene", options->scene, "Scene file (JSON), which names its patient and its script")
       ->required()
@@ -228,14 +214,8 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("N");
   CLI::Option* seed =
       command->add_option("--seed", options->seed, "In place of the scene's seed")->type_name("K");
-  command->add_option("--threads", options->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
-  command
-      ->add_option("--device", options->device,
-                   "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
-      ->type_name("DEVICE");
+  AddThreadsOption(*command, options->threads);
+  AddDeviceOption(*command, options->device);
   command->add_option("--save", options->save, "Write the state after the last tick")->type_name("FILE");
   command
       ->add_option("--restore", options->restore,
@@ -246,7 +226,7 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
   AddHapticOptions(*command, options->haptics);
   command->add_flag("--gpu", options->uses_gpu,
                     "Solve on the GPU (single precision, so another hash); without one the processor does");
-  command->add_flag("--json", options->is_json, "Machine-readable");
+  AddJsonFlag(*command, options->is_json);
   command->footer(
       "The same scene, seed and ticks give the same hash, twice and with any number of threads.\n"
       "Example: trocar simulate scenes/demonstration.json --ticks 240 --seed 1 --threads 2 --json");
@@ -257,7 +237,7 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       outcome.status = report.error();
       return;
     }
-    options->is_json ? PrintForProgram(*report) : PrintForPerson(*report);
+    options->is_json ? PrintRunJson(*report) : PrintRun(*report);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "store_console.h"
 #include "trocar/host/log.h"
@@ -30,7 +31,6 @@ std::string Days(int days) {
 }
 
 using nlohmann::ordered_json;
-using Options = std::shared_ptr<StoreOptions>;
 
 std::int64_t NowMilliseconds() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -38,7 +38,7 @@ std::int64_t NowMilliseconds() {
       .count();
 }
 
-void AddInfo(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddInfo(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* command = parent.add_subcommand("info", "Say where the store is, and how much is in it");
   OnStore(*command, options, outcome, [options](StoreSession& session) -> base::Status {
     const auto counts = CountAll(session.store, session.viewer);
@@ -130,7 +130,7 @@ ordered_json AttemptJson(const store::StoredAttempt& stored) {
           {"recording", JsonText(a.recording)}};
 }
 
-void AddAttempts(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddAttempts(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* command = parent.add_subcommand("attempts", "List attempts, the newest first, a page at a time");
   struct Arguments {
     store::AttemptFilter filter;
@@ -178,7 +178,7 @@ void AddAttempts(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddPercentile(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddPercentile(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* command = parent.add_subcommand(
       "percentile",
       "Compare a trainee, or a value, with a group: each trainee's latest completed attempt counts");
@@ -231,7 +231,7 @@ void AddPercentile(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddAddAttempt(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* command =
       parent.add_subcommand("add", "Keep a recorded attempt; it waits where the store is away");
   struct Arguments {
@@ -248,10 +248,7 @@ void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
       ->add_flag("--move", arguments->moves,
                  "It is in the store as somebody else's attempt, and is this trainee's")
       ->needs(command->get_option("--trainee"));
-  command->add_option("--threads", arguments->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*command, arguments->threads);
   AddStoreOptions(*command, options);
   command->callback([options, arguments, &outcome] {
     outcome.status = [&]() -> base::Status {
@@ -293,7 +290,7 @@ void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddDeliver(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddDeliver(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* command = parent.add_subcommand("deliver", "Bring waiting attempts into the store");
   auto has_held = std::make_shared<bool>(false);
   command->add_flag("--held", *has_held, "Also those of trainees that the store did not know");
@@ -322,7 +319,7 @@ void AddDeliver(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddTransfer(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddTransfer(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   auto file = std::make_shared<std::string>();
   CLI::App* exporting = parent.add_subcommand(
       "export",
@@ -367,7 +364,7 @@ void AddTransfer(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddBackup(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   auto file = std::make_shared<std::string>();
   CLI::App* backup = parent.add_subcommand("backup",
                                            "Write a checksummed copy of the store, also while others use it; "
@@ -397,10 +394,7 @@ void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
       ->add_flag("--accept", replaying->accepts,
                  "Let those that cannot be replayed count as they are, and say so wherever they show")
       ->needs(of_attempts);
-  verify->add_option("--threads", replaying->threads, "Of the solver; the result is the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*verify, replaying->threads);
   AddStoreOptions(*verify, options);
   verify->callback([checked, replaying, options, &outcome] {
     if (replaying->is_wanted) {
@@ -430,7 +424,7 @@ void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddKeeping(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddKeeping(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   auto days = std::make_shared<int>(0);
   CLI::App* retain =
       parent.add_subcommand("retain", "Say how long attempts are kept; trocar store tidy applies it");
@@ -496,7 +490,7 @@ void AddStoreOptions(CLI::App& command, const std::shared_ptr<StoreOptions>& opt
       ->type_name("URL");
   command.add_option("--as", options->viewer, "Ask as this person: see and do what their role allows")
       ->type_name("PSEUDONYM");
-  command.add_flag("--json", options->is_json, "Machine-readable");
+  AddJsonFlag(command, options->is_json);
 }
 
 void OnStore(CLI::App& command, const std::shared_ptr<StoreOptions>& options, Outcome& outcome,
@@ -513,15 +507,14 @@ void PrintStoreJson(const ordered_json& json) {
 }
 
 void AddStoreCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("store", "Trainees, groups and attempts: list, compare, back up, export, erase");
+  CLI::App* command = AddListed(app, "store");
   command->require_subcommand(1);
   auto options = std::make_shared<StoreOptions>();
   AddInfo(*command, options, outcome);
   AddStorePeopleCommands(*command, options, outcome);
   AddAttempts(*command, options, outcome);
   AddPercentile(*command, options, outcome);
-  AddAdd(*command, options, outcome);
+  AddAddAttempt(*command, options, outcome);
   AddDeliver(*command, options, outcome);
   AddTransfer(*command, options, outcome);
   AddBackup(*command, options, outcome);

@@ -23,6 +23,8 @@ struct StoreOptions {
   bool is_json = false;
 };
 
+using SharedStoreOptions = std::shared_ptr<StoreOptions>;
+
 /// The open store and who asks.
 struct StoreSession {
   store::Store store;
@@ -32,15 +34,14 @@ struct StoreSession {
 /// Opens the store, and says what was done to it where it was damaged.
 base::Result<StoreSession> OpenSession(const StoreOptions& options, store::StoreSettings settings = {});
 
-void AddStoreOptions(CLI::App& command, const std::shared_ptr<StoreOptions>& options);
+void AddStoreOptions(CLI::App& command, const SharedStoreOptions& options);
 
 /// A command that works on an open store, with the options above.
 using StoreWork = std::function<base::Status(StoreSession&)>;
-void OnStore(CLI::App& command, const std::shared_ptr<StoreOptions>& options, Outcome& outcome,
-             StoreWork work);
+void OnStore(CLI::App& command, const SharedStoreOptions& options, Outcome& outcome, StoreWork work);
 
 /// `trainee` and `group`.
-void AddStorePeopleCommands(CLI::App& parent, const std::shared_ptr<StoreOptions>& options, Outcome& outcome);
+void AddStorePeopleCommands(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome);
 
 /// How `trocar store verify --attempts` goes about it.
 struct ReplayArguments {

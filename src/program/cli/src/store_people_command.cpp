@@ -19,13 +19,12 @@ using host::Say;
 namespace {
 
 using nlohmann::ordered_json;
-using Options = std::shared_ptr<StoreOptions>;
 
 void SayDone(const StoreOptions& options) {
   options.is_json ? PrintStoreJson({{"done", true}}) : Say("done\n");
 }
 
-void AddAdd(CLI::App& trainee, const Options& options, Outcome& outcome) {
+void AddAddTrainee(CLI::App& trainee, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* command = trainee.add_subcommand("add", "Add a person under a pseudonym");
   struct Arguments {
     std::string name, pseudonym, role = "trainee";
@@ -56,7 +55,7 @@ void AddAdd(CLI::App& trainee, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddList(CLI::App& trainee, const Options& options, Outcome& outcome) {
+void AddList(CLI::App& trainee, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* command =
       trainee.add_subcommand("list", "List people, with their names where this computer knows them");
   struct Arguments {
@@ -110,7 +109,7 @@ void AddList(CLI::App& trainee, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddChange(CLI::App& trainee, const Options& options, Outcome& outcome) {
+void AddChange(CLI::App& trainee, const SharedStoreOptions& options, Outcome& outcome) {
   struct Arguments {
     std::string pseudonym, to, name, role;
   };
@@ -151,7 +150,7 @@ void AddChange(CLI::App& trainee, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddErase(CLI::App& trainee, const Options& options, Outcome& outcome) {
+void AddErase(CLI::App& trainee, const SharedStoreOptions& options, Outcome& outcome) {
   struct Arguments {
     std::string pseudonym, folder;
     bool is_sure = false;
@@ -199,7 +198,7 @@ void AddErase(CLI::App& trainee, const Options& options, Outcome& outcome) {
   });
 }
 
-void AddGroups(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddGroups(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* group = parent.add_subcommand("group", "Groups of people, such as a course's participants");
   group->require_subcommand(1);
   auto name = std::make_shared<std::string>(), person = std::make_shared<std::string>();
@@ -244,11 +243,11 @@ void AddGroups(CLI::App& parent, const Options& options, Outcome& outcome) {
 
 }  // namespace
 
-void AddStorePeopleCommands(CLI::App& parent, const Options& options, Outcome& outcome) {
+void AddStorePeopleCommands(CLI::App& parent, const SharedStoreOptions& options, Outcome& outcome) {
   CLI::App* trainee =
       parent.add_subcommand("trainee", "People: trainees, and instructors and administrators, too");
   trainee->require_subcommand(1);
-  AddAdd(*trainee, options, outcome);
+  AddAddTrainee(*trainee, options, outcome);
   AddList(*trainee, options, outcome);
   AddChange(*trainee, options, outcome);
   AddErase(*trainee, options, outcome);

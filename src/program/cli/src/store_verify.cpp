@@ -20,7 +20,7 @@ using store::Verification;
 using store::WhyUnverified;
 
 /// By the thresholds that the window judges by; nothing where there are none.
-std::optional<bool> Judge(const store::Attempt& attempt, const record::CourseStep& step) {
+std::optional<bool> JudgeStored(const store::Attempt& attempt, const record::CourseStep& step) {
   const assessment::AttemptResult result{attempt.is_completed, {attempt.metrics}};
   if (step.IsSet()) {
     const auto course = assessment::FindCourse(step.course);
@@ -38,7 +38,7 @@ std::optional<bool> Judge(const store::Attempt& attempt, const record::CourseSte
 }
 
 /// What a replay makes of a stored attempt.
-base::Result<store::Attempt> Replay(const store::Attempt& stored, int threads, const char* label) {
+base::Result<store::Attempt> ReplayStored(const store::Attempt& stored, int threads, const char* label) {
   store::Attempt attempt = stored;
   const auto cannot = [&](WhyUnverified why) {
     if (attempt.mark.state == Verification::kUnverified) attempt.mark.why = why;
@@ -67,7 +67,7 @@ base::Result<store::Attempt> Replay(const store::Attempt& stored, int threads, c
   attempt.metrics = replayed->metrics;
   attempt.outcome = replayed->outcome;
   if (step.IsSet()) attempt.outcome = record::WithCourseStep(attempt.outcome, step);
-  attempt.is_passed = Judge(attempt, step);
+  attempt.is_passed = JudgeStored(attempt, step);
   return attempt;
 }
 
@@ -95,7 +95,7 @@ base::Status ReplayAttempts(StoreSession& session, const ReplayArguments& argume
     if (page->empty()) break;
     for (const store::StoredAttempt& stored : *page) {
       after = stored.id;
-      auto attempt = Replay(stored.attempt, arguments.threads, "replaying");
+      auto attempt = ReplayStored(stored.attempt, arguments.threads, "replaying");
       if (!attempt.ok()) return attempt.error();
       if (arguments.accepts && attempt->mark.state == Verification::kUnverified)
         attempt->mark.state = Verification::kAccepted;

@@ -121,10 +121,7 @@ base::Status RunPlan(const StudyArguments& arguments, Outcome& outcome) {
 }  // namespace
 
 void AddStudyCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand("study",
-                                         "Run a plan of parameters, patients, surgeons and seeds, here or on "
-                                         "a cluster; without a plan, find out which "
-                                         "metrics separate scripted novices from experts");
+  CLI::App* command = AddListed(app, "study");
   auto a = std::make_shared<StudyArguments>();
   a->options.tasks = {"instrument_navigation"};
   command

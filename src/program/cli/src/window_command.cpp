@@ -53,7 +53,7 @@ std::vector<std::string> FormatArguments(const WindowOptions& options) {
 }  // namespace
 
 void AddWindowCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand("window", "Open the simulator: two instruments, mouse and keyboard");
+  CLI::App* command = AddListed(app, "window");
   auto options = std::make_shared<WindowOptions>();
   command->add_option("scene", options->scene, "Scene file (JSON); the built-in patient if not given")
       ->type_name("FILE");

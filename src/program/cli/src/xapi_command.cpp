@@ -9,6 +9,7 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "common_options.h"
 #include "console.h"
 #include "pseudonym_option.h"
 #include "trocar/report/xapi.h"
@@ -50,7 +51,7 @@ base::Status Queue(const XapiArguments& arguments) {
   return {};
 }
 
-base::Status List(const XapiArguments& arguments) {
+base::Status ListWaiting(const XapiArguments& arguments) {
   const report::XapiQueue queue = OpenQueue(arguments);
   for (const report::XapiStatement& statement : queue.List()) host::PrintLine(statement.json);
   for (const auto& path : queue.ListRefused())
@@ -96,33 +97,27 @@ void AddQueueOption(CLI::App& command, XapiArguments& arguments) {
 }  // namespace
 
 void AddXapiCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* xapi = app.add_subcommand("xapi", "Tell a learning record store about attempts (xAPI 1.0.3)");
+  CLI::App* xapi = AddListed(app, "xapi");
   xapi->require_subcommand(1);
   auto arguments = std::make_shared<XapiArguments>();
   CLI::App* queue =
       xapi->add_subcommand("queue", "Make the statements of a recorded attempt; they wait on the disk");
   queue->add_option("file", arguments->file, "Recording")->required()->type_name("FILE");
-  queue->add_option("--person", arguments->person, "Pseudonym of whose attempt it is; no name ever leaves")
-      ->required()
-      ->check(ComplainOfPseudonym)
-      ->type_name("PSEUDONYM");
+  AddPseudonymOption(*queue, "--person", arguments->person,
+                     "Pseudonym of whose attempt it is; no name ever leaves")
+      ->required();
   queue->add_option("--home-page", arguments->home_page, "Of the accounts: an address of the training centre")
       ->required()
       ->type_name("URL");
   queue->add_option("--verdict", arguments->verdict, "By the centre's thresholds: passed or failed")
       ->check(CLI::IsMember({"passed", "failed"}))
       ->type_name("VERDICT");
-  queue
-      ->add_option("--threads", arguments->threads,
-                   "Of the solver; the statements are the same for any number")
-      ->check(CLI::Range(1, 256))
-      ->type_name("T")
-      ->capture_default_str();
+  AddThreadsOption(*queue, arguments->threads, "Of the solver; the statements are the same for any number");
   AddQueueOption(*queue, *arguments);
   queue->callback([arguments, &outcome] { outcome.status = Queue(*arguments); });
   CLI::App* list = xapi->add_subcommand("list", "Show the statements that wait, one in a line");
   AddQueueOption(*list, *arguments);
-  list->callback([arguments, &outcome] { outcome.status = List(*arguments); });
+  list->callback([arguments, &outcome] { outcome.status = ListWaiting(*arguments); });
   CLI::App* deliver = xapi->add_subcommand(
       "deliver", "Send what waits; each statement arrives once, however often it is tried");
   deliver->add_option("--endpoint", arguments->endpoint, "Address of the store; http only on this machine")

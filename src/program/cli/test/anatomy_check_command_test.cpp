@@ -13,9 +13,6 @@
 namespace trocar::cli {
 namespace {
 
-const std::filesystem::path kPatient =
-    std::filesystem::path(TROCAR_SOURCE_DIR) / "assets/patients/visible-human-male/patient";
-
 std::vector<std::string> KeysOf(const nlohmann::ordered_json& object) {
   std::vector<std::string> keys;
   for (const auto& item : object.items()) keys.push_back(item.key());
@@ -23,7 +20,7 @@ std::vector<std::string> KeysOf(const nlohmann::ordered_json& object) {
 }
 
 TEST(AnatomyCheckCommand, IsSilentAboutTheBuiltInPatient) {
-  const Printed run = RunTrocar({"anatomy", "check", kPatient.string(), "--json"});
+  const Printed run = RunTrocar({"anatomy", "check", kBuiltInPatient, "--json"});
   EXPECT_EQ(run.status, 0) << run.err << run.out;
   const auto json = nlohmann::ordered_json::parse(run.out);
   EXPECT_EQ(KeysOf(json), (std::vector<std::string>{"meshes", "findings"}));
@@ -36,7 +33,7 @@ TEST(AnatomyCheckCommand, IsSilentAboutTheBuiltInPatient) {
   EXPECT_EQ(json["meshes"][0]["closed"], true);
   EXPECT_EQ(json["meshes"][0]["self_intersections"], 0);
   EXPECT_NEAR(json["meshes"][0]["volume_ml"].get<double>(), 1811.484, 0.001);
-  const Printed table = RunTrocar({"anatomy", "check", kPatient.string()});
+  const Printed table = RunTrocar({"anatomy", "check", kBuiltInPatient});
   EXPECT_EQ(table.status, 0);
   EXPECT_NE(table.out.find("No findings."), std::string::npos) << table.out;
 }
@@ -44,7 +41,7 @@ TEST(AnatomyCheckCommand, IsSilentAboutTheBuiltInPatient) {
 TEST(AnatomyCheckCommand, NamesFindingsOfAFolderThatCannotBeOperatedOn) {
   test::TemporaryFolder folder;
   const auto copy = folder.Path() / "patient";
-  std::filesystem::copy(kPatient, copy);
+  std::filesystem::copy(kBuiltInPatient, copy);
   std::string text = *host::ReadFile(copy / "patient.json");
   const std::string from = "\"to\":\"common_bile_duct\"";
   ASSERT_NE(text.find(from), std::string::npos);

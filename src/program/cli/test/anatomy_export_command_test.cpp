@@ -12,12 +12,10 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kPatient = std::string(TROCAR_SOURCE_DIR) + "/assets/patients/visible-human-male/patient";
-
 TEST(AnatomyExportCommand, WritesWhatItSays) {
   test::TemporaryFolder folder;
   const std::string out = (folder.Path() / "glb").string();
-  const Printed run = RunTrocar({"anatomy", "export", kPatient, "--format", "gltf", "-o", out});
+  const Printed run = RunTrocar({"anatomy", "export", kBuiltInPatient, "--format", "gltf", "-o", out});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out, "Wrote " + out + "/patient.glb\n");
   EXPECT_TRUE(std::filesystem::exists(out + "/patient.glb"));
@@ -32,11 +30,11 @@ TEST(AnatomyExportCommand, RefusesBadInputWithItsCodeAndWritesNothing) {
     words.insert(words.end(), more.begin(), more.end());
     return RunTrocar(words);
   };
-  const Printed format = run(kPatient, "dae");
+  const Printed format = run(kBuiltInPatient, "dae");
   EXPECT_EQ(format.status, 2);
   EXPECT_THAT(format.err, HasSubstr("E-CLI-001"));
   EXPECT_THAT(format.err, HasSubstr("obj, ply, stl, gltf, vtk"));
-  EXPECT_EQ(run(kPatient, "ply", {"--ascii"}).status, 2);
+  EXPECT_EQ(run(kBuiltInPatient, "ply", {"--ascii"}).status, 2);
   const Printed missing = run("/nonexistent", "obj");
   EXPECT_EQ(missing.status, 1);
   EXPECT_THAT(missing.err, HasSubstr("E-IO-001"));

@@ -15,8 +15,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kPatient = std::string(TROCAR_SOURCE_DIR) + "/assets/patients/visible-human-male/patient";
-
 std::size_t CountColour(const render::Image& image, bool (*is_wanted)(int, int, int)) {
   std::size_t count = 0;
   for (int y = 0; y < image.height; ++y) {
@@ -32,8 +30,8 @@ TEST(AnatomyViewCommand, DrawsRegionsInTheirColours) {
   test::TemporaryFolder folder;
   const auto draw = [&](std::vector<std::string> more) {
     const std::string file = (folder.Path() / "view.png").string();
-    std::vector<std::string> words = {"anatomy", "view", kPatient,   "--png", file,
-                                      "--width", "300",  "--height", "240"};
+    std::vector<std::string> words = {"anatomy", "view", kBuiltInPatient, "--png", file,
+                                      "--width", "300",  "--height",      "240"};
     words.insert(words.end(), more.begin(), more.end());
     const Printed run = RunTrocar(words);
     EXPECT_EQ(run.status, 0) << run.err;
@@ -56,10 +54,10 @@ TEST(AnatomyViewCommand, DrawsRegionsInTheirColours) {
 TEST(AnatomyViewCommand, RefusesWhatItCannotShow) {
   test::TemporaryFolder folder;
   const std::string file = (folder.Path() / "view.png").string();
-  const Printed side = RunTrocar({"anatomy", "view", kPatient, "--png", file, "--from", "above"});
+  const Printed side = RunTrocar({"anatomy", "view", kBuiltInPatient, "--png", file, "--from", "above"});
   EXPECT_EQ(side.status, 2);
   EXPECT_THAT(side.err, HasSubstr("umbilicus or all"));
-  const Printed focus = RunTrocar({"anatomy", "view", kPatient, "--png", file, "--focus", "spleen"});
+  const Printed focus = RunTrocar({"anatomy", "view", kBuiltInPatient, "--png", file, "--focus", "spleen"});
   EXPECT_EQ(focus.status, 1);
   EXPECT_THAT(focus.err, HasSubstr("cystic_duct"));
   EXPECT_EQ(RunTrocar({"anatomy", "view", "/nonexistent", "--png", file}).status, 1);
@@ -69,19 +67,19 @@ TEST(AnatomyViewCommand, RefusesWhatItCannotShow) {
 TEST(AnatomyPhantomCommand, WritesEverythingItNames) {
   test::TemporaryFolder folder;
   const std::string out = (folder.Path() / "phantom").string();
-  const Printed run = RunTrocar({"anatomy", "phantom", "--patient", kPatient, "-o", out, "--pixel-mm", "4",
-                                 "--slice-mm", "8", "--every", "2"});
+  const Printed run = RunTrocar({"anatomy", "phantom", "--patient", kBuiltInPatient, "-o", out, "--pixel-mm",
+                                 "4", "--slice-mm", "8", "--every", "2"});
   EXPECT_EQ(run.status, 0) << run.err;
   for (const char* name :
        {"slices/phantom-0001.png", "labels.nrrd", "control_points.json", "patient/patient.json"})
     EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
   EXPECT_THAT(run.out, HasSubstr("Next: trocar anatomy build"));
   // never over what is there
-  const Printed again = RunTrocar({"anatomy", "phantom", "--patient", kPatient, "-o", out});
+  const Printed again = RunTrocar({"anatomy", "phantom", "--patient", kBuiltInPatient, "-o", out});
   EXPECT_EQ(again.status, 1);
   EXPECT_THAT(again.err, HasSubstr("no empty folder"));
   const Printed both =
-      RunTrocar({"anatomy", "phantom", "--patient", kPatient, "--set", "hydrops=1", "-o", out + "2"});
+      RunTrocar({"anatomy", "phantom", "--patient", kBuiltInPatient, "--set", "hydrops=1", "-o", out + "2"});
   EXPECT_EQ(both.status, 2);
   EXPECT_EQ(RunTrocar({"anatomy", "phantom", "--noise", "99", "-o", out + "2"}).status, 2);
   EXPECT_FALSE(std::filesystem::exists(out + "2"));
@@ -91,7 +89,7 @@ TEST(AnatomyEditCommand, HelpSaysWhereChangesAreKept) {
   const Printed run = RunTrocar({"anatomy", "edit", "--help"});
   EXPECT_EQ(run.status, 0);
   EXPECT_THAT(run.out, HasSubstr("PATIENT.autosave"));
-  EXPECT_EQ(RunTrocar({"anatomy", "edit", kPatient, "--tool", "saw"}).status, 2);
+  EXPECT_EQ(RunTrocar({"anatomy", "edit", kBuiltInPatient, "--tool", "saw"}).status, 2);
 }
 
 }  // namespace

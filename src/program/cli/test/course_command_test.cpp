@@ -12,8 +12,6 @@
 namespace trocar::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// A course of one easy step and one after it, with thresholds that the scripted expert meets.
 const std::string kCourse =
     R"({"format": "trocar-course", "version": 1, "name": "Ours", "about": "A test.", "steps": [

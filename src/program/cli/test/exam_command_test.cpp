@@ -12,8 +12,6 @@
 namespace trocar::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // What docs/exams.md shows, from the keys to the verification, and each way to cheat.
 TEST(ExamCommand, SealsRunsCertifiesAndVerifies) {
   test::TemporaryFolder folder;

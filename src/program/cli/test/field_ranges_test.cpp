@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "run_trocar.h"
 #include "trocar/device/device_store.h"
 #include "trocar/files/operation_parameters_file.h"
 #include "trocar/files/patient_file.h"
@@ -21,9 +22,7 @@ namespace trocar::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-const fs::path kRoot = TROCAR_SOURCE_DIR;
+const fs::path kSource = TROCAR_SOURCE_DIR;
 
 Json Load(const fs::path& path) {
   const auto text = host::ReadFile(path);
@@ -35,7 +34,7 @@ Json Load(const fs::path& path) {
 class Schema {
  public:
   explicit Schema(const std::string& name)
-      : root_(Load(kRoot / "schemas" / (name + ".schema.json"))), name_(name) {}
+      : root_(Load(kSource / "schemas" / (name + ".schema.json"))), name_(name) {}
 
   const Json& Root() const { return root_; }
   const std::string& Name() const { return name_; }
@@ -272,10 +271,10 @@ Json Sheets() {
 
 /// The delivered operation with every number that a scene with a patient may hold.
 Json OperationScene() {
-  Json scene = Load(kRoot / "scenes/cholecystectomy.json");
-  scene["patient"] = (kRoot / "assets/patients/visible-human-male/patient").string();
+  Json scene = Load(kSource / "scenes/cholecystectomy.json");
+  scene["patient"] = (kSource / "assets/patients/visible-human-male/patient").string();
   for (Json& material : scene["materials"])
-    material["file"] = (kRoot / "scenes" / material["file"].get<std::string>()).string();
+    material["file"] = (kSource / "scenes" / material["file"].get<std::string>()).string();
   scene["materials"][0] = Figures();
   for (const char* hand : {"left", "right"}) scene["instruments"][hand]["spin_deg"] = 10;
   scene["laparoscope"]["post_deg"] = 0;
@@ -301,7 +300,7 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnScenes) {
 }
 
 TEST_F(FieldRanges, SchemaAndReaderAgreeOnOperationParameters) {
-  ExpectAgreement("operation", {Load(kRoot / files::kOperationParametersFile)}, [this](const Json& json) {
+  ExpectAgreement("operation", {Load(kSource / files::kOperationParametersFile)}, [this](const Json& json) {
     return ErrorOf(files::ReadOperationParameters(Written("parameters.json", json)));
   });
 }
@@ -379,7 +378,7 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnScriptsAndMaterials) {
 }
 
 TEST_F(FieldRanges, SchemaAndReaderAgreeOnPatientsAndDevices) {
-  const fs::path patient = kRoot / "assets/patients/visible-human-male/patient";
+  const fs::path patient = kSource / "assets/patients/visible-human-male/patient";
   fs::copy(patient, folder_.Path() / "patient", fs::copy_options::recursive);
   Json json = Load(patient / "patient.json");
   json["parameters"] = {{{"name", "volume"}, {"value", 1}, {"unit", "ml"}, {"source", "a test"}}};
@@ -458,7 +457,7 @@ TEST_F(FieldRanges, ALongListOfMaterialsCostsNoMoreThanItsLength) {
 
 // a mesh in micrometres, or in metres, is said to be one
 TEST_F(FieldRanges, RefusesAPatientAThousandTimesTooLargeOrTooSmall) {
-  const auto patient = files::ReadPatient(kRoot / "assets/patients/visible-human-male/patient");
+  const auto patient = files::ReadPatient(kSource / "assets/patients/visible-human-male/patient");
   ASSERT_TRUE(patient.ok());
   for (const double scale : {1.0, 1e6, 1e3, 1e-3}) {
     patient::Patient scaled = *patient;

@@ -16,8 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-using Json = nlohmann::json;
-
 /// A second and a half of the demonstration.
 class MetricsCommand : public testing::Test {
  protected:

@@ -10,8 +10,6 @@
 namespace trocar::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 TEST(PlayCommand, ListsTasksAndSurgeons) {
   const Printed run = RunTrocar({"play", "--list"});
   EXPECT_EQ(run.status, 0) << run.err;

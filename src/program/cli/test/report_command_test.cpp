@@ -2,7 +2,6 @@
 // Reports, ratings and learning records from the command line, of an attempt that a scripted surgeon made.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -21,17 +20,11 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Exit status of tools/check-schemas.
-int CheckSchemas(const std::string& arguments) {
-  const std::filesystem::path root = TROCAR_SOURCE_DIR;
-  const int status = std::system(
-      ("'" + (root / "tools/check-schemas").string() + "' " + arguments + " > /dev/null 2>&1").c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
 bool IsValid(const std::string& file) {
-  return CheckSchemas("'" + file + "'") == 0;
+  return CheckSchemas("'" + file + "' >/dev/null 2>&1") == 0;
 }
 bool HasSchemas() {
-  return CheckSchemas("--check") == 0;
+  return CheckSchemas("--check >/dev/null 2>&1") == 0;
 }
 
 class ReportCommand : public testing::Test {

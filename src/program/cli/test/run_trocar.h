@@ -3,14 +3,22 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "trocar/cli/run_command.h"
 
 namespace trocar::cli {
+
+using Json = nlohmann::ordered_json;
+
+inline const std::string kBuiltInPatient =
+    std::string(TROCAR_SOURCE_DIR) + "/assets/patients/visible-human-male/patient";
 
 struct Printed {
   int status = 0;
@@ -28,6 +36,14 @@ inline Printed RunTrocar(std::vector<std::string> words) {
   std::fflush(stdout);
   const std::string out = testing::internal::GetCapturedStdout();
   return {status, out, testing::internal::GetCapturedStderr()};
+}
+
+/// Exit status of tools/check-schemas.
+/// \param arguments  in the shell's words, such as where its output goes
+inline int CheckSchemas(const std::string& arguments) {
+  const int status =
+      std::system(("'" + std::string(TROCAR_SOURCE_DIR) + "/tools/check-schemas' " + arguments).c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 }  // namespace trocar::cli

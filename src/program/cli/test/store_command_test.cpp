@@ -16,7 +16,6 @@ namespace trocar::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::Not;
 

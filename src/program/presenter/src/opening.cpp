@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "trocar/device/device_spec.h"
 #include "trocar/host/log.h"
 #include "trocar/host/translate.h"
 #include "trocar/presenter/scene_choice.h"
@@ -81,28 +80,16 @@ void SimulatorPresenter::GiveUpOpening() {
 
 /// Shows a simulation, paused. \return false where something failed
 bool SimulatorPresenter::Use(simulation::Simulation simulation, record::Description description) {
-  const auto fail = [this](const base::Error& error) {
-    Fail(error);
+  auto control = SessionControl::Make(std::move(simulation), MakeSessionOptions(std::move(description)));
+  if (!control) {
+    Fail(control.error());
     return false;
-  };
-  std::optional<session::AttemptKeeping> keeping;
-  // what is tried in the tutorial is no attempt
-  if (!options_.recordings.empty() && !tutorial_.IsOn()) {
-    keeping = {options_.recordings, std::move(description), {}, hooks_.on_end};
-    if (hooks_.on_begin) {
-      keeping->on_begin = [begin = hooks_.on_begin, step = start_ ? start_->step : centre::StepName()](
-                              const std::filesystem::path& path) { begin(path, step); };
-    }
   }
-  auto control = SessionControl::Make(std::move(simulation), std::move(keeping));
-  if (!control) return fail(control.error());
   control_ = std::move(control).value();
   has_script_ = control_->HasScript();
   control_->SetMirrorFulcrum(settings_.is_fulcrum_mirrored);
   control_->SetDepthSnap(settings_.has_depth_snap);
-  if (const auto used = UseDevices(); !used) return fail(used.error());
-  if (options_.igtl_port >= 0) {
-    if (const base::Status served = control_->Serve(options_.igtl_port); !served) return fail(served.error());
+  if (control_->ServedPort() >= 0) {
     host::Log(host::LogLevel::kInfo,
               "OpenIGTLink: viewers may connect to localhost:" + std::to_string(control_->ServedPort()));
   }
@@ -160,24 +147,27 @@ void SimulatorPresenter::TakeOver(Branch branch) {
   Refresh();
 }
 
-/// What the options name, with the person's settings.
-base::Status SimulatorPresenter::UseDevices() {
-  const device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
+session::SessionOptions SimulatorPresenter::MakeSessionOptions(record::Description description) {
+  session::SessionOptions options;
+  options.device = options_.device;
+  options.haptics = options_.haptics;
+  if (options_.igtl_port >= 0) options.viewers.emplace().port = options_.igtl_port;
+  device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
   if (loaded.complaint) host::Log(host::LogLevel::kWarning, loaded.complaint->Text());
-  for (const std::string& key : screen_->UseKeys(loaded.store.keys)) {
+  options.store = std::move(loaded.store);
+  for (const std::string& key : screen_->UseKeys(options.store.keys)) {
     host::Log(
         host::LogLevel::kWarning,
         "the key \"" + key + "\" of the device settings can have no act; docs/devices.md says which can");
   }
-  if (!options_.haptics.empty()) {
-    const device::ButtonMap buttons = loaded.store.Buttons("haptics");
-    if (auto started = control_->UseHaptics(options_.haptics, buttons); !started) return started;
+  // what is tried in the tutorial is no attempt
+  if (options_.recordings.empty() || tutorial_.IsOn()) return options;
+  options.keeping = {options_.recordings, std::move(description), {}, hooks_.on_end};
+  if (hooks_.on_begin) {
+    options.keeping->on_begin = [begin = hooks_.on_begin, step = start_ ? start_->step : centre::StepName()](
+                                    const std::filesystem::path& path) { begin(path, step); };
   }
-  if (options_.device.empty()) return {};
-  auto driver = device::MakeDriver(options_.device, loaded.store, device::SystemClock());
-  if (!driver) return driver.error();
-  control_->UseDevice(std::move(driver).value(), device::FindButtons(options_.device, loaded.store));
-  return {};
+  return options;
 }
 
 void SimulatorPresenter::Open(const TaskRequest& request) {

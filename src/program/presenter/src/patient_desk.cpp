@@ -23,7 +23,7 @@ base::Error Cancelled() {
 }
 
 /// "Case 3 (CT).nii.gz": "Case-3-CT"
-std::string NameOf(const fs::path& labels) {
+std::string NameOfLabels(const fs::path& labels) {
   std::string name = labels.filename().string();
   name = name.substr(0, name.find('.'));
   std::string kept;
@@ -111,7 +111,8 @@ void PatientDesk::Generate(std::uint64_t seed) {
 }
 
 void PatientDesk::Import(const fs::path& labels) {
-  Make(FreeName(folder_, NameOf(labels)), host::TranslateWith("Reading {1}", {labels.filename().string()}),
+  Make(FreeName(folder_, NameOfLabels(labels)),
+       host::TranslateWith("Reading {1}", {labels.filename().string()}),
        [labels](const fs::path& folder, Work& work) -> base::Status {
          anatomy::LabelOptions options;
          options.labels = labels;

@@ -98,7 +98,7 @@ std::string DescribeFindings(const patient::Patient& patient) {
   return sizes + (sizes.empty() || variations.empty() ? "" : "; ") + variations;
 }
 
-PatientEntry Describe(const fs::path& folder) {
+PatientEntry DescribePatient(const fs::path& folder) {
   PatientEntry entry;
   entry.folder = folder;
   entry.name = ShortPatientName(folder);
@@ -127,7 +127,7 @@ std::vector<PatientEntry> ListPatients(const fs::path& folder, const fs::path& c
   std::vector<PatientEntry> entries;
   const auto data = host::FindDataFolder();
   if (data.ok()) {
-    entries.push_back(Describe(*data / kBuiltIn));
+    entries.push_back(DescribePatient(*data / kBuiltIn));
     entries.back().folder.clear();
     entries.back().about = host::Translate("Built in; measured and trained on most");
   }
@@ -142,7 +142,7 @@ std::vector<PatientEntry> ListPatients(const fs::path& folder, const fs::path& c
   std::sort(folders.begin(), folders.end());
   if (!chosen.empty() && std::find(folders.begin(), folders.end(), chosen) == folders.end())
     folders.push_back(chosen);
-  for (const fs::path& one : folders) entries.push_back(Describe(one));
+  for (const fs::path& one : folders) entries.push_back(DescribePatient(one));
   return entries;
 }
 

@@ -190,65 +190,67 @@ std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) 
   // a grasp begins with no force yet: "0.0 N" would say nothing
   const std::string force = event.force < 0.05 ? "" : ", " + FormatForce(event.force);
   switch (event.kind) {
-    case scene::EventKind::kGrasp:
+    case surgery::FactKind::kGrasp:
       if (event.object >= 0)
         return host::TranslateWith("{1}: grasped {2}", {hand, ObjectLabel(scene, event.object)}) + force;
       return host::TranslateWith("{1}: grasped the {2}", {hand, organ}) + force;
-    case scene::EventKind::kRelease:
+    case surgery::FactKind::kRelease:
       if (event.object >= 0)
         return host::TranslateWith("{1}: let {2} go", {hand, ObjectLabel(scene, event.object)});
       return host::TranslateWith("{1}: let the {2} go", {hand, organ});
-    case scene::EventKind::kSlip:
+    case surgery::FactKind::kSlip:
       return host::TranslateWith("{1}: the {2} slipped", {hand, organ}) + force;
-    case scene::EventKind::kGraspMissed:
+    case surgery::FactKind::kGraspMissed:
       return host::TranslateWith("{1}: closed on nothing; open the jaws and go deeper", {hand});
-    case scene::EventKind::kStateRestored:
+    case surgery::FactKind::kStateRestored:
       return host::TranslateWith("{1}: was not finite, last good state restored (E-SIM-001)",
                                  {Capitalised(organ)});
-    case scene::EventKind::kOrganFrozen:
+    case surgery::FactKind::kOrganFrozen:
       return host::TranslateWith("{1}: held still, press R to reset (E-SIM-002)", {Capitalised(organ)});
-    case scene::EventKind::kTear:
+    case surgery::FactKind::kTear:
       if (event.organ < 0) return host::Translate("Fibres of connective tissue tore");
       return static_cast<std::size_t>(event.organ) < scene.patient.organs.size()
                  ? host::TranslateWith("{1}: an attachment tore", {Capitalised(organ)})
                  : host::Translate("A duct or vessel was torn off");
-    case scene::EventKind::kPinchDamage:
+    case surgery::FactKind::kPinchDamage:
       return host::TranslateWith("{1}: pinched the {2} too hard", {hand, organ}) + force;
-    case scene::EventKind::kToolsTouch:
+    case surgery::FactKind::kToolsTouch:
       return host::Translate("The instruments met");
-    case scene::EventKind::kExchangeRefused:
+    case surgery::FactKind::kExchangeRefused:
       return host::TranslateWith("{1}: open the jaws and let go before the tool is exchanged", {hand});
-    case scene::EventKind::kClipClosed:
+    case surgery::FactKind::kClipClosed:
       return host::TranslateWith("{1}: closed a clip on the {2}", {hand, organ});
-    case scene::EventKind::kTubeCut:
+    case surgery::FactKind::kTubeCut:
       return host::TranslateWith("{1}: cut the {2}", {hand, organ});
-    case scene::EventKind::kNoClipsLeft:
+    case surgery::FactKind::kNoClipsLeft:
       return host::TranslateWith("{1}: there is no clip left; exchange the tool for a full one", {hand});
-    case scene::EventKind::kUsedOutside:
+    case surgery::FactKind::kUsedOutside:
       return host::TranslateWith("{1}: the tool is out of its trocar; push it in before it is used", {hand});
-    case scene::EventKind::kClipSlipped:
+    case surgery::FactKind::kClipSlipped:
       return host::TranslateWith("A clip slipped off the {1}", {organ});
-    case scene::EventKind::kStoneSpilled:
+    case surgery::FactKind::kStoneSpilled:
       return host::Translate("A stone spilled out of the gallbladder");
-    case scene::EventKind::kStoneTaken:
+    case surgery::FactKind::kStoneTaken:
       return host::TranslateWith("{1}: took a stone", {hand});
-    case scene::EventKind::kStoneRetrieved:
+    case surgery::FactKind::kStoneRetrieved:
       return host::TranslateWith("{1}: retrieved a stone", {hand});
-    case scene::EventKind::kOperationError:
+    case surgery::FactKind::kVerdict:
       return host::Translate(
           cholecystectomy::ExplanationOf(static_cast<cholecystectomy::OperationError>(event.error)));
+    default:
+      break;  // what goes on tick by tick is no event
   }
   return "";
 }
 
 bool IsWarning(const scene::Event& event) noexcept {
-  const scene::EventKind kind = event.kind;
+  const surgery::FactKind kind = event.kind;
   // blunt dissection tears fibres: that is no fault
-  if (kind == scene::EventKind::kTear) return event.organ >= 0;
-  return kind == scene::EventKind::kSlip || kind == scene::EventKind::kStateRestored ||
-         kind == scene::EventKind::kOrganFrozen || kind == scene::EventKind::kPinchDamage ||
-         kind == scene::EventKind::kClipSlipped || kind == scene::EventKind::kStoneSpilled ||
-         kind == scene::EventKind::kOperationError;
+  if (kind == surgery::FactKind::kTear) return event.organ >= 0;
+  return kind == surgery::FactKind::kSlip || kind == surgery::FactKind::kStateRestored ||
+         kind == surgery::FactKind::kOrganFrozen || kind == surgery::FactKind::kPinchDamage ||
+         kind == surgery::FactKind::kClipSlipped || kind == surgery::FactKind::kStoneSpilled ||
+         kind == surgery::FactKind::kVerdict;
 }
 
 std::string StageLabel(simulation::Stage stage) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "trocar/device/force_device_spec.h"
 #include "trocar/presenter/guides.h"
 #include "trocar/presenter/level_horizon.h"
 #include "trocar/presenter/pointer_map.h"
@@ -20,6 +19,8 @@ using device::HandSample;
 using instrument::TrocarJoints;
 using session::JointsOf;
 using session::SampleOf;
+
+constexpr Channel kChannels[] = {device::kLeftHand, device::kRightHand, device::kLaparoscope};
 
 /// Where the laparoscope looks at, ahead of its lens: sets how fast it follows the pointer [m].
 constexpr double kLookDistance = 0.08;
@@ -50,11 +51,12 @@ device::MouseKeyboardSettings DeviceSettings(const scene::Scene& scene) {
 
 }  // namespace
 
-base::Result<std::unique_ptr<SessionControl>> SessionControl::Make(
-    simulation::Simulation simulation, std::optional<session::AttemptKeeping> keeping) {
+base::Result<std::unique_ptr<SessionControl>> SessionControl::Make(simulation::Simulation simulation,
+                                                                   const session::SessionOptions& options) {
   const device::MouseKeyboardSettings settings = DeviceSettings(simulation.GetScene());
-  std::unique_ptr<SessionControl> control(
-      new SessionControl(std::move(simulation), settings, std::move(keeping)));
+  auto session = session::Session::Open(std::move(simulation), options);
+  if (!session) return session.error();
+  std::unique_ptr<SessionControl> control(new SessionControl(std::move(*session), settings));
   if (const base::Status status = control->device_.Configure(); !status) return status.error();
   if (const base::Status status = control->device_.Activate(); !status) return status.error();
   control->PlaceAtHome();
@@ -62,20 +64,25 @@ base::Result<std::unique_ptr<SessionControl>> SessionControl::Make(
   return control;
 }
 
-SessionControl::SessionControl(simulation::Simulation simulation,
-                               const device::MouseKeyboardSettings& settings,
-                               std::optional<session::AttemptKeeping> keeping)
-    : runner_(std::move(simulation), &haptic_link_, std::move(keeping)),
-      device_hands_(runner_.GetScene()),
-      stylus_hands_(runner_.GetScene()),
-      device_(settings) {}
+SessionControl::SessionControl(std::unique_ptr<session::Session> session,
+                               const device::MouseKeyboardSettings& settings)
+    : session_(std::move(session)), device_(settings) {}
 
 void SessionControl::PlaceAtHome() {
-  const scene::Scene& scene = runner_.GetScene();
+  const scene::Scene& scene = GetScene();
   device_.ReleaseAll();
   device_.Place(device::kLeftHand, SampleOf(scene.instruments[instrument::kLeft].home));
   device_.Place(device::kRightHand, SampleOf(scene.instruments[instrument::kRight].home));
   device_.Place(device::kLaparoscope, SampleOf(scene.laparoscope.home));
+  for (const Channel channel : kChannels) SendHand(channel);
+}
+
+/// Asks for a hand where mouse and keys have it.
+void SessionControl::SendHand(Channel channel) {
+  std::array<HandSample, device::kChannelCount> samples;
+  device_.Read(samples);
+  if (samples[channel].is_valid) session_->Input().MoveHand(channel, JointsOf(samples[channel]));
+  TakeStanding();
 }
 
 void SessionControl::GoOnFrom(const scene::Input& last) {
@@ -84,8 +91,9 @@ void SessionControl::GoOnFrom(const scene::Input& last) {
   for (const Channel hand : {device::kLeftHand, device::kRightHand})
     device_.Place(hand, SampleOf(snapshot.instruments[hand].joints));
   device_.Place(device::kLaparoscope, SampleOf(snapshot.laparoscope));
-  input_ = last;
+  session_->Input().GoOnFrom(last);
   ReleasePedals();
+  for (const Channel channel : kChannels) SendHand(channel);
 }
 
 void SessionControl::LetExpertGoOn() {
@@ -93,36 +101,29 @@ void SessionControl::LetExpertGoOn() {
   is_demonstration_ = true;
   device_.ReleaseAll();
   ReleasePedals();
-  runner_.SetScripted(true);
+  session_->Demonstrate();
 }
 
 const simulation::Snapshot& SessionControl::Advance(double dt) {
   const simulation::Snapshot& snapshot = Look();
-  time_ = snapshot.time;
-  if (haptic_loop_ != nullptr) haptic_record_.Add(since_start_.Seconds(), haptic_loop_->Latest());
-  if (server_ != nullptr && snapshot.tick != served_tick_) {
-    served_tick_ = snapshot.tick;
-    server_->Publish(snapshot);
+  if (const std::uint64_t losses = session_->Input().DeviceLosses(); losses != device_losses_) {
+    device_losses_ = losses;
+    device_.ReleaseAll();  // the session has paused and lifted the pedals
   }
-  if (is_demonstration_) {
-    // the person's hands rest on the script's, so that taking over makes no jump
-    for (const Channel hand : {device::kLeftHand, device::kRightHand})
-      device_.Place(hand, SampleOf(snapshot.instruments[hand].joints));
-    for (std::size_t hand = 0; hand < input_.controls.size(); ++hand)
-      input_.controls[hand].tool = snapshot.operation.tools[hand];
-  }
+  TakeStanding();
+  AdvanceMouse(snapshot, IsPaused() ? 0.0 : dt);
+  return snapshot;
+}
 
-  // as with the hands: whoever takes the laparoscope over takes it where it is
-  const bool is_experts = is_demonstration_ && runner_.GetScene().script.keys.empty();
-  if (HasCameraHolder() || is_experts) device_.Place(device::kLaparoscope, SampleOf(snapshot.laparoscope));
-
-  std::array<HandSample, device::kChannelCount> samples;
-  if (!runner_.IsPaused()) {
+void SessionControl::AdvanceMouse(const simulation::Snapshot& snapshot, double dt) {
+  std::array<HandSample, device::kChannelCount> before, after;
+  device_.Read(before);
+  if (!IsPaused()) {
     LimitLead(snapshot);
     const math::Pose X_world_view = CalcView(snapshot);
-    device_.Read(samples);
-    for (const Channel channel : {device::kLeftHand, device::kRightHand, device::kLaparoscope})
-      device_.SetPointerMap(channel, CalcPointerMap(JointsOf(samples[channel]), X_world_view));
+    device_.Read(after);
+    for (const Channel channel : kChannels)
+      device_.SetPointerMap(channel, CalcPointerMap(JointsOf(after[channel]), X_world_view));
     const Channel chosen = device_.GetChosen();
     const math::Vec3 p_world_followed = chosen == device::kLaparoscope
                                             ? X_world_view * math::Vec3{0, 0, -kLookDistance}
@@ -131,120 +132,50 @@ const simulation::Snapshot& SessionControl::Advance(double dt) {
     device_.Advance(dt);
     wheel_under_way_ *= std::exp(-dt / device::MouseKeyboardSettings().wheel_time);
   }
-  device_.Read(samples);
-  for (const Channel hand : {device::kLeftHand, device::kRightHand})
-    if (samples[hand].is_valid) input_.hands[hand] = JointsOf(samples[hand]);
-  if (samples[device::kLaparoscope].is_valid) input_.laparoscope = JointsOf(samples[device::kLaparoscope]);
-  if (haptic_loop_ != nullptr) ApplyStylusButtons();
-  sent_ = input_;
-  if (device_thread_ != nullptr) ApplyDevice();
-  runner_.SetInput(sent_);
-  return snapshot;
+  device_.Read(after);
+  for (const Channel channel : kChannels) {
+    const bool is_hand = channel != device::kLaparoscope;
+    const bool is_others =
+        is_hand &&
+        (is_demonstration_ || session_->Input().IsHeldByDevice(static_cast<instrument::Hand>(channel)));
+    const TrocarJoints& standing = is_hand ? input_.hands[channel] : input_.laparoscope;
+    if (!is_others && JointsOf(before[channel]) != JointsOf(after[channel])) {
+      SendHand(channel);
+    } else if (JointsOf(after[channel]) != standing) {
+      device_.Place(channel, SampleOf(standing));  // so that taking over makes no jump
+    }
+  }
 }
 
 math::Pose SessionControl::CalcView(const simulation::Snapshot& snapshot) const {
-  const bool is_straight = std::fabs(runner_.GetScene().laparoscope.view_angle) < kStraight;
+  const bool is_straight = std::fabs(GetScene().laparoscope.view_angle) < kStraight;
   return is_straight ? LevelHorizon(snapshot.X_world_laparoscope) : snapshot.X_world_laparoscope;
 }
 
 void SessionControl::LimitLead(const simulation::Snapshot& snapshot) {
   const Channel chosen = device_.GetChosen();
-  if (chosen == device::kLaparoscope || is_demonstration_) return;
+  if (chosen == device::kLaparoscope || is_demonstration_ ||
+      session_->Input().IsHeldByDevice(static_cast<instrument::Hand>(chosen)))
+    return;
   const simulation::InstrumentSnapshot& seen = snapshot.instruments[chosen];
   const math::Vec3 lead = seen.X_world_device.translation - seen.X_world_tool.translation;
   const double length = math::Norm(lead);
   if (!(length > kMostLead)) return;
   const math::Vec3 p_world = seen.X_world_tool.translation + (kLeadKept / length) * lead;
   const TrocarJoints& joints = input_.hands[chosen];
-  device_.Place(chosen, SampleOf(instrument::FindJoints(runner_.GetScene().instruments[chosen].p_world_port,
-                                                        p_world, joints.spin, joints.jaw)));
-}
-
-void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver, const device::ButtonMap& buttons) {
-  session::PlaceAtHome(runner_.GetScene(), *driver);
-  device_thread_.reset();  // one device's line, buttons and messages end before the other's begin
-  device_hands_ = session::DeviceHands(runner_.GetScene());
-  device_losses_ = 0;
-  device_thread_ = std::make_unique<session::DeviceThread>(std::move(driver), buttons);
-}
-
-base::Status SessionControl::UseHaptics(std::string_view name, const device::ButtonMap& buttons) {
-  auto driver = device::MakeForceDriver(name);
-  if (!driver) return driver.error();
-  const auto settings =
-      session::MakeHapticSettings(**driver, runner_.GetScene(), Look().X_world_laparoscope, buttons);
-  if (!settings) return settings.error();
-  auto loop = session::HapticLoop::Start(std::move(*driver), *settings, haptic_link_);
-  if (!loop) return loop.error();
-  haptic_loop_ = std::move(*loop);
-  return {};
-}
-
-base::Status SessionControl::Serve(int port) {
-  net::IgtlServerSettings settings;
-  settings.port = port;
-  auto server = net::IgtlServer::Make(settings, runner_.Surfaces());
-  if (!server) return server.error();
-  server_ = std::move(*server);
-  return {};
-}
-
-void SessionControl::ApplyDevice() {
-  const session::DeviceReport& report = device_thread_->Latest();
-  if (report.message != device_message_) {
-    device_message_ = report.message;
-    is_device_message_new_ = true;
-  }
-  if (report.losses != device_losses_) {
-    device_losses_ = report.losses;
-    SetPaused(true);
-  }
-  if (is_demonstration_) return device_hands_.Ignore(report.acts);
-  if (MayAct()) {
-    device_hands_.Step(report.acts, input_);
-  } else {
-    device_hands_.Ignore(report.acts);
-  }
-  device_hands_.Move(report.samples, report.acts, input_);
-  sent_ = input_;
-  if (MayAct()) session::PressPedals(report.acts, sent_);
-  // the mouse's hands rest on the device's, so that losing sight of one makes no jump
-  for (const Channel hand : {device::kLeftHand, device::kRightHand}) {
-    if (report.samples[hand].is_valid) device_.Place(hand, SampleOf(input_.hands[hand]));
-  }
-}
-
-/// Pedals of a stylus reach the tick by the loop's own way; what a press changes for good comes in here.
-void SessionControl::ApplyStylusButtons() {
-  const session::HapticStatus& status = haptic_loop_->Latest();
-  const session::DeviceActs acts = {status.hands[instrument::kLeft].acts,
-                                    status.hands[instrument::kRight].acts};
-  if (MayAct()) {
-    stylus_hands_.Step(acts, input_);
-  } else {
-    stylus_hands_.Ignore(acts);
-  }
-}
-
-std::string SessionControl::TakeDeviceMessage() {
-  return std::exchange(is_device_message_new_, false) ? device_message_ : std::string();
+  device_.Place(chosen, SampleOf(instrument::FindJoints(GetScene().instruments[chosen].p_world_port, p_world,
+                                                        joints.spin, joints.jaw)));
 }
 
 void SessionControl::SetPaused(bool is_paused) {
-  if (is_paused) {
-    device_.ReleaseAll();
-    ReleasePedals();
-  }
-  runner_.SetPaused(is_paused);
+  if (is_paused) device_.ReleaseAll();
+  session_->SetPaused(is_paused);
+  TakeStanding();
 }
 
 void SessionControl::Reset() {
+  session_->Reset();
   PlaceAtHome();
-  input_.controls = {};
-  input_.assistant = {};
-  device_hands_.Restart();
-  time_ = 0.0;
-  runner_.Reset();
 }
 
 void SessionControl::SetDemonstration(bool is_on) {
@@ -253,61 +184,66 @@ void SessionControl::SetDemonstration(bool is_on) {
   is_demonstration_ = is_on;
   device_.ReleaseAll();
   ReleasePedals();
-  if (is_on) Reset();
-  runner_.SetScripted(is_on);
-}
-
-bool SessionControl::IsDemonstrationOver() const {
-  return is_demonstration_ && runner_.IsScriptOver();
+  if (!is_on) return session_->EndDemonstration();
+  session_->BeginDemonstration();
+  PlaceAtHome();
 }
 
 void SessionControl::ChooseTool(instrument::Hand hand, std::size_t place) {
-  if (place < runner_.GetScene().instruments[hand].tray.size())
-    input_.controls[hand].tool = static_cast<std::uint8_t>(place);
+  session_->Input().ChooseTool(hand, place);
+  TakeStanding();
 }
 
 void SessionControl::StepTool(int step) {
-  const auto hand = static_cast<instrument::Hand>(hand_);
-  const auto count = static_cast<int>(runner_.GetScene().instruments[hand].tray.size());
-  if (count > 0)
-    ChooseTool(hand, static_cast<std::size_t>((input_.controls[hand].tool + step + count) % count));
+  session_->Input().StepTool(static_cast<instrument::Hand>(hand_), step);
+  TakeStanding();
 }
 
 void SessionControl::SetPedal(Pedal pedal, bool is_down) {
-  scene::HandControls& controls = input_.controls[hand_];
-  is_down = is_down && !IsPaused() && !is_demonstration_;
+  const auto hand = static_cast<instrument::Hand>(hand_);
+  is_down = is_down && MayAct();
   switch (pedal) {
     case Pedal::kCut:
-      controls.cut = is_down;
+      session_->Input().SetPedal(hand, session::Pedal::kCut, is_down);
       break;
     case Pedal::kCoagulate:
-      controls.coagulate = is_down;
+      session_->Input().SetPedal(hand, session::Pedal::kCoagulate, is_down);
       break;
     case Pedal::kRinse:
-      controls.rinse = is_down;
+      session_->Input().SetPedal(hand, session::Pedal::kRinse, is_down);
       break;
     case Pedal::kAspirate:
-      controls.aspirate = is_down;
+      session_->Input().SetPedal(hand, session::Pedal::kAspirate, is_down);
       break;
     case Pedal::kClutch:
-      device_hands_.SetClutch(static_cast<instrument::Hand>(hand_), is_down);
+      session_->Input().SetClutch(hand, is_down);
       break;
   }
+  TakeStanding();
 }
 
 void SessionControl::ToggleFreeze() {
-  if (MayAct()) device_hands_.ToggleFreeze(static_cast<instrument::Hand>(hand_));
+  if (MayAct()) session_->Input().ToggleFreeze(static_cast<instrument::Hand>(hand_));
 }
 
 void SessionControl::ReleasePedals() {
-  for (scene::HandControls& controls : input_.controls)
-    controls.cut = controls.coagulate = controls.rinse = controls.aspirate = false;
-  for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight})
-    device_hands_.SetClutch(hand, false);
+  session_->Input().ReleasePedals();
+  TakeStanding();
+}
+
+void SessionControl::CommandAssistant(scene::AssistantCommand command) {
+  session_->Input().CommandAssistant(command);
+  TakeStanding();
 }
 
 void SessionControl::StepAssistant() {
-  input_.assistant = session::NextCommand(input_.assistant);
+  CommandAssistant(session::NextCommand(session_->Input().Standing().assistant));
+}
+
+void SessionControl::SetCameraHolder(bool is_on) {
+  scene::LiveSettings settings = input_.settings;
+  settings.holds_camera = is_on;
+  SetSettings(settings);
 }
 
 void SessionControl::ChooseHand(Channel hand) {
@@ -355,7 +291,8 @@ void SessionControl::SetPicture(double field_of_view, double pixels) {
 }
 
 void SessionControl::SetSettings(const scene::LiveSettings& settings) {
-  input_.settings = scene::ClampSettings(settings);
+  session_->Input().SetSettings(settings);
+  TakeStanding();
 }
 
 }  // namespace trocar::presenter

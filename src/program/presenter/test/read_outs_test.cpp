@@ -60,29 +60,29 @@ TEST(ReadOuts, ContactIsSaidInWords) {
 
 TEST(ReadOuts, EventsAreSaidInWords) {
   const scene::Scene scene = TwoOrgans();
-  using scene::EventKind;
-  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, instrument::kLeft, 1, 2.1}, scene),
+  using surgery::FactKind;
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kGrasp, 10, instrument::kLeft, 1, 2.1}, scene),
             "Left grasper: grasped the gallbladder, 2.1 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, instrument::kRight, 1, 0}, scene),
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kRelease, 10, instrument::kRight, 1, 0}, scene),
             "Right grasper: let the gallbladder go");
-  EXPECT_EQ(DescribeEvent({EventKind::kSlip, 10, instrument::kRight, 0, 4.0}, scene),
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kSlip, 10, instrument::kRight, 0, 4.0}, scene),
             "Right grasper: the liver slipped, 4.0 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kPinchDamage, 10, instrument::kRight, 0, 3.0}, scene),
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kPinchDamage, 10, instrument::kRight, 0, 3.0}, scene),
             "Right grasper: pinched the liver too hard, 3.0 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kToolsTouch, 10, -1, -1, 0}, scene), "The instruments met");
-  EXPECT_EQ(DescribeEvent({EventKind::kStateRestored, 10, -1, 0, 0}, scene),
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kToolsTouch, 10, -1, -1, 0}, scene), "The instruments met");
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kStateRestored, 10, -1, 0, 0}, scene),
             "Liver: was not finite, last good state restored (E-SIM-001)");
-  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, instrument::kLeft, 0, 0.01}, scene),
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kGrasp, 10, instrument::kLeft, 0, 0.01}, scene),
             "Left grasper: grasped the liver");
   scene::Scene rings = TwoOrgans();
   rings.objects.resize(2);
   rings.objects[1].name = "ring_2";
-  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, instrument::kLeft, -1, 1.2, 1}, rings),
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kGrasp, 10, instrument::kLeft, -1, 1.2, 1}, rings),
             "Left grasper: grasped ring 2, 1.2 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, instrument::kRight, -1, 0, 1}, rings),
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kRelease, 10, instrument::kRight, -1, 0, 1}, rings),
             "Right grasper: let ring 2 go");
-  EXPECT_TRUE(IsWarning({EventKind::kSlip, 10, instrument::kRight, 0, 4.0}));
-  EXPECT_FALSE(IsWarning({EventKind::kGrasp, 10, instrument::kRight, 0, 4.0}));
+  EXPECT_TRUE(IsWarning({surgery::FactKind::kSlip, 10, instrument::kRight, 0, 4.0}));
+  EXPECT_FALSE(IsWarning({surgery::FactKind::kGrasp, 10, instrument::kRight, 0, 4.0}));
 }
 
 // What tears in blunt dissection is no duct, and no fault.
@@ -90,7 +90,7 @@ TEST(ReadOuts, TornFibresAndTornDuctsAreToldApart) {
   scene::Scene scene = TwoOrgans();
   scene.patient.tubes.resize(1);
   const auto tear = [](std::int32_t organ) {
-    return scene::Event{scene::EventKind::kTear, 10, -1, organ, 0};
+    return scene::Event{surgery::FactKind::kTear, 10, -1, organ, 0};
   };
   EXPECT_EQ(DescribeEvent(tear(-1), scene), "Fibres of connective tissue tore");
   EXPECT_FALSE(IsWarning(tear(-1)));
@@ -136,34 +136,34 @@ TEST(FrameMeter, HoldsMoreFramesThanItKeeps) {
 
 TEST(DescribeEvent, ARefusedExchangeSaysWhatToDo) {
   const scene::Scene scene;
-  EXPECT_EQ(DescribeEvent({scene::EventKind::kExchangeRefused, 1, instrument::kLeft, -1, 0.0}, scene),
+  EXPECT_EQ(DescribeEvent({surgery::FactKind::kExchangeRefused, 1, instrument::kLeft, -1, 0.0}, scene),
             "Left grasper: open the jaws and let go before the tool is exchanged");
 }
 
 TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
   scene::Scene scene;
   scene.instruments[instrument::kRight].tool = *instrument::FindTool("clip_applier");
-  const auto text = [&](scene::EventKind kind, int error = -1) {
+  const auto text = [&](surgery::FactKind kind, int error = -1) {
     scene::Event event{kind, 1, instrument::kRight, -1, 0.0};
     event.error = error;
     return DescribeEvent(event, scene);
   };
-  EXPECT_EQ(text(scene::EventKind::kNoClipsLeft),
+  EXPECT_EQ(text(surgery::FactKind::kNoClipsLeft),
             "Right clip applier: there is no clip left; exchange the tool for a full one");
   scene.instruments[instrument::kRight].tray = {*instrument::FindTool("clip_applier"),
                                                 *instrument::FindTool("scissors")};
-  EXPECT_EQ(text(scene::EventKind::kTubeCut), "Right hand: cut the tissue") << "whichever tool it has now";
-  EXPECT_EQ(text(scene::EventKind::kStoneTaken), "Right hand: took a stone");
-  EXPECT_EQ(text(scene::EventKind::kStoneRetrieved), "Right hand: retrieved a stone");
-  EXPECT_EQ(text(scene::EventKind::kStoneSpilled), "A stone spilled out of the gallbladder");
-  EXPECT_TRUE(IsWarning({scene::EventKind::kStoneSpilled, 1, instrument::kRight, -1, 0.0}));
-  EXPECT_EQ(text(scene::EventKind::kClipSlipped), "A clip slipped off the tissue");
-  EXPECT_NE(text(scene::EventKind::kUsedOutside).find("push it in"), std::string::npos);
+  EXPECT_EQ(text(surgery::FactKind::kTubeCut), "Right hand: cut the tissue") << "whichever tool it has now";
+  EXPECT_EQ(text(surgery::FactKind::kStoneTaken), "Right hand: took a stone");
+  EXPECT_EQ(text(surgery::FactKind::kStoneRetrieved), "Right hand: retrieved a stone");
+  EXPECT_EQ(text(surgery::FactKind::kStoneSpilled), "A stone spilled out of the gallbladder");
+  EXPECT_TRUE(IsWarning({surgery::FactKind::kStoneSpilled, 1, instrument::kRight, -1, 0.0}));
+  EXPECT_EQ(text(surgery::FactKind::kClipSlipped), "A clip slipped off the tissue");
+  EXPECT_NE(text(surgery::FactKind::kUsedOutside).find("push it in"), std::string::npos);
   const auto error = cholecystectomy::OperationError::kClipCrossed;
-  EXPECT_EQ(text(scene::EventKind::kOperationError, static_cast<int>(error)),
+  EXPECT_EQ(text(surgery::FactKind::kVerdict, static_cast<int>(error)),
             cholecystectomy::ExplanationOf(error));
-  EXPECT_TRUE(IsWarning({scene::EventKind::kOperationError, 1, instrument::kRight, -1, 0.0}));
-  EXPECT_FALSE(IsWarning({scene::EventKind::kClipClosed, 1, instrument::kRight, -1, 0.0}));
+  EXPECT_TRUE(IsWarning({surgery::FactKind::kVerdict, 1, instrument::kRight, -1, 0.0}));
+  EXPECT_FALSE(IsWarning({surgery::FactKind::kClipClosed, 1, instrument::kRight, -1, 0.0}));
 }
 
 TEST(ToolLabel, NamesTheToolInUseAndItsClips) {

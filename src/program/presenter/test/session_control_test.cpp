@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -12,6 +13,8 @@
 #include <thread>
 
 #include "trocar/files/scene_file.h"
+#include "trocar/record/recording.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::presenter {
 namespace {
@@ -22,14 +25,15 @@ using device::Motion;
 class SessionControlTest : public testing::Test {
  protected:
   void SetUp() override { Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json"); }
-  void Open(const std::filesystem::path& path) {
+  void Open(const std::filesystem::path& path, const session::SessionOptions& options = {}) {
     base::Result<scene::Scene> scene = files::ReadScene(path);
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
     for (scene::InstrumentSetup& setup : scene->instruments) setup.tray.resize(3, setup.tray.front());
     base::Result<simulation::Simulation> simulation =
         simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()));
     ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
-    base::Result<std::unique_ptr<SessionControl>> made = SessionControl::Make(std::move(simulation).value());
+    base::Result<std::unique_ptr<SessionControl>> made =
+        SessionControl::Make(std::move(simulation).value(), options);
     ASSERT_TRUE(made.ok()) << made.error().Text();
     control = std::move(made).value();
   }
@@ -41,6 +45,13 @@ class SessionControlTest : public testing::Test {
     }
     return false;
   }
+  bool AdvanceTicks(std::uint64_t count) {
+    const std::uint64_t goal = control->Advance(0).tick + count;
+    return AdvanceUntil([goal](const simulation::Snapshot& now) { return now.tick >= goal; });
+  }
+  scene::Input Last() const { return control->LastInput(); }
+  /// The left hand of the newest tick; inputs are rounded by half a nanoradian.
+  bool IsLeftAt(double pan) const { return std::fabs(Last().hands[instrument::kLeft].pan - pan) < 1e-9; }
   std::unique_ptr<SessionControl> control;
 };
 
@@ -146,7 +157,7 @@ struct FakeDevice : device::Driver {
   struct Shared {
     std::atomic<std::uint32_t> buttons{0};
     std::atomic<double> pan{0};
-    std::atomic<bool> is_plugged{true};
+    std::atomic<bool> is_plugged{true}, is_seen{true};
   };
   explicit FakeDevice(Shared& state) : Driver("fake", device::kChannelCount), shared(state) {}
   base::Status DoConfigure() override {
@@ -158,7 +169,7 @@ struct FakeDevice : device::Driver {
   void DoCleanup() noexcept override {}
   device::ReadStatus DoRead(std::span<device::HandSample> samples) noexcept override {
     if (!shared.is_plugged) return device::ReadStatus::kLost;
-    samples[0] = {shared.pan, 0, 0, 0.12, 1.0, 0, true, shared.buttons};
+    samples[0] = {shared.pan, 0, 0, 0.12, 1.0, 0, shared.is_seen, shared.buttons};
     return device::ReadStatus::kFresh;
   }
   Shared& shared;
@@ -169,21 +180,21 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   FakeDevice::Shared shared;
   control->UseDevice(std::make_unique<FakeDevice>(shared));
   control->SetPaused(false);
-  const auto left = [&]() -> const scene::HandControls& {
-    return control->GetSentInput().controls[instrument::kLeft];
-  };
+  const auto left = [&] { return Last().controls[instrument::kLeft]; };
   const auto until = [&](const std::function<bool()>& claim) {
     return AdvanceUntil([&](const simulation::Snapshot&) { return claim(); });
   };
   shared.pan = 0.2;
-  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[instrument::kLeft].pan == 0.2; }));
+  ASSERT_TRUE(until([&] { return IsLeftAt(0.2); }));
   shared.buttons = 1;
   ASSERT_TRUE(until([&] { return left().cut; }));
   EXPECT_FALSE(control->GetInput().controls[instrument::kLeft].cut) << "no key";
-  EXPECT_FALSE(control->GetSentInput().controls[instrument::kRight].cut);
+  EXPECT_FALSE(Last().controls[instrument::kRight].cut);
   shared.buttons = 8;
   ASSERT_TRUE(until([&] { return left().tool == 1; }));
   EXPECT_FALSE(left().cut);
+  EXPECT_TRUE(until([&] { return control->GetInput().controls[instrument::kLeft].tool == 1; }))
+      << "the panel shows it";
   shared.pan = 0.5;
   shared.buttons = 2;
   ASSERT_TRUE(until([&] { return left().coagulate; }));
@@ -193,8 +204,8 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   EXPECT_EQ(left().tool, 1) << "the tool stays";
   shared.is_plugged = true;
   control->SetPaused(false);
-  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[instrument::kLeft].pan == 0.5; }));
-  for (int frame = 0; frame < 20; ++frame) control->Advance(0.01);
+  ASSERT_TRUE(until([&] { return IsLeftAt(0.5); }));
+  ASSERT_TRUE(AdvanceTicks(10));
   EXPECT_FALSE(left().coagulate) << "the foot that stayed does not count";
   // a tool that is far behind its hand would draw it back where the device is out of sight for a moment
   ASSERT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) {
@@ -202,33 +213,76 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   }));
   control->ChooseHand(device::kLeftHand);
   control->SetPedal(Pedal::kClutch, true);
-  control->Advance(0.01);
+  ASSERT_TRUE(AdvanceTicks(2));
   shared.pan = 0.9;
   device::SystemClock().Sleep(0.02);
-  control->Advance(0.01);
-  EXPECT_EQ(control->GetSentInput().hands[instrument::kLeft].pan, 0.5);
+  ASSERT_TRUE(AdvanceTicks(4));
+  EXPECT_TRUE(IsLeftAt(0.5));
   control->SetPedal(Pedal::kClutch, false);
-  control->Advance(0.01);
-  EXPECT_NEAR(control->GetSentInput().hands[instrument::kLeft].pan, 0.5, 1e-12) << "it goes on from there";
+  ASSERT_TRUE(AdvanceTicks(2));
+  EXPECT_TRUE(IsLeftAt(0.5)) << "it goes on from there";
 }
 
 TEST_F(SessionControlTest, ADevicesPedalsDoNothingWhilePaused) {
   FakeDevice::Shared shared;
   control->UseDevice(std::make_unique<FakeDevice>(shared));
   shared.pan = 0.2;
-  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot&) {
-    return control->GetSentInput().hands[instrument::kLeft].pan == 0.2;
-  }));
+  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot&) { return IsLeftAt(0.2); }));
   shared.buttons = 1 | 8;
   for (int frame = 0; frame < 20; ++frame) {
     device::SystemClock().Sleep(0.005);
     control->Advance(0.01);
   }
-  EXPECT_FALSE(control->GetSentInput().controls[instrument::kLeft].cut);
+  EXPECT_FALSE(Last().controls[instrument::kLeft].cut);
   control->SetPaused(false);
-  control->Advance(0.01);
-  EXPECT_TRUE(control->GetSentInput().controls[instrument::kLeft].cut) << "it is held";
-  EXPECT_EQ(control->GetSentInput().controls[instrument::kLeft].tool, 0) << "that press was for nothing";
+  ASSERT_TRUE(AdvanceTicks(2));
+  EXPECT_TRUE(Last().controls[instrument::kLeft].cut) << "it is held";
+  EXPECT_EQ(Last().controls[instrument::kLeft].tool, 0) << "that press was for nothing";
+}
+
+// Between two frames a pedal goes down and up: one tick has it, the one that was promised.
+TEST_F(SessionControlTest, APedalThatIsShorterThanAFrameReachesItsTick) {
+  const test::TemporaryFolder folder;
+  session::SessionOptions options;
+  options.keeping = session::AttemptKeeping{folder.Path(), {}, {}, {}};
+  options.keeping->description.name = std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json";
+  Open(options.keeping->description.name, options);
+  control->SetPaused(false);
+  ASSERT_TRUE(AdvanceTicks(130));
+  control->ChooseHand(device::kLeftHand);
+  control->SetPedal(Pedal::kCoagulate, true);
+  control->SetPedal(Pedal::kCoagulate, false);
+  ASSERT_TRUE(AdvanceTicks(10));
+  const auto path = control->Recording().value().path;
+  control.reset();
+  const auto recording = record::ReadRecording(path);
+  ASSERT_TRUE(recording.ok()) << recording.error().Text();
+  EXPECT_EQ(
+      std::count_if(recording->inputs.begin(), recording->inputs.end(),
+                    [](const scene::Input& input) { return input.controls[instrument::kLeft].coagulate; }),
+      1);
+}
+
+// The mouse takes a hand up where a device has left it.
+TEST_F(SessionControlTest, TheMouseGoesOnWhereADeviceLostAHand) {
+  FakeDevice::Shared shared;
+  control->UseDevice(std::make_unique<FakeDevice>(shared));
+  control->SetPaused(false);
+  control->ChooseHand(device::kLeftHand);
+  shared.pan = 0.2;
+  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
+    return std::fabs(now.instruments[instrument::kLeft].joints.pan - 0.2) < 0.01;
+  }));
+  shared.is_seen = false;
+  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot&) {
+    return !control->GetSession().Input().IsHeldByDevice(instrument::kLeft);
+  }));
+  control->Device().SetKey(Motion::kSpinRight, true);
+  const double spin = control->GetInput().hands[instrument::kLeft].spin;
+  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot&) {
+    return std::fabs(control->GetInput().hands[instrument::kLeft].spin - spin) > 0.05;
+  }));
+  EXPECT_TRUE(IsLeftAt(0.2));
 }
 
 TEST_F(SessionControlTest, ToolsGoRoundTheTrayAndTheAssistantObeys) {
@@ -362,6 +416,7 @@ TEST_F(SessionControlTest, TheAutomaticCameraIsTakenOverWhereItIs) {
   }));
   control->Device().SetKey(Motion::kRight, false);
   control->SetPaused(true);
+  device::SystemClock().Sleep(0.05);  // the tick under way
   const instrument::TrocarJoints before = control->Advance(0).laparoscope;
   control->HoldLaparoscope(true);
   EXPECT_FALSE(control->HasCameraHolder());

@@ -41,13 +41,6 @@ AssistantCommand NextCommand(AssistantCommand now) noexcept {
   return kNext[static_cast<std::size_t>(now)];
 }
 
-void ApplyHands(const DeviceSamples& samples, Input& input) noexcept {
-  for (const Hand hand : kHands) {
-    if (IsUsable(samples[hand])) input.hands[hand] = JointsOf(samples[hand]);
-  }
-  ApplyLaparoscope(samples[device::kLaparoscope], input);
-}
-
 void PressPedals(const DeviceActs& acts, Input& input) noexcept {
   for (const Hand hand : kHands) {
     HandControls& controls = input.controls[hand];

@@ -3,14 +3,14 @@
 
 namespace trocar::session {
 
-void HapticHandsReader::Take(HapticLink& link, scene::Input& input) noexcept {
-  if (!link.is_used.load(std::memory_order_relaxed)) return;
+const HapticHands* HapticHandsReader::Take(HapticLink& link) noexcept {
+  if (!link.is_used.load(std::memory_order_relaxed)) return nullptr;
   silent_ticks_ = link.hands.Update() ? 0 : silent_ticks_ + 1;
-  const HapticHands& hands = link.hands.Front();
-  for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight}) {
-    if (hands.is_driven[hand]) input.hands[hand] = hands.joints[hand];
+  hands_ = link.hands.Front();
+  if (silent_ticks_ > kLongestSilence) {
+    for (device::HandActs& acts : hands_.acts) acts.is_held = {};
   }
-  if (silent_ticks_ <= kLongestSilence) PressPedals(hands.acts, input);
+  return &hands_;
 }
 
 }  // namespace trocar::session

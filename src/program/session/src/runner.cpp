@@ -3,80 +3,51 @@
 
 #include <algorithm>
 #include <atomic>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "attempt_keeper.h"
-#include "trocar/agent/surgeon.h"
-#include "trocar/agent/taking_over.h"
 #include "trocar/base/statistics.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/newest_slot.h"
 #include "trocar/host/real_time.h"
-#include "trocar/record/input_codec.h"
 
 namespace trocar::session {
 
-using agent::ListSurgeons;
-using agent::MakeSurgeonTakingOver;
-using agent::Surgeon;
-using agent::SurgeonEntry;
-using scene::CalcScriptInput;
-using scene::Input;
+using simulation::InputSource;
 using simulation::Simulation;
 using simulation::Snapshot;
 
 namespace {
 
-constexpr std::string_view kExpert = "expert";
 /// The lowest real-time priority: above drawing, below a haptic loop. The simulation also runs without.
 constexpr int kPriorityAboveLowest = 0;
 
 }  // namespace
 
 struct Runner::Content {
-  Content(Simulation taken, HapticLink* link, std::optional<AttemptKeeping> kept)
-      : simulation(std::move(taken)), haptics(link), attempts(std::move(kept)) {}
+  Content(Simulation taken, InputSource& inputs, RunnerSettings settings)
+      : simulation(std::move(taken)),
+        source(inputs),
+        haptics(settings.haptics),
+        after_tick(std::move(settings.after_tick)),
+        attempts(std::move(settings.keeping)) {}
 
   Simulation simulation;
+  InputSource& source;
   HapticLink* haptics;
-  HapticHandsReader haptic_hands;
-  host::NewestSlot<Input> input_slot;
+  std::function<void(const Snapshot&)> after_tick;
   host::NewestSlot<Snapshot> snapshot_slot;
-  std::atomic<bool> is_stopping{false}, is_paused{true}, is_scripted{false}, is_end_wanted{false};
+  std::atomic<bool> is_stopping{false}, is_paused{true}, is_end_wanted{false};
   std::atomic<int> resets_wanted{0};
   std::atomic<double> speed{1};
   std::atomic<std::uint64_t> ticks{0}, late_ticks{0};
   std::atomic<double> tick_median{0}, tick_p99{0};
   std::atomic<bool> is_real_time{false};
-  std::unique_ptr<Surgeon> expert;  // of the thread; none before it is needed
-  std::atomic<bool> is_script_over{false};
   AttemptKeeper attempts;
   std::thread thread;
 
-  /// What the script does in the next tick, or the expert where there is no script.
-  Input CalcScripted(const Input& input) {
-    const scene::Scene& scene = simulation.GetScene();
-    const Snapshot& seen = simulation.GetSnapshot();
-    Input now = input;
-    if (!scene.script.keys.empty()) {
-      now.hands = CalcScriptInput(scene, seen.time).hands;
-      is_script_over.store(seen.time >= scene.script.Duration(), std::memory_order_relaxed);
-      return now;
-    }
-    if (expert == nullptr) {
-      auto made = MakeSurgeonTakingOver(kExpert, scene, seen, scene.seed);
-      if (!made.ok()) return now;
-      expert = std::move(*made);
-    }
-    now = expert->Act(seen);
-    now.settings = input.settings;
-    now.settings.holds_camera = scene.settings.holds_camera;  // an expert looks for himself
-    is_script_over.store(expert->HasFinished(), std::memory_order_relaxed);
-    return now;
-  }
   void Publish() {
     snapshot_slot.Back() = simulation.GetSnapshot();
     snapshot_slot.Publish();
@@ -88,8 +59,39 @@ struct Runner::Content {
       haptics->patches[hand].Publish();
     }
   }
+  void GoBack(int resets);
+  void Tick();
   void Run();
 };
+
+/// To the first tick.
+/// \param resets  that were asked for since the last time
+void Runner::Content::GoBack(int resets) {
+  attempts.End(simulation);
+  attempts.Reopen();
+  is_end_wanted.store(false, std::memory_order_relaxed);
+  simulation.Reset();
+  for (int i = 0; i < resets; ++i) source.Reset();
+  Publish();
+}
+
+void Runner::Content::Tick() {
+  const scene::Input input = source.For(simulation.GetSnapshot().tick + 1, simulation.GetSnapshot());
+  // while a program moves the tools, nothing of theirs may be felt
+  const bool is_felt = !source.IsDemonstration();
+  if (speed.load(std::memory_order_relaxed) < 1.0) {
+    attempts.End(simulation);
+    attempts.Close();
+  }
+  attempts.BeforeStep(simulation, !is_felt);
+  simulation.Step(input);
+  attempts.AfterStep(input, simulation);
+  source.AfterTick(simulation.GetSnapshot());
+  if (after_tick) after_tick(simulation.GetSnapshot());
+  if (is_felt) PublishPatches();
+  Publish();
+  ticks.fetch_add(1, std::memory_order_relaxed);
+}
 
 void Runner::Content::Run() {
   is_real_time.store(host::AskForRealTime(host::RealTimePolicy::kRoundRobin, kPriorityAboveLowest));
@@ -97,42 +99,21 @@ void Runner::Content::Run() {
   const auto window = static_cast<std::size_t>(1.0 / simulation.GetScene().tick_seconds);
   std::vector<double> durations;
   durations.reserve(window);
-  Input input = CalcScriptInput(simulation.GetScene(), 0.0);
   int resets_done = 0;
   std::int64_t next = host::NowNanoseconds();
   while (!is_stopping.load(std::memory_order_relaxed)) {
     if (const int wanted = resets_wanted.load(std::memory_order_acquire); wanted != resets_done) {
+      GoBack(wanted - resets_done);
       resets_done = wanted;
-      attempts.End(simulation);
-      attempts.Reopen();
-      is_end_wanted.store(false, std::memory_order_relaxed);
-      simulation.Reset();
-      expert.reset();
-      is_script_over.store(false, std::memory_order_relaxed);
-      Publish();
     }
     if (is_end_wanted.exchange(false, std::memory_order_relaxed)) {
       attempts.End(simulation);
       attempts.Close();
     }
-    if (input_slot.Update()) input = input_slot.Front();
-    if (!is_paused.load(std::memory_order_relaxed)) {
-      Input now = input;
-      if (is_scripted.load(std::memory_order_relaxed)) now = CalcScripted(input);
-      // while the script moves the tools, nothing of theirs may be felt
-      const bool is_felt = !is_scripted.load(std::memory_order_relaxed);
-      if (is_felt && haptics != nullptr) haptic_hands.Take(*haptics, now);
-      record::RoundJoints(now);
-      if (speed.load(std::memory_order_relaxed) < 1.0) {
-        attempts.End(simulation);
-        attempts.Close();
-      }
-      attempts.BeforeStep(simulation, !is_felt);
-      simulation.Step(now);
-      attempts.AfterStep(now, simulation);
-      if (is_felt) PublishPatches();
-      Publish();
-      ticks.fetch_add(1, std::memory_order_relaxed);
+    if (is_paused.load(std::memory_order_relaxed)) {
+      source.Wait(simulation.GetSnapshot());
+    } else {
+      Tick();
       durations.push_back(simulation.GetSnapshot().tick_seconds);
       if (durations.size() == window) {
         tick_median.store(base::CalcPercentile(durations, 0.5), std::memory_order_relaxed);
@@ -153,8 +134,8 @@ void Runner::Content::Run() {
   attempts.End(simulation);
 }
 
-Runner::Runner(Simulation simulation, HapticLink* haptics, std::optional<AttemptKeeping> keeping)
-    : content_(std::make_unique<Content>(std::move(simulation), haptics, std::move(keeping))) {
+Runner::Runner(Simulation simulation, InputSource& source, RunnerSettings settings)
+    : content_(std::make_unique<Content>(std::move(simulation), source, std::move(settings))) {
   content_->Publish();
   content_->snapshot_slot.Update();
   content_->thread = std::thread([content = content_.get()] { content->Run(); });
@@ -165,24 +146,6 @@ Runner::~Runner() {
   content_->thread.join();
 }
 
-void Runner::SetInput(const Input& input) {
-  content_->input_slot.Back() = input;
-  content_->input_slot.Publish();
-}
-
-void Runner::SetScripted(bool is_scripted) {
-  content_->is_scripted.store(is_scripted);
-}
-bool Runner::HasScript() const {
-  const auto surgeons = ListSurgeons();
-  return !GetScene().script.keys.empty() ||
-         std::any_of(surgeons.begin(), surgeons.end(), [&](const SurgeonEntry& entry) {
-           return std::string_view(entry.name) == kExpert && entry.suits(GetScene());
-         });
-}
-bool Runner::IsScriptOver() const {
-  return content_->is_script_over.load();
-}
 void Runner::SetSpeed(double speed) {
   content_->speed.store(speed > kSlowest ? std::min(speed, 1.0) : kSlowest);
 }

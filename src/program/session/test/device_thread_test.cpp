@@ -22,20 +22,20 @@ namespace {
 using device::kLeftHand;
 using Phase = DeviceReport::Phase;
 
-TEST(ApplyHands, TakesOnlyHandsThatAreSeenAndFinite) {
+TEST(DeviceHands, TakesOnlyHandsThatAreSeenAndFinite) {
   std::array<device::HandSample, device::kChannelCount> samples;
   samples[0] = {0.1, 0.2, 0.3, 0.15, 0.5, 0, true};
   samples[1] = {0.4, 0.4, 0.4, 0.4, 0.4, 0, false};
   samples[2] = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0, 0, 0, true};
   scene::Input input, before;
-  ApplyHands(samples, input);
+  DeviceHands(scene::Scene()).Move(samples, {}, input);
   EXPECT_EQ(input.hands[0], (instrument::TrocarJoints{0.1, 0.2, 0.3, 0.15, 0.5}));
   EXPECT_EQ(input.hands[1], before.hands[1]);
   EXPECT_EQ(input.laparoscope, before.laparoscope);
 }
 
 // the device's own way from joints to a pose and back must be the instrument's
-TEST(ApplyHands, ASensorsPoseGivesTheToolPoseOfTheKinematics) {
+TEST(DeviceHands, ASensorsPoseGivesTheToolPoseOfTheKinematics) {
   const auto settings = *device::MakeHandsSettings(device::DefaultTracker());
   const device::HandCalibration& hand = settings.calibrations[kLeftHand];
   for (int i = 0; i < 50; ++i) {

@@ -95,7 +95,6 @@ TEST(HapticTick, PedalsOfAStylusAreLetGoOfWithEveryFault) {
 TEST(HapticHandsReader, ALoopThatStandsStillHoldsNoPedal) {
   HapticLink link;
   HapticHandsReader reader;
-  scene::Input input;
   const auto publish = [&] {
     HapticHands& hands = link.hands.Back();
     hands.is_driven[kRight] = true;
@@ -104,23 +103,22 @@ TEST(HapticHandsReader, ALoopThatStandsStillHoldsNoPedal) {
     link.hands.Publish();
   };
   publish();
-  reader.Take(link, input);
-  EXPECT_EQ(input, scene::Input{}) << "no loop runs";
+  EXPECT_EQ(reader.Take(link), nullptr) << "no loop runs";
   link.is_used = true;
+  const auto is_burning = [&](instrument::Hand hand) {
+    return reader.Take(link)->acts[hand].IsHeld(device::HandAct::kCoagulate);
+  };
   for (int tick = 0; tick < 100; ++tick) {
     publish();
-    input = {};
-    reader.Take(link, input);
-    ASSERT_TRUE(input.controls[kRight].coagulate);
-    ASSERT_FALSE(input.controls[kLeft].coagulate);
+    ASSERT_TRUE(is_burning(kRight));
   }
-  EXPECT_EQ(input.hands[kRight].depth, 0.14);
-  for (int tick = 0; tick < HapticHandsReader::kLongestSilence + 1; ++tick) {
-    input = {};
-    reader.Take(link, input);
-  }
-  EXPECT_FALSE(input.controls[kRight].coagulate);
-  EXPECT_EQ(input.hands[kRight].depth, 0.14) << "the hand holds its place";
+  publish();
+  EXPECT_FALSE(is_burning(kLeft));
+  EXPECT_EQ(reader.Take(link)->joints[kRight].depth, 0.14);
+  for (int tick = 0; tick < HapticHandsReader::kLongestSilence; ++tick) (void)reader.Take(link);
+  EXPECT_FALSE(is_burning(kRight));
+  EXPECT_TRUE(reader.Take(link)->is_driven[kRight]);
+  EXPECT_EQ(reader.Take(link)->joints[kRight].depth, 0.14) << "the hand holds its place";
 }
 
 TEST(HapticTick, EveryFaultOfTheDeviceTakesTheForceAway) {

@@ -56,7 +56,7 @@ Device MakeDevice(const std::string& kind, const std::string& word, const char* 
   if (kind == "simulated") {
     device::SimulatedForceSettings settings;
     settings.wire = std::stoi(word);
-    settings.path = [](int, double) { return Vec3{}; };
+    settings.path = [](int, double) { return math::Vec3{}; };
     auto made = std::make_unique<device::SimulatedForceDevice>(settings);
     device::SimulatedForceDevice& simulated = *made;
     return {std::move(made), [&simulated](bool is_held) { simulated.SetButtons(0, is_held ? 1 : 0); }};
@@ -102,12 +102,12 @@ int main(int argument_count, char** arguments) {
   bool has_ended = false;
   for (int i = 0; !has_ended; ++i) {
     // tissue that presses once force is on; the check pose, then the safety switch held for good
-    const bool is_on = (*loop)->Latest().hands[kRight].state != haptics::ArmState::kUnarmed;
-    auto& patch = link.patches[kRight].Back();
+    const bool is_on = (*loop)->Latest().hands[instrument::kRight].state != haptics::ArmState::kUnarmed;
+    auto& patch = link.patches[instrument::kRight].Back();
     patch.kind = tissue::LocalPatch::Kind::kLinear;
     patch.is_healthy = true;
     patch.force = {is_on ? 2.0 : 0.0, 0, 0};
-    link.patches[kRight].Publish();
+    link.patches[instrument::kRight].Publish();
     // on a busy machine more than once
     const bool is_confirmed = (*loop)->Latest().check_pose == haptics::CheckPoseState::kConfirmed;
     const int step = i % 120;

@@ -55,11 +55,12 @@ class PlayedJump : public testing::Test {
     input.laparoscope = scene_->laparoscope.home;
     input.settings = scene_->settings;
     DeviceSamples samples;
+    DeviceHands hands(*scene_);
     double largest = 0;
     for (int tick = 1; tick <= 180; ++tick) {
       clock.Set(tick * scene_->tick_seconds);
       player.Read(samples);
-      ApplyHands(samples, input);
+      hands.Move(samples, {}, input);
       simulation.Step(input);
       largest = std::max(largest, math::Norm(simulation.GetSnapshot().instruments[hand].force));
     }

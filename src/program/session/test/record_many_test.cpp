@@ -20,6 +20,7 @@
 #include "trocar/record/replay.h"
 #include "trocar/scene/task.h"
 #include "trocar/session/runner.h"
+#include "trocar/session/session_input.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::session {
@@ -162,14 +163,19 @@ class RecordMany : public testing::Test {
     if (!settings.ok()) return "!" + settings.error().Text();
     settings->supervisor.clear();  // hands without force are what is recorded
     RandomHands hands(simulation.GetScene(), seed);
-    Runner runner(std::move(simulation), &link, AttemptKeeping{folder, description});
+    SessionInput input(simulation.GetScene());
+    input.UseHaptics(link);
+    RunnerSettings running;
+    running.haptics = &link;
+    running.keeping = AttemptKeeping{folder, description};
+    Runner runner(std::move(simulation), input, std::move(running));
     {
       auto loop = HapticLoop::Start(std::move(*driver), *settings, link);
       if (!loop.ok()) return "!" + loop.error().Text();
       runner.SetPaused(false);
       const host::Stopwatch watch;
       while (watch.Seconds() < kHapticSeconds) {
-        runner.SetInput(hands.Next());
+        input.GoOnFrom(hands.Next());
         std::this_thread::sleep_for(std::chrono::milliseconds(8));
       }
       runner.SetPaused(true);

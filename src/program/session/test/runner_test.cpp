@@ -8,15 +8,16 @@
 #include <cmath>
 #include <functional>
 #include <thread>
+#include <vector>
 
 #include "small_scene.h"
 #include "trocar/files/task_file.h"
 #include "trocar/record/replay.h"
+#include "trocar/session/input_sources.h"
 
 namespace trocar::session {
 
 using instrument::kRight;
-using scene::CalcScriptInput;
 using scene::SmallScene;
 
 namespace {
@@ -38,16 +39,81 @@ class RunnerTest : public SmallScene {
   }
 };
 
+/// Hands at home, and what it was asked.
+struct Watched : simulation::InputSource {
+  explicit Watched(const scene::Scene& scene) : home(scene::CalcScriptInput(scene, 0)) {}
+  scene::Input For(std::uint64_t tick, const simulation::Snapshot& before) override {
+    are_in_step = are_in_step && tick == next && before.tick + 1 == tick;
+    ++next;
+    scene::Input input = home;
+    if (tick >= 50) input.hands[kRight].pan += 0.1;
+    return input;
+  }
+  void Wait(const simulation::Snapshot& now) override {
+    are_in_step = are_in_step && now.tick + 1 == next;
+    ++waits;
+  }
+  void Reset() override {
+    next = 1;
+    ++resets;
+  }
+  bool IsDemonstration() const override { return false; }
+  scene::Input home;
+  std::atomic<std::uint64_t> next{1};
+  std::atomic<int> waits{0}, resets{0};
+  std::atomic<bool> are_in_step{true};
+};
+
+TEST_F(RunnerTest, AsksItsSourceOnceForEachTickAndForThatTick) {
+  auto simulation = MakeSimulation();
+  Watched source(simulation.GetScene());
+  AttemptKeeping keeping{folder_ / "attempts", {}, {}, {}};
+  keeping.description.name = (folder_ / "scene.json").string();
+  std::vector<std::uint64_t> told;
+  std::uint64_t last = 0;
+  std::filesystem::path path;
+  {
+    Runner runner(std::move(simulation), source,
+                  {.keeping = keeping,
+                   .after_tick = [&](const simulation::Snapshot& now) { told.push_back(now.tick); }});
+    ASSERT_TRUE(Eventually([&] { return source.waits > 3; }));
+    EXPECT_EQ(source.next, 1u) << "paused, it is asked for nothing";
+    runner.SetPaused(false);
+    ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 150; }));
+    runner.SetPaused(true);
+    const int waits = source.waits;
+    ASSERT_TRUE(Eventually([&] { return source.waits > waits + 3; }));
+    last = runner.Latest().tick;
+    path = runner.RecordingStatus().value().path;
+    runner.Reset();
+    runner.Reset();
+    ASSERT_TRUE(Eventually([&] { return source.resets == 2; })) << "each of them";
+    ASSERT_TRUE(Eventually([&] { return runner.Latest().tick == 0; }));
+  }
+  EXPECT_TRUE(source.are_in_step);
+  ASSERT_EQ(told.size(), last);
+  for (std::size_t i = 0; i < told.size(); ++i) ASSERT_EQ(told[i], i + 1);
+  const auto recording = record::ReadRecording(path);
+  ASSERT_TRUE(recording.ok()) << recording.error().Text();
+  ASSERT_EQ(recording->inputs.size(), last);
+  for (std::size_t i = 0; i < last; ++i)
+    EXPECT_EQ(recording->inputs[i].hands[kRight].pan,
+              source.home.hands[kRight].pan + (i + 1 >= 50 ? 0.1 : 0));
+}
+
 TEST_F(RunnerTest, ShowsTheStartBeforeItRuns) {
-  Runner runner(MakeSimulation());
+  auto simulation = MakeSimulation();
+  ScriptSource source(simulation.GetScene());
+  Runner runner(std::move(simulation), source);
   EXPECT_TRUE(runner.IsPaused());
   EXPECT_EQ(runner.Latest().tick, 0u);
   EXPECT_FALSE(runner.Latest().positions.empty());
 }
 
 TEST_F(RunnerTest, RunsPausesAndResets) {
-  Runner runner(MakeSimulation());
-  runner.SetScripted(true);
+  auto simulation = MakeSimulation();
+  ScriptSource source(simulation.GetScene());
+  Runner runner(std::move(simulation), source);
   runner.SetPaused(false);
   ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 20; }));
   runner.SetPaused(true);
@@ -62,21 +128,11 @@ TEST_F(RunnerTest, RunsPausesAndResets) {
   EXPECT_TRUE(Eventually([&] { return runner.Latest().tick == 0; }));
 }
 
-TEST_F(RunnerTest, UsesTheNewestInput) {
-  Runner runner(MakeSimulation());
-  scene::Input input = CalcScriptInput(runner.GetScene(), 0.0);
-  input.hands[kRight].pan += 0.1;
-  runner.SetInput(input);
-  runner.SetPaused(false);
-  EXPECT_TRUE(Eventually([&] {
-    // record::RoundJoints moves it by half a nanometre at most
-    return std::abs(runner.Latest().instruments[kRight].joints.pan - input.hands[kRight].pan) < 1e-9;
-  }));
-}
-
 TEST_F(RunnerTest, EndsAtOnceEvenWhileRunning) {
   for (int i = 0; i < 5; ++i) {
-    Runner runner(MakeSimulation());
+    auto simulation = MakeSimulation();
+    ScriptSource source(simulation.GetScene());
+    Runner runner(std::move(simulation), source);
     runner.SetPaused(false);
   }
 }
@@ -88,8 +144,8 @@ TEST_F(RunnerTest, KeepsEachAttemptInAFileThatReplaysToTheBit) {
   {
     auto simulation = MakeSimulation();
     keeping.description.seed = simulation.GetScene().seed;
-    Runner runner(std::move(simulation), nullptr, keeping);
-    runner.SetScripted(true);
+    ScriptSource source(simulation.GetScene());
+    Runner runner(std::move(simulation), source, {.keeping = keeping});
     for (int attempt = 0; attempt < 2; ++attempt) {
       runner.SetPaused(false);
       ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 140; }));
@@ -131,7 +187,9 @@ TEST_F(RunnerTest, EndsAnAttemptAndRecordsNoMoreUntilTheReset) {
   };
   keeping.on_end = [&](const std::filesystem::path& path) { ended += path.extension() == ".trocar" ? 1 : 0; };
   {
-    Runner runner(MakeSimulation(), nullptr, keeping);
+    auto simulation = MakeSimulation();
+    ScriptSource source(simulation.GetScene());
+    Runner runner(std::move(simulation), source, {.keeping = keeping});
     runner.SetPaused(false);
     ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 140; }));
     EXPECT_EQ(begun.load(), 1);
@@ -155,8 +213,9 @@ TEST_F(RunnerTest, GoesOnWhereAttemptsCannotBeKept) {
   Write("attempts", "a file where the folder should be");
   AttemptKeeping keeping{folder_ / "attempts", {}};
   keeping.description.name = (folder_ / "scene.json").string();
-  Runner runner(MakeSimulation(), nullptr, keeping);
-  runner.SetScripted(true);
+  auto simulation = MakeSimulation();
+  ScriptSource source(simulation.GetScene());
+  Runner runner(std::move(simulation), source, {.keeping = keeping});
   runner.SetPaused(false);
   ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 20; }));
   EXPECT_EQ(runner.RecordingStatus().value().failure.value().code, base::ErrorCode::kFileUnwritable);
@@ -169,7 +228,8 @@ TEST(Runner, SlowMotionIsClamped) {
   auto simulation =
       simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()));
   ASSERT_TRUE(simulation.ok());
-  Runner runner(std::move(simulation).value());
+  ScriptSource source(simulation->GetScene());
+  Runner runner(std::move(simulation).value(), source);
   EXPECT_EQ(runner.GetSpeed(), 1.0);
   runner.SetSpeed(0.35);
   EXPECT_EQ(runner.GetSpeed(), 0.35);

@@ -42,10 +42,10 @@ struct Sums {
     const std::uint64_t first =
         now.event_count > simulation::kEventRing ? now.event_count - simulation::kEventRing : 0;
     for (std::uint64_t n = std::max(events_seen, first); n < now.event_count; ++n) {
-      const scene::EventKind kind = now.events[n % simulation::kEventRing].kind;
-      pinched += kind == scene::EventKind::kPinchDamage ? 1 : 0;
-      torn += kind == scene::EventKind::kTear ? 1 : 0;
-      restored += kind == scene::EventKind::kStateRestored ? 1 : 0;
+      const surgery::FactKind kind = now.events[n % simulation::kEventRing].kind;
+      pinched += kind == surgery::FactKind::kPinchDamage ? 1 : 0;
+      torn += kind == surgery::FactKind::kTear ? 1 : 0;
+      restored += kind == surgery::FactKind::kStateRestored ? 1 : 0;
     }
     events_seen = now.event_count;
   }

@@ -95,6 +95,17 @@ double NumberOf(const patient::Patient& patient, std::string_view name, double o
 
 }  // namespace
 
+cholecystectomy::TargetTable MakeTargetTable(std::span<const scene::SurfaceInfo> surfaces,
+                                             std::span<const scene::StrandInfo> strands) {
+  cholecystectomy::TargetTable table;
+  for (const scene::SurfaceInfo& surface : surfaces)
+    table.surfaces.push_back(
+        cholecystectomy::TargetOf(surface.organ).value_or(cholecystectomy::TargetOf(surface.tube)));
+  for (const scene::StrandInfo& strand : strands)
+    table.strands.push_back(cholecystectomy::TargetOf(strand.kind));
+  return table;
+}
+
 surgery::Vessels MakeVessels(surgery::VesselMap map, const patient::Patient& patient,
                              const scene::PatientTissue& tissue, std::uint32_t spare_count,
                              const surgery::VesselSettings& settings) {

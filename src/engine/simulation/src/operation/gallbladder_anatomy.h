@@ -16,6 +16,10 @@
 
 namespace trocar::simulation {
 
+/// Surfaces and strands by their names in the data sets. An organ of which nothing is known counts as a vessel: harm.
+cholecystectomy::TargetTable MakeTargetTable(std::span<const scene::SurfaceInfo> surfaces,
+                                             std::span<const scene::StrandInfo> strands);
+
 /// The patient's ducts and arteries among the nodes of its tissue.
 /// \param map  of the patient: see scene::MakePatientVessels
 /// \param spare_count  nodes for the ends of cuts

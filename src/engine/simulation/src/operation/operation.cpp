@@ -43,7 +43,7 @@ base::Result<std::unique_ptr<Operation>> Operation::Make(const scene::Scene& sce
   auto stones = MakeGallstones(scene, tissue->surfaces, tissue->definition.rest);
   made->made_ = std::move(tissue);
   if (!stones.ok()) return stones.error();
-  made->stones_ = std::move(*stones);
+  made->parts_.stones = std::move(*stones);
   made->loose_clips_.reserve(surgery::VesselActs::kMostClips);
   if (const auto status = made->MakeAll(); !status.ok()) return status.error();
   return made;
@@ -51,25 +51,26 @@ base::Result<std::unique_ptr<Operation>> Operation::Make(const scene::Scene& sce
 
 base::Status Operation::MakeAll() {
   const PatientTissue& tissue = *made_;
-  facts_.liver = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
-  facts_.gallbladder = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
+  anatomy_.liver = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
+  anatomy_.gallbladder = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
   if (const auto status = MakeOrgans(); !status.ok()) return status;
   if (const auto status = MakeTubes(); !status.ok()) return status;
   FindBandStrands();
-  heat_ = surgery::Electrosurgery(tissue.definition, tissue.heat_mass, scene_->operation->parameters.heat);
+  parts_.heat =
+      surgery::Electrosurgery(tissue.definition, tissue.heat_mass, scene_->operation->parameters.heat);
   attachment_ = MakeAttachment(scene_->patient, tissue.surfaces, strands_);
   MakeAssistant();
   const patient::Landmark* neck = scene_->patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
-  facts_.p_pool = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
-  facts_.deepest = kBelowAll;
-  for (const Vec3& p : tissue.definition.rest) facts_.deepest = std::min(facts_.deepest, p.z + kBelowAll);
-  stones_.Reset();
+  anatomy_.p_pool = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
+  anatomy_.deepest = kBelowAll;
+  for (const Vec3& p : tissue.definition.rest) anatomy_.deepest = std::min(anatomy_.deepest, p.z + kBelowAll);
+  parts_.stones.Reset();
   MakeOoze();
   for (int hand = 0; hand < kHandCount; ++hand) {
     HandState& state = hands_[static_cast<std::size_t>(hand)];
-    state.fronts.resize(organs_.size());
-    state.blade.jaw = state.spread_upper.jaw = scene_->instruments[hand].home.jaw;
-    state.clips = Tool(hand).clips;
+    state.blade.fronts.resize(parts_.organs.size());
+    state.blade.blade.jaw = state.spread.upper.jaw = scene_->instruments[hand].home.jaw;
+    state.clips.clips = Tool(hand).clips;
   }
   return {};
 }
@@ -79,17 +80,17 @@ base::Status Operation::MakeOrgans() {
   for (std::size_t i = 0; i < patient.organs.size(); ++i) {
     surgery::CuttableOrganSettings settings;
     settings.wall = made_->walls[i];
-    settings.cut.has_walls = static_cast<std::int32_t>(i) != facts_.gallbladder && !scene_->model;
+    settings.cut.has_walls = static_cast<std::int32_t>(i) != anatomy_.gallbladder && !scene_->model;
     settings.first_node = made_->surfaces[i].first_node;
     settings.first_spare = made_->first_spare[i];
     settings.spare_count = kSpare.by_organ;
     auto organ = surgery::CuttableOrgan::Make(patient.organs[i].mesh, settings);
     if (!organ.ok()) return organ.error();
-    organ->ReserveFor(change_);
-    organs_.push_back(std::move(*organ));
+    organ->ReserveFor(parts_.change);
+    parts_.organs.push_back(std::move(*organ));
   }
   for (std::size_t i = 0; scene_->model && i < scene_->model->sheets.size(); ++i)
-    sheets_.push_back(MakePatternCutMonitor(scene_->model->sheets[i], organs_[i].Mesh()));
+    sheets_.push_back(MakePatternCutMonitor(scene_->model->sheets[i], parts_.organs[i].Mesh()));
   return {};
 }
 
@@ -99,17 +100,17 @@ base::Status Operation::MakeTubes() {
   const scene::OperationParameters& parameters = scene_->operation->parameters;
   auto vessels = scene::MakePatientVessels(patient, parameters.supplies, parameters.fluids);
   if (!vessels.ok()) return vessels.error();
-  facts_.biliary = std::move(vessels->anatomy);
-  vessels_ = MakeVessels(std::move(vessels->map), patient, *made_, kSpare.tubes, parameters.vessels);
-  vessels_->ReserveFor(change_);
-  change_.Clear();
+  biliary_ = std::move(vessels->anatomy);
+  parts_.vessels = MakeVessels(std::move(vessels->map), patient, *made_, kSpare.tubes, parameters.vessels);
+  parts_.vessels->ReserveFor(parts_.change);
+  parts_.change.Clear();
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
     const SurfaceInfo& surface = made_->surfaces[patient.organs.size() + t];
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
-      const surgery::VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
-      if (cholecystectomy::MayBeDivided(facts_.biliary.roles[place.vessel])) continue;
+      const surgery::VesselPlace place = parts_.vessels->Map().Find(t, parts_.vessels->Map().arcs[t][k]);
+      if (cholecystectomy::MayBeDivided(biliary_.roles[place.vessel])) continue;
       const bool is_duct = patient.tubes[t].kind == patient::TubeKind::kDuct;
-      (is_duct ? facts_.main_ducts : facts_.main_arteries).push_back(surface.first_node + k);
+      (is_duct ? anatomy_.main_ducts : anatomy_.main_arteries).push_back(surface.first_node + k);
     }
   }
   for (surgery::EnteringTube& tube : FindEnteringTubes(patient, made_->surfaces, strands_)) {
@@ -123,12 +124,12 @@ base::Status Operation::MakeTubes() {
 
 /// Bands of a model are parted one by one.
 void Operation::FindBandStrands() {
-  facts_.band_starts.assign(1, 0);
+  anatomy_.band_starts.assign(1, 0);
   for (std::size_t band = 0; scene_->model && band < scene_->model->bands.size(); ++band) {
     for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-      if (strands_[i].band == static_cast<std::int32_t>(band)) facts_.band_strands.push_back(i);
+      if (strands_[i].band == static_cast<std::int32_t>(band)) anatomy_.band_strands.push_back(i);
     }
-    facts_.band_starts.push_back(static_cast<std::uint32_t>(facts_.band_strands.size()));
+    anatomy_.band_starts.push_back(static_cast<std::uint32_t>(anatomy_.band_strands.size()));
   }
 }
 
@@ -138,13 +139,13 @@ void Operation::MakeAssistant() {
   const Vec3& target = setup.p_world_target;
   assistant_.emplace(setup, target);
   // the landmark moves with the organ: the nearest vertex at rest carries it
-  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(std::max(0, facts_.gallbladder))];
+  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(std::max(0, anatomy_.gallbladder))];
   const auto& rest = made_->definition.rest;
-  facts_.assistant_node = surface.first_node;
+  anatomy_.assistant_node = surface.first_node;
   for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
     if (math::SquaredDistance(rest[node], target) <
-        math::SquaredDistance(rest[facts_.assistant_node], target))
-      facts_.assistant_node = node;
+        math::SquaredDistance(rest[anatomy_.assistant_node], target))
+      anatomy_.assistant_node = node;
   }
 }
 
@@ -155,15 +156,30 @@ void Operation::MakeOoze() {
     const StrandInfo& strand = strands_[i];
     const bool is_bed = strand.kind == StrandInfo::Kind::kBed;
     if (!is_bed && strand.kind != StrandInfo::Kind::kAdhesion) continue;
-    const bool is_b = IsOf(strand.b, facts_.liver);
-    if (is_b || IsOf(strand.a, facts_.liver)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
+    const bool is_b = IsOf(strand.b, anatomy_.liver);
+    if (is_b || IsOf(strand.a, anatomy_.liver)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
   }
   ooze_ = surgery::BedOoze(fibres, CalcPathology(scene_->patient).bed_bleeding,
                            scene_->operation->parameters.bed);
 }
 
-void Operation::Emit(const OperationEvent& event) noexcept {
-  if (emitted_.count < emitted_.events.size()) emitted_.events[emitted_.count++] = event;
+surgery::Fact Operation::FactOf(surgery::FactKind kind, int hand) const noexcept {
+  surgery::Fact fact;
+  fact.kind = kind;
+  fact.hand = static_cast<std::int8_t>(hand);
+  if (hand >= 0) fact.tool = Tool(hand).kind;
+  return fact;
+}
+
+void Operation::AddOfTube(surgery::FactKind kind, int hand, const surgery::TubePlace& place,
+                          const Vec3& position) noexcept {
+  surgery::Fact fact = FactOf(kind, hand);
+  fact.surface = static_cast<std::int32_t>(parts_.organs.size() + place.tube);
+  fact.along = place.arc;
+  fact.amount = static_cast<double>(parts_.vessels->CountCuts(place.tube));
+  fact.position = position;
+  fact.p_rest = parts_.vessels->RestPoint(place);
+  Add(fact);
 }
 
 bool Operation::IsOf(std::uint32_t node, std::int32_t organ) const noexcept {
@@ -181,8 +197,8 @@ bool Operation::MoveTool(int hand, const scene::HandControls& controls, bool is_
   std::size_t& active = active_[static_cast<std::size_t>(hand)];
   const bool wants_other = controls.tool != active && controls.tool < scene_->instruments[hand].tray.size();
   // a stone goes out with the tool that holds it, where the trocar is wide enough
-  const bool is_stuck = HoldsStone(hand) && stones_.HeldDiameter(hand) > WidestTool(hand);
-  const bool may = (!is_holding && !is_stuck) || retrieval_.bag_hand == hand;
+  const bool is_stuck = HoldsStone(hand) && parts_.stones.HeldDiameter(hand) > WidestTool(hand);
+  const bool may = (!is_holding && !is_stuck) || parts_.retrieval.bag_hand == hand;
   if (!wants_other || !may) {
     const bool is_refused = wants_other && !state.was_refused;
     state.was_refused = wants_other;
@@ -194,18 +210,18 @@ bool Operation::MoveTool(int hand, const scene::HandControls& controls, bool is_
   wanted.jaw = 0;
   state.exchange_seconds += seconds;
   if (state.exchange_seconds < kExchangeSeconds) return true;
-  if (retrieval_.bag_hand == hand) {
-    retrieval_.is_completed = retrieval_.is_in_bag;
+  if (parts_.retrieval.bag_hand == hand) {
+    parts_.retrieval.is_completed = parts_.retrieval.is_in_bag;
     return true;
   }
-  EmitRetrieved(hand, stones_.TakeOut(hand));
+  EmitRetrieved(hand, parts_.stones.TakeOut(hand));
   active = controls.tool;
   state.exchange_seconds = 0;
-  state.blade = {};
-  state.spread_upper = state.spread_lower = {};
-  state.clips = Tool(hand).clips;
-  state.has_clip_open = state.was_open = false;
-  acts_.SetExchanged(hand);
+  state.blade.blade = {};
+  state.spread = {};
+  state.clips.clips = Tool(hand).clips;
+  state.clips.has_clip_open = state.was_open = false;
+  Add(FactOf(surgery::FactKind::kToolExchanged, hand));
   return true;
 }
 
@@ -217,113 +233,40 @@ double Operation::WidestTool(int hand) const noexcept {
   return widest;
 }
 
-void Operation::BeginTick() noexcept {
-  emitted_.count = 0;
-  acts_.Clear();
-}
-
-void Operation::Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
-  change_.Clear();
-  for (int hand = 0; hand < kHandCount; ++hand) {
-    HandState& state = hands_[static_cast<std::size_t>(hand)];
-    state.has_current = state.is_rinsing = state.is_aspirating = false;
-    RefuseImpossible(hand, hands);
-    switch (Tool(hand).kind) {
-      case instrument::ToolKind::kScissors:
-        UseBlade(hand, hands, tissue, operated);
-        break;
-      case instrument::ToolKind::kHook:
-        UseElectrode(hand, hands, tissue);
-        UseBlade(hand, hands, tissue, operated);
-        break;
-      case instrument::ToolKind::kDissector:
-        Spread(hand, hands, tissue, operated);
-        UseElectrode(hand, hands, tissue);
-        break;
-      case instrument::ToolKind::kClipApplier:
-        UseClips(hand, hands, tissue);
-        break;
-      case instrument::ToolKind::kSuctionIrrigator:
-        UseFluids(hand, hands);
-        break;
-      case instrument::ToolKind::kBag:
-        UseBag(hand, hands, tissue, operated);
-        break;
-      case instrument::ToolKind::kGrasper:
-        break;
-    }
-  }
-}
-
-void Operation::Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+void Operation::Assist(const HandsNow& hands, OperatedTissue& tissue) noexcept {
   if (!assistant_) return;
   const scene::AssistantCommand command =
-      retrieval_.is_in_bag ? scene::AssistantCommand::kRelease : hands.input->assistant;
-  (void)assistant_->Step(command, tissue.state->position[facts_.assistant_node], hands.seconds, tissue.organs,
-                         *tissue.model, {}, operated.state);
+      parts_.retrieval.is_in_bag ? scene::AssistantCommand::kRelease : hands.input->assistant;
+  (void)assistant_->Step(command, tissue.state.position[anatomy_.assistant_node], hands.seconds,
+                         tissue.organs, tissue.model, {}, tissue.state);
 }
 
 bool Operation::EndCuts() noexcept {
-  if (change_.nodes.empty() && change_.springs.empty()) return false;
-  for (const surgery::NodeChange& node : change_.nodes) {
-    if (node.is_new && node.from[0] != geometry::kNone) heat_.CopyNode(node.from[0], node.node);
+  if (parts_.change.nodes.empty() && parts_.change.springs.empty()) return false;
+  for (const surgery::NodeChange& node : parts_.change.nodes) {
+    if (node.is_new && node.from[0] != geometry::kNone) parts_.heat.CopyNode(node.from[0], node.node);
   }
-  for (std::size_t i = 0; i < sheets_.size(); ++i) sheets_[i].Update(organs_[i].Mesh());
+  for (std::size_t i = 0; i < sheets_.size(); ++i) sheets_[i].Update(parts_.organs[i].Mesh());
   ++topology_version_;
-  stones_.ForgetSupports();
+  parts_.stones.ForgetSupports();
   return true;
-}
-
-cholecystectomy::Target Operation::TargetOfSurface(std::int32_t surface) const noexcept {
-  using cholecystectomy::Target;
-  if (surface < 0) return Target::kNullTarget;
-  if (surface == facts_.liver) return Target::kLiver;
-  if (surface == facts_.gallbladder) return Target::kGallbladder;
-  const roles::TubeRole tube = made_->surfaces[static_cast<std::size_t>(surface)].tube;
-  if (tube == roles::TubeRole::kCysticDuct) return Target::kCysticDuct;
-  return tube == roles::TubeRole::kCysticArtery ? Target::kCysticArtery : Target::kBloodVessel;
-}
-
-cholecystectomy::Target Operation::TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept {
-  using cholecystectomy::Target;
-  const std::size_t nodes = tissue.definition->rest.size();
-  if (part >= nodes) {
-    switch (strands_[part - nodes].kind) {
-      case StrandInfo::Kind::kBed:
-        return Target::kCysticPlate;
-      case StrandInfo::Kind::kAdhesion:
-        return Target::kAdhesion;
-      case StrandInfo::Kind::kPeritoneum:
-        return Target::kPeritoneum;
-      case StrandInfo::Kind::kTriangle:
-      case StrandInfo::Kind::kEnd:
-      case StrandInfo::Kind::kBand:
-        return Target::kCysticPedicle;
-    }
-  }
-  for (std::size_t i = 0; i < made_->surfaces.size(); ++i) {
-    const SurfaceInfo& surface = made_->surfaces[i];
-    if (part >= surface.first_node && part < surface.first_node + surface.node_count)
-      return TargetOfSurface(static_cast<std::int32_t>(i));
-  }
-  return Target::kNullTarget;
 }
 
 // --- what others see
 
 std::vector<collision::TubePiece> Operation::TubePieces() const {
   std::vector<collision::TubePiece> pieces;
-  const auto& graph = vessels_->Tubes().Graph();
+  const auto& graph = parts_.vessels->Tubes().Graph();
   for (const geometry::Edge& edge : graph.edges)
-    pieces.push_back({vessels_->Tubes().Node(edge[0]), vessels_->Tubes().Node(edge[1]),
+    pieces.push_back({parts_.vessels->Tubes().Node(edge[0]), parts_.vessels->Tubes().Node(edge[1]),
                       std::max(graph.radii[edge[0]], graph.radii[edge[1]])});
   return pieces;
 }
 
 std::vector<std::uint32_t> Operation::TubesOfPieces() const {
   std::vector<std::uint32_t> tubes;
-  for (const geometry::Edge& edge : vessels_->Tubes().Graph().edges)
-    tubes.push_back(vessels_->TubeOf(edge[0]));
+  for (const geometry::Edge& edge : parts_.vessels->Tubes().Graph().edges)
+    tubes.push_back(parts_.vessels->TubeOf(edge[0]));
   return tubes;
 }
 
@@ -333,18 +276,18 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.blanching.assign(nodes, 0.0F);
   snapshot.charring.assign(nodes, 0.0F);
   snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
-  snapshot.band_is_whole.assign(facts_.band_starts.size() - 1, 1);
+  snapshot.band_is_whole.assign(anatomy_.band_starts.size() - 1, 1);
   snapshot.sheets.assign(sheets_.size(), {});
-  snapshot.stones.assign(stones_.Size(), {});
-  snapshot.topology.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
+  snapshot.stones.assign(parts_.stones.Size(), {});
+  snapshot.topology.tube_pieces.assign(parts_.vessels->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
   std::size_t triangles = 0;
   snapshot.topology.first_triangle.clear();
-  for (const surgery::CuttableOrgan& organ : organs_) {
+  for (const surgery::CuttableOrgan& organ : parts_.organs) {
     snapshot.topology.first_triangle.push_back(static_cast<std::uint32_t>(triangles));
     triangles += organ.Mesh().TriangleCapacity();
   }
   snapshot.topology.triangles.assign(triangles, {});
-  snapshot.topology.triangle_count.assign(organs_.size(), 0);
+  snapshot.topology.triangle_count.assign(parts_.organs.size(), 0);
   snapshot.topology.version = std::numeric_limits<std::uint32_t>::max();
 }
 
@@ -352,25 +295,25 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto h = static_cast<std::size_t>(hand);
     snapshot.tools[h] = static_cast<std::uint8_t>(active_[h]);
-    snapshot.has_current[h] = hands_[h].has_current;
-    snapshot.is_rinsing[h] = hands_[h].is_rinsing;
-    snapshot.is_aspirating[h] = hands_[h].is_aspirating;
-    snapshot.clips_left[h] = hands_[h].clips;
+    snapshot.has_current[h] = hands_[h].electrode.has_current;
+    snapshot.is_rinsing[h] = hands_[h].suction.is_rinsing;
+    snapshot.is_aspirating[h] = hands_[h].suction.is_aspirating;
+    snapshot.clips_left[h] = hands_[h].clips.clips;
   }
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(),
             snapshot.strand_is_intact.begin());
   for (std::size_t i = 0; i < sheets_.size(); ++i) snapshot.sheets[i] = sheets_[i].Now();
   for (std::size_t band = 0; band < snapshot.band_is_whole.size(); ++band) {
     const auto own =
-        std::span(facts_.band_strands)
-            .subspan(facts_.band_starts[band], facts_.band_starts[band + 1] - facts_.band_starts[band]);
+        std::span(anatomy_.band_strands)
+            .subspan(anatomy_.band_starts[band], anatomy_.band_starts[band + 1] - anatomy_.band_starts[band]);
     snapshot.band_is_whole[band] =
         std::all_of(own.begin(), own.end(), [&](std::uint32_t i) { return tissue.strand_is_intact[i] != 0; });
   }
-  heat_.Publish(snapshot.blanching, snapshot.charring);
+  parts_.heat.Publish(snapshot.blanching, snapshot.charring);
   if (snapshot.topology.version != topology_version_) {
-    for (std::size_t i = 0; i < organs_.size(); ++i) {
-      const surgery::CuttableOrgan& organ = organs_[i];
+    for (std::size_t i = 0; i < parts_.organs.size(); ++i) {
+      const surgery::CuttableOrgan& organ = parts_.organs[i];
       const auto triangles = organ.Mesh().Triangles();
       snapshot.topology.triangle_count[i] = static_cast<std::uint32_t>(triangles.size());
       for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -381,78 +324,85 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
     }
     snapshot.topology.version = topology_version_;
   }
-  snapshot.topology.tube_piece_count = vessels_->PublishPieces(organs_.size(), snapshot.topology.tube_pieces);
-  snapshot.clip_count = vessels_->PublishClips(tissue.position, snapshot.clips);
-  snapshot.tube_cut_count = vessels_->PublishCuts(snapshot.tube_cuts);
-  snapshot.flow.leak_count = vessels_->PublishLeaks(tissue.position, snapshot.flow.leaks);
+  snapshot.topology.tube_piece_count =
+      parts_.vessels->PublishPieces(parts_.organs.size(), snapshot.topology.tube_pieces);
+  snapshot.clip_count = parts_.vessels->PublishClips(tissue.position, snapshot.clips);
+  snapshot.tube_cut_count = parts_.vessels->PublishCuts(snapshot.tube_cuts);
+  snapshot.flow.leak_count = parts_.vessels->PublishLeaks(tissue.position, snapshot.flow.leaks);
   snapshot.flow.ooze_count = ooze_.Publish(tissue.position, snapshot.flow.oozes);
-  stones_.Publish(snapshot.stones);
-  snapshot.flow.ledger = fluids_;
-  snapshot.flow.p_world_pool = facts_.p_pool;
-  snapshot.smoke = smoke_;
+  parts_.stones.Publish(snapshot.stones);
+  snapshot.flow.ledger = parts_.fluids;
+  snapshot.flow.p_world_pool = anatomy_.p_pool;
+  snapshot.smoke = parts_.smoke;
   snapshot.assistant.is_there = assistant_.has_value();
   if (assistant_) {
     snapshot.assistant.X_world_tool = assistant_->CalcPose();
     snapshot.assistant.jaw = assistant_->Joints().jaw;
     snapshot.assistant.is_holding = assistant_->Held().IsHolding();
   }
-  snapshot.is_gallbladder_free = retrieval_.is_gallbladder_free;
-  snapshot.is_in_bag = retrieval_.is_in_bag;
-  snapshot.is_completed = retrieval_.is_completed;
+  snapshot.is_gallbladder_free = parts_.retrieval.is_gallbladder_free;
+  snapshot.is_in_bag = parts_.retrieval.is_in_bag;
+  snapshot.is_completed = parts_.retrieval.is_completed;
 }
 
 void Operation::AddTo(OperationResult& result) const {
-  surgery::FlowNetwork network = vessels_->Map().network;
-  result.injuries = cholecystectomy::JudgeInjuries(facts_.biliary, vessels_->Acts(), network);
-  result.fluids = fluids_;
+  surgery::FlowNetwork network = parts_.vessels->Map().network;
+  result.injuries = cholecystectomy::JudgeInjuries(biliary_, parts_.vessels->Acts(), network);
+  result.fluids = parts_.fluids;
   result.bed_blood = ooze_.Lost();
-  result.stones = stones_.Count();
+  result.stones = parts_.stones.Count();
   result.injuries.spilled_stones = result.stones.spilled;
-  result.is_gallbladder_free = retrieval_.is_gallbladder_free;
-  result.is_in_bag = retrieval_.is_in_bag;
-  result.is_completed = retrieval_.is_completed;
+  result.is_gallbladder_free = parts_.retrieval.is_gallbladder_free;
+  result.is_in_bag = parts_.retrieval.is_in_bag;
+  result.is_completed = parts_.retrieval.is_completed;
 }
 
 // --- what a judge sees
 
 cholecystectomy::OperationJudge Operation::MakeJudge() const {
   const PatientTissue& tissue = *made_;
-  const cholecystectomy::JudgementSettings& settings = Judgement();
-  cholecystectomy::DissectedAnatomy anatomy =
+  const cholecystectomy::JudgementSettings& settings = scene_->operation->parameters.judgement;
+  cholecystectomy::DissectedAnatomy dissected =
       MakeDissectedAnatomy(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest);
-  anatomy.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest, facts_.main_ducts,
-                                        facts_.main_arteries, settings);
-  anatomy.exposable = CalcExposable(anatomy.entering, tissue.definition.rest, facts_.main_ducts,
-                                    facts_.main_arteries, settings);
-  anatomy.sight = MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest,
-                                    anatomy.exposable, settings);
-  return {cholecystectomy::DissectionMonitor(std::move(anatomy), tissue.definition.rest),
-          facts_.gallbladder >= 0, settings};
+  dissected.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest,
+                                          anatomy_.main_ducts, anatomy_.main_arteries, settings);
+  dissected.exposable = CalcExposable(dissected.entering, tissue.definition.rest, anatomy_.main_ducts,
+                                      anatomy_.main_arteries, settings);
+  dissected.sight = MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest,
+                                      dissected.exposable, settings);
+  cholecystectomy::JudgedAnatomy anatomy;
+  anatomy.targets = MakeTargetTable(tissue.surfaces, strands_);
+  anatomy.biliary = biliary_;
+  anatomy.main_ducts = anatomy_.main_ducts;
+  anatomy.organ_count = parts_.organs.size();
+  anatomy.has_critical_view = anatomy_.gallbladder >= 0;
+  anatomy.may_cut_organs = scene_->model.has_value();
+  return {std::move(anatomy),
+          cholecystectomy::DissectionMonitor(std::move(dissected), tissue.definition.rest), settings};
 }
 
-cholecystectomy::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,
-                                                         const instrument::Camera& camera) const noexcept {
-  cholecystectomy::OperationObservation now{
+surgery::OperationObservation Operation::Observe(const HandsNow& hands, const OperatedTissue& tissue,
+                                                 const instrument::Camera& camera) const noexcept {
+  surgery::OperationObservation now{
       hands.time,
       hands.seconds,
-      acts_,
+      facts_->All(),
       {},
-      *tissue.state,
-      *vessels_,
+      tissue.state,
+      *parts_.vessels,
       tissue.organs,
       camera,
-      {retrieval_.is_gallbladder_free, retrieval_.is_in_bag, retrieval_.is_completed},
-      fluids_.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
-      stones_.Count().spilled,
-      facts_.p_pool};
+      {parts_.retrieval.is_gallbladder_free, parts_.retrieval.is_in_bag, parts_.retrieval.is_completed},
+      parts_.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
+      parts_.stones.Count().spilled,
+      anatomy_.p_pool};
   for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
-    cholecystectomy::ObservedHand& seen = now.hands[hand];
-    const surgery::Grasp& grasp = (*hands.grasps)[hand];
+    surgery::HandObservation& seen = now.hands[hand];
+    const surgery::Grasp& grasp = tissue.grasps[hand];
     seen.p_world_tip = hands.X_proxy[hand].translation;
     seen.depth = hands.joints[hand].depth;
-    seen.is_retracting = grasp.IsHolding() && Tool(static_cast<int>(hand)).kind != instrument::ToolKind::kBag;
-    seen.is_holding_liver = grasp.surface == facts_.liver;
-    if (seen.is_retracting) seen.held = TargetOfSurface(grasp.surface);
+    seen.is_holding = grasp.IsHolding() && !instrument::AbilitiesOf(Tool(static_cast<int>(hand)).kind).is_bag;
+    seen.held_surface = grasp.surface;
     seen.change = hands.changes[hand];
   }
   return now;
@@ -478,17 +428,17 @@ void AddTo(const cholecystectomy::OperationJudge& judge, OperationResult& result
 // --- state
 
 void Operation::HandState::VisitState(base::StateArchive& archive) {
-  if (archive.IsRestoring()) is_rinsing = is_aspirating = false;
-  archive.Field("blade", blade);
-  archive.Field("spread_upper", spread_upper);
-  archive.Field("spread_lower", spread_lower);
-  archive.FixedField("fronts", fronts);
-  archive.Field("has_clip_open", has_clip_open);
-  archive.Field("opened", opened);
-  archive.Field("caught", caught);
-  archive.Field("clips", clips);
-  archive.Field("has_current", has_current);
-  archive.Field("idle_seconds", idle_seconds);
+  if (archive.IsRestoring()) suction = {};
+  archive.Field("blade", blade.blade);
+  archive.Field("spread_upper", spread.upper);
+  archive.Field("spread_lower", spread.lower);
+  archive.FixedField("fronts", blade.fronts);
+  archive.Field("has_clip_open", clips.has_clip_open);
+  archive.Field("opened", clips.opened);
+  archive.Field("caught", clips.caught);
+  archive.Field("clips", clips.clips);
+  archive.Field("has_current", electrode.has_current);
+  archive.Field("idle_seconds", electrode.idle_seconds);
   archive.Field("was_refused", was_refused);
   archive.Field("was_open", was_open);
   archive.Field("was_outside_emitted", was_outside_emitted);
@@ -496,34 +446,33 @@ void Operation::HandState::VisitState(base::StateArchive& archive) {
 }
 
 void Operation::VisitTopology(base::StateArchive& archive) {
-  archive.FixedField("organs", organs_);
-  vessels_->VisitTopology(archive);
+  archive.FixedField("organs", parts_.organs);
+  parts_.vessels->VisitTopology(archive);
 }
 
 void Operation::VisitState(base::StateArchive& archive) {
   archive.FixedField("sheets", sheets_);
-  archive.Field("vessels", *vessels_);
-  archive.Field("heat", heat_);
+  archive.Field("vessels", *parts_.vessels);
+  archive.Field("heat", parts_.heat);
   if (assistant_) archive.Field("assistant", *assistant_);
-  archive.Field("fluids", fluids_);
-  archive.Field("holes", wall_.holes);
-  archive.Field("stones", stones_);
+  archive.Field("fluids", parts_.fluids);
+  archive.Field("holes", parts_.wall.holes);
+  archive.Field("stones", parts_.stones);
   archive.Field("ooze", ooze_);
   archive.Field("active_tools", active_);
   archive.Field("left_hand", hands_[kLeft]);
   archive.Field("right_hand", hands_[kRight]);
   archive.Field("X_world_tools", X_world_tools_);
   for (TubeEnd& end : tube_ends_) archive.Field("is_tube_end_off", end.is_off);
-  archive.Field("leaked_seen", wall_.leaked_seen);
-  archive.Field("open_area", wall_.open_area);
-  archive.Field("smoke", smoke_);
+  archive.Field("leaked_seen", parts_.wall.leaked_seen);
+  archive.Field("open_area", parts_.wall.open_area);
+  archive.Field("smoke", parts_.smoke);
   archive.Field("topology_version", topology_version_);
-  archive.Field("is_in_bag", retrieval_.is_in_bag);
-  archive.Field("is_completed", retrieval_.is_completed);
-  archive.Field("is_gallbladder_free", retrieval_.is_gallbladder_free);
-  archive.Field("bag_hand", retrieval_.bag_hand);
+  archive.Field("is_in_bag", parts_.retrieval.is_in_bag);
+  archive.Field("is_completed", parts_.retrieval.is_completed);
+  archive.Field("is_gallbladder_free", parts_.retrieval.is_gallbladder_free);
+  archive.Field("bag_hand", parts_.retrieval.bag_hand);
   if (!archive.IsRestoring() || !archive.ok()) return;
-  BeginTick();
   for (std::size_t hand = 0; hand < active_.size(); ++hand) {
     if (active_[hand] < scene_->instruments[hand].tray.size()) continue;
     active_[hand] = 0;

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "operation/assistant.h"
+#include "operation/operated.h"
+#include "operation/tools/tool_use.h"
 #include "trocar/cholecystectomy/operation_judge.h"
 #include "trocar/cholecystectomy/pattern_cut_monitor.h"
 #include "trocar/instrument/camera.h"
@@ -19,53 +21,13 @@
 #include "trocar/surgery/bed_ooze.h"
 #include "trocar/surgery/cuttable_organ.h"
 #include "trocar/surgery/electrosurgery.h"
+#include "trocar/surgery/fact.h"
 #include "trocar/surgery/gallbladder_attachment.h"
 #include "trocar/surgery/gallstone_spill.h"
+#include "trocar/surgery/observation.h"
 #include "trocar/surgery/vessels.h"
 
 namespace trocar::simulation {
-
-/// State of the hands in a tick, with gravity, camera and time.
-struct HandsNow {
-  const scene::Input* input = nullptr;
-  std::array<instrument::TrocarJoints, instrument::kHandCount> joints;
-  std::array<math::Pose, instrument::kHandCount> X_proxy, X_device;
-  std::array<surgery::GraspChange, instrument::kHandCount> changes{};
-  const std::array<surgery::Grasp, instrument::kHandCount>* grasps = nullptr;
-  std::array<math::Vec3, instrument::kHandCount>
-      forces;                 ///< on the tools in the tick before, world frame [N]
-  math::Vec3 gravity;         ///< [m/s^2]
-  instrument::Camera camera;  ///< as the trainee saw when the hands moved
-  double time = 0;            ///< [s]
-  double seconds = 0;         ///< of the tick
-};
-
-/// The tissue that is operated on, as it is.
-struct TissueNow {
-  const tissue::TissueModel* model = nullptr;
-  const tissue::TissueDefinition* definition = nullptr;
-  const tissue::TissueState* state = nullptr;
-  const tissue::Conservation* conservation = nullptr;
-  const tissue::ConservationState* conserved = nullptr;
-  std::span<const surgery::OrganSurface> organs;
-  const surgery::TubeSet* tubes = nullptr;
-  std::span<const std::uint32_t> torn_springs;  ///< of walls, in this tick
-};
-
-/// Data that the stages of an operation change beside the operation itself: the tissue of TissueNow, and the hands' grasps.
-struct OperatedTissue {
-  tissue::TissueState& state;
-  tissue::ConservationState& conserved;
-  std::array<surgery::Grasp, instrument::kHandCount>& grasps;
-};
-
-/// Something that an operation emits: it becomes an event of the tick.
-struct OperationEvent {
-  scene::EventKind kind = scene::EventKind::kClipClosed;
-  std::int32_t hand = -1;
-  std::int32_t surface = -1;  ///< as in Event::organ
-  math::Vec3 p_rest;          ///< of a clip or a cut: where on its vessel at rest, world frame [m]
-};
 
 class Operation {
  public:
@@ -76,8 +38,9 @@ class Operation {
   static base::Result<std::unique_ptr<Operation>> Make(const scene::Scene& scene,
                                                        std::shared_ptr<const scene::PatientTissue> tissue);
 
-  /// Begins a tick, before all other calls: clears the events and acts of the tick before.
-  void BeginTick() noexcept;
+  /// Begins a tick, before all other calls.
+  /// \param facts  of the tick, to which the stages add; outlives the tick
+  void BeginTick(surgery::FactList& facts) noexcept { facts_ = &facts; }
 
   // --- tools
 
@@ -95,36 +58,33 @@ class Operation {
   /// \param is_holding  tissue
   /// \note Real-time safe.
   double StopJaw(int hand, double jaw_before, double jaw, bool is_holding) noexcept;
-  bool HoldsStone(int hand) const { return stones_.HeldBy(hand) >= 0; }
+  bool HoldsStone(int hand) const { return parts_.stones.HeldBy(hand) >= 0; }
 
   // --- the stages of a tick
 
   /// Tools cut, clip, rinse, and let current flow.
   /// \note Real-time safe, as are all stages.
-  void Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void Act(const HandsNow& hands, OperatedTissue& tissue) noexcept;
   /// Heat flows, and tissue that the current has heated gives way.
-  void Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void Heat(const HandsNow& hands, OperatedTissue& tissue) noexcept;
   /// The third hand.
-  void Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void Assist(const HandsNow& hands, OperatedTissue& tissue) noexcept;
   /// Completes the cuts of Act. \return whether nodes or springs changed: then Change() says which
   bool EndCuts() noexcept;
-  const surgery::TopologyChange& Change() const { return change_; }
+  const surgery::TopologyChange& Change() const { return parts_.change; }
   /// After the solve: blood and bile run, stones leave with the bile, clips slip.
-  void Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void Flow(const HandsNow& hands, OperatedTissue& tissue) noexcept;
   /// Loose stones and clips fall, are pushed and carried.
-  void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void MoveLoose(const HandsNow& hands, const OperatedTissue& tissue) noexcept;
 
-  /// Observation of this tick for a judge. It refers to the state of the tick, which has to outlive it.
+  /// Observation of this tick so far. It refers to the state of the tick, which has to outlive it.
   /// \param camera  through which the trainee looks
-  cholecystectomy::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
-                                                const instrument::Camera& camera) const noexcept;
-  /// Events of this tick.
-  std::span<const OperationEvent> Events() const { return std::span(emitted_.events).first(emitted_.count); }
-
+  surgery::OperationObservation Observe(const HandsNow& hands, const OperatedTissue& tissue,
+                                        const instrument::Camera& camera) const noexcept;
   /// A judge who knows this operation's anatomy.
   cholecystectomy::OperationJudge MakeJudge() const;
 
-  const surgery::CuttableOrgan& Organ(std::size_t i) const { return organs_[i]; }
+  const surgery::CuttableOrgan& Organ(std::size_t i) const { return parts_.organs[i]; }
   /// Ducts and vessels as they are now, for contacts.
   std::vector<collision::TubePiece> TubePieces() const;
   std::vector<std::uint32_t> TubesOfPieces() const;
@@ -141,15 +101,11 @@ class Operation {
 
  private:
   struct HandState {
-    surgery::BladeState blade, spread_upper, spread_lower;
-    std::vector<geometry::CutFront> fronts;          // (organs)
-    bool has_clip_open = false;                      // the applier has been opened since its last clip
-    double opened = 0;                               // the applier's jaws, at the most [rad]
-    std::optional<surgery::Vessels::Caught> caught;  // between them then
-    int clips = 0;
-    bool has_current = false;
-    bool is_rinsing = false, is_aspirating = false;  // in this tick; decides nothing, so that no state has it
-    double idle_seconds = 0;                         // pedal down, nothing touched
+    BladeUse blade;
+    SpreadUse spread;
+    ElectrodeUse electrode;
+    ClipUse clips;
+    SuctionUse suction;
     bool was_refused = false;
     bool was_open = false;  // jaws, since they closed last
     bool was_outside_emitted = false;
@@ -166,50 +122,29 @@ class Operation {
   void MakeAssistant();
   void MakeOoze();
   double WidestTool(int hand) const noexcept;
-  void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  void CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands, const TissueNow& tissue,
-               OperatedTissue& operated, bool cuts_strands) noexcept;
-  void CutStrands(const surgery::BladeMove& move, int hand, cholecystectomy::InstrumentKind kind,
-                  const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  void CutOrgans(const surgery::BladeMove& move, int hand, cholecystectomy::InstrumentKind kind,
-                 const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  void Spread(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  void UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
-  void UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
-  void UseFluids(int hand, const HandsNow& hands) noexcept;
-  void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
-  void OpenTubeEnds(const TissueNow& tissue) noexcept;
+  ToolUse UseOf(int hand, const HandsNow& hands, OperatedTissue& tissue) noexcept;
+  void OpenTubeEnds(const OperatedTissue& tissue) noexcept;
   void KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept;
-  void SpillStones(double leaked, const TissueNow& tissue) noexcept;
-  void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void SpillStones(double leaked, const OperatedTissue& tissue) noexcept;
+  void SlipClips(const HandsNow& hands, const OperatedTissue& tissue) noexcept;
   void EmitRetrieved(int hand, int count) noexcept;
-  void RefuseImpossible(int hand, const HandsNow& hands) noexcept;
-  cholecystectomy::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
-  cholecystectomy::Target TargetOfSurface(std::int32_t surface) const noexcept;
+  static void RefuseImpossible(ToolUse& use, HandState& state) noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
-  void Emit(const OperationEvent& event) noexcept;
+  /// A fact of that hand and the tool in it; of no hand: -1.
+  surgery::Fact FactOf(surgery::FactKind kind, int hand) const noexcept;
+  void Add(const surgery::Fact& fact) noexcept { facts_->Add(fact); }
+  void AddOfTube(surgery::FactKind kind, int hand, const surgery::TubePlace& place,
+                 const math::Vec3& position) noexcept;
   const scene::ElectrodeParameters& Electrode() const noexcept {
     return scene_->operation->parameters.electrode;
   }
   const scene::SuctionParameters& Suction() const noexcept { return scene_->operation->parameters.suction; }
-  const cholecystectomy::JudgementSettings& Judgement() const noexcept {
-    return scene_->operation->parameters.judgement;
-  }
 
   const scene::Scene* scene_;  // outlives this
   std::vector<scene::StrandInfo> strands_;
   std::shared_ptr<const scene::PatientTissue> made_;
-  /// Anatomy of the patient that is asked for again and again; constant.
-  struct AnatomyFacts {
-    std::int32_t liver = -1, gallbladder = -1;
-    std::vector<std::uint32_t> main_ducts, main_arteries;  // nodes of those that must stay
-    cholecystectomy::BiliaryAnatomy biliary;               // of the vessels
-    math::Vec3 p_pool;                                     // where blood and bile gather
-    double deepest = 0;                                    // z below which nothing falls [m]
-    std::uint32_t assistant_node = 0;                      // of what the assistant takes
-    std::vector<std::uint32_t> band_strands, band_starts;  // (bands) the strands of each, by band_starts
-  };
-  AnatomyFacts facts_;
+  OperatedAnatomy anatomy_;
+  cholecystectomy::BiliaryAnatomy biliary_;  // of the vessels
   /// Where a duct or artery enters the gallbladder.
   struct TubeEnd {
     std::uint32_t node = 0;              // of the tube
@@ -219,43 +154,18 @@ class Operation {
   };
   std::vector<TubeEnd> tube_ends_;
 
-  std::vector<surgery::CuttableOrgan> organs_;
+  OperatedParts parts_;
   std::vector<cholecystectomy::PatternCutMonitor> sheets_;  // (ModelSetup::sheets), which are the organs
-  std::optional<surgery::Vessels> vessels_;
-  surgery::Electrosurgery heat_;
   surgery::GallbladderAttachment attachment_;
-  cholecystectomy::EmittedActs acts_;
   std::optional<Assistant> assistant_;
-  surgery::TopologyChange change_;
-  surgery::FluidLedger fluids_;
-  /// Damage to the gallbladder's wall, and the leak that has been booked.
-  struct Wall {
-    surgery::WallHoles holes;
-    double open_area = 0;    // that cuts have made [m^2]
-    double leaked_seen = 0;  // that has been booked [m^3]
-  };
-  Wall wall_;
-  surgery::GallstoneSpill stones_;
   surgery::BedOoze ooze_;
   std::vector<surgery::LooseStone*> loose_clips_;  // scratch
 
   std::array<std::size_t, instrument::kHandCount> active_{};
   std::array<HandState, instrument::kHandCount> hands_;
   std::array<math::Pose, instrument::kHandCount> X_world_tools_;  // that are seen, in the tick before
-  double smoke_ = 0;
   std::uint32_t topology_version_ = 0;
-  /// How far the gallbladder is on its way out.
-  struct Retrieval {
-    bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
-    std::int32_t bag_hand = -1;
-  };
-  Retrieval retrieval_;
-  /// Of this tick.
-  struct Emitted {
-    std::array<OperationEvent, 8> events{};
-    std::size_t count = 0;
-  };
-  Emitted emitted_;
+  surgery::FactList* facts_ = nullptr;  // outlives the tick
 };
 
 /// Adds the judge's part: errors, facts of the dissection, critical view and phase.

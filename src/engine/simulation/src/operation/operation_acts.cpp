@@ -1,355 +1,119 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each tool does to tissue.
+// Tools at work, and what their heat does.
 #include <algorithm>
 #include <cmath>
 
 #include "operation/operation.h"
-#include "trocar/geometry/openings.h"
-#include "trocar/math/elementary.h"
 
 namespace trocar::simulation {
 
-using cholecystectomy::EmittedAct;
-using math::Pose;
 using math::Vec3;
-using scene::EventKind;
 using scene::HandControls;
+using surgery::FactKind;
 
 namespace {
 
-using cholecystectomy::InstrumentKind;
-using cholecystectomy::OperationError;
-using cholecystectomy::Verb;
-
-// Clip applier: closed and open again, as shares of its opening
-constexpr double kClipClosed = 0.12, kClipOpen = 0.6;
-
-constexpr double kOutOfTrocar = 0.035;  // a tool that is less deep has its tip in the trocar [m]
-
-constexpr double kMouth = 0.030;  // of the bag: what lies within of its tip is in it [m]
-constexpr double kBagGrip = 1e4;  // nothing slips out of a closed bag [N]
-
-/// A jaw as an edge, hinge to tip.
-geometry::BladeEdge JawEdge(const instrument::Tool& tool, const Pose& X_world_tool, double jaw, int side) {
-  return {X_world_tool * instrument::JawHinge(tool), X_world_tool * instrument::JawTip(tool, jaw, side)};
-}
+constexpr double kOutOfTrocar = 0.035;   // a tool that is less deep has its tip in the trocar [m]
+constexpr std::size_t kMostParted = 16;  // nodes that heat parts in a tick
 
 }  // namespace
 
-void Operation::UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue,
-                         OperatedTissue& operated) noexcept {
+ToolUse Operation::UseOf(int hand, const HandsNow& hands, OperatedTissue& tissue) noexcept {
   const auto h = static_cast<std::size_t>(hand);
-  const bool is_hook = Tool(hand).kind == instrument::ToolKind::kHook;
-  surgery::BladeSettings settings;
-  settings.kind = is_hook ? surgery::BladeKind::kHook : surgery::BladeKind::kScissors;
-  // the hook that is seen never enters tissue: it cuts where the hand presses it
-  const Pose& X = is_hook ? hands.X_device[h] : hands.X_proxy[h];
-  const auto move = surgery::MoveBlade(Tool(hand), X, hands.joints[h].jaw, hands.input->controls[h].cut,
-                                       settings, hands_[h].blade);
-  if (!move) {
-    for (geometry::CutFront& front : hands_[h].fronts) front = {};
-    return;
-  }
-  CutWith(*move, hand, hands, tissue, operated, !is_hook);
+  return {hand,
+          Tool(hand),
+          hands.X_proxy[h],
+          hands.X_device[h],
+          hands.joints[h].jaw,
+          hands.joints[h].depth,
+          hands.seconds,
+          hands.input->controls[h],
+          scene_->operation->parameters,
+          *made_,
+          anatomy_,
+          tissue,
+          parts_,
+          *facts_};
 }
 
-void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands,
-                        const TissueNow& tissue, OperatedTissue& operated, bool cuts_strands) noexcept {
-  const InstrumentKind kind = cuts_strands ? InstrumentKind::kScissors : InstrumentKind::kHook;
-  if (cuts_strands) CutStrands(move, hand, kind, tissue, operated);
-  std::array<surgery::TubePlace, surgery::CuttableTubes::kMostCuts> places;
-  const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
-  for (const surgery::TubePlace& place : std::span(places).first(tubes)) {
-    const auto surface = static_cast<std::int32_t>(organs_.size() + place.tube);
-    EmittedAct act;
-    act.kind = EmittedAct::Kind::kCut;
-    act.position = hands.X_proxy[static_cast<std::size_t>(hand)].translation;
-    act.hand = hand;
-    act.vessel = cholecystectomy::JudgePlace(facts_.biliary, *vessels_, place);
-    acts_.Add(act);
-    Emit({EventKind::kTubeCut, hand, surface, vessels_->RestPoint(place)});
-    acts_.Add({kind, Verb::kCut, TargetOfSurface(surface)}, hand);
-  }
-  CutOrgans(move, hand, kind, hands, tissue, operated);
-}
-
-void Operation::CutStrands(const surgery::BladeMove& move, int hand, InstrumentKind kind,
-                           const TissueNow& tissue, OperatedTissue& operated) noexcept {
-  std::array<std::uint32_t, 64> cut;
-  const std::size_t count = surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, cut);
-  for (const std::uint32_t strand : std::span(cut).first(count)) {
-    operated.state.strand_is_intact[strand] = 0;
-    const auto part = static_cast<std::uint32_t>(tissue.definition->rest.size()) + strand;
-    acts_.Add({kind, Verb::kCut, TargetOf(tissue, part)}, hand);
+void Operation::Act(const HandsNow& hands, OperatedTissue& tissue) noexcept {
+  parts_.change.Clear();
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
+    HandState& state = hands_[static_cast<std::size_t>(hand)];
+    state.electrode.has_current = false;
+    state.suction = {};
+    ToolUse use = UseOf(hand, hands, tissue);
+    RefuseImpossible(use, state);
+    const instrument::ToolAbilities& can = instrument::AbilitiesOf(use.tool.kind);
+    if (can.spreads) Spread(use, state.spread);
+    if (can.electrode != instrument::Electrode::kNone) UseElectrode(use, state.electrode);
+    if (can.blade != instrument::Blade::kNone) UseBlade(use, state.blade);
+    if (can.holds_clips) UseClips(use, state.clips);
+    if (can.staples) UseStapler(use, state.clips, state.blade.fronts);
+    if (can.sucks) UseSuction(use, state.suction);
+    if (can.is_bag) UseBag(use, assistant_ ? &assistant_->Held() : nullptr);
   }
 }
 
-void Operation::CutOrgans(const surgery::BladeMove& move, int hand, InstrumentKind kind,
-                          const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
-  const auto h = static_cast<std::size_t>(hand);
-  const Vec3& tip = hands.X_proxy[h].translation;
-  for (std::size_t i = 0; i < organs_.size(); ++i) {
-    const geometry::CutReport report =
-        organs_[i].Cut(move.before, move.now, tissue.state->position, hands_[h].fronts[i], change_);
-    if (!report.HasChanged()) continue;
-    const auto organ = static_cast<std::int32_t>(i);
-    acts_.Add({kind, Verb::kCut, TargetOfSurface(organ)}, hand);
-    if (scene_->model) continue;  // a sheet is there to be cut
-    if (organ != facts_.gallbladder) {
-      acts_.Report(OperationError::kStructureTorn, tip, hand);
-      continue;
-    }
-    std::array<geometry::Opening, 8> openings;
-    const std::size_t found = std::min(openings.size(), geometry::FindOpenings(organs_[i].Mesh(), openings));
-    double area = 0;
-    for (std::size_t k = 0; k < found; ++k) area += openings[k].area;
-    if (found == 0) continue;
-    acts_.Report(OperationError::kGallbladderPerforated, tip, hand);
-    tissue.conservation->Perforate(i, std::max(Electrode().burnt_hole, area - wall_.open_area),
-                                   operated.conserved);
-    wall_.open_area = std::max(area, wall_.open_area);
-  }
+/// Answers what cannot be done, once each time that it is tried.
+void Operation::RefuseImpossible(ToolUse& use, HandState& state) noexcept {
+  const HandControls& controls = use.controls;
+  const instrument::Tool& tool = use.tool;
+  const instrument::ToolAbilities& can = instrument::AbilitiesOf(tool.kind);
+  const bool has_bitten = can.bites && state.was_open && use.jaw <= kBitten * tool.max_jaw;
+  if (use.jaw > kOpenAgain * tool.max_jaw) state.was_open = true;
+  if (has_bitten) state.was_open = false;
+  const bool is_used =
+      has_bitten || controls.cut || controls.coagulate || controls.rinse || controls.aspirate;
+  const bool is_outside = use.depth < kOutOfTrocar;
+  if (is_used && is_outside && !state.was_outside_emitted)
+    use.facts.Add(use.MakeFact(FactKind::kUsedOutside));
+  state.was_outside_emitted = is_outside && (is_used || state.was_outside_emitted);
+  if (has_bitten && !is_outside && (can.holds_clips || can.staples) && state.clips.clips == 0 &&
+      !state.clips.has_clip_open)
+    use.facts.Add(use.MakeFact(FactKind::kNoClipsLeft));
 }
 
-void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue,
-                       OperatedTissue& operated) noexcept {
-  const auto h = static_cast<std::size_t>(hand);
-  HandState& state = hands_[h];
-  const double jaw = hands.joints[h].jaw;
-  const bool opens = jaw > state.spread_upper.jaw;
-  state.spread_upper.jaw = jaw;
-  const auto edges = std::array{JawEdge(Tool(hand), hands.X_proxy[h], jaw, +1),
-                                JawEdge(Tool(hand), hands.X_proxy[h], jaw, -1)};
-  auto& upper = state.spread_upper.edge;
-  auto& lower = state.spread_lower.edge;
-  if (opens && upper && lower) {
-    // what a jaw pushes before it as it opens gives way, fibre by fibre
-    for (const auto& move : {surgery::BladeMove{*upper, edges[0]}, surgery::BladeMove{*lower, edges[1]}}) {
-      std::array<std::uint32_t, 16> torn;
-      const std::size_t count =
-          surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, torn);
-      for (std::size_t i = 0; i < count; ++i) {
-        const scene::StrandInfo::Kind kind = strands_[torn[i]].kind;
-        if (kind == scene::StrandInfo::Kind::kEnd) continue;  // a duct's end does not give way to a jaw
-        operated.state.strand_is_intact[torn[i]] = 0;
-        acts_.Add({InstrumentKind::kGrasper, Verb::kDissect,
-                   TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + torn[i])},
-                  hand);
-      }
-    }
-  }
-  upper = edges[0];
-  lower = edges[1];
-}
-
-void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
-  const auto h = static_cast<std::size_t>(hand);
-  const HandControls& controls = hands.input->controls[h];
-  if (!controls.cut && !controls.coagulate) {
-    hands_[h].idle_seconds = 0;
-    return;
-  }
-  const instrument::Tool& tool = Tool(hand);
-  const Pose& X = hands.X_proxy[h];
-  surgery::Electrosurgery::Electrode electrode;
-  if (tool.kind == instrument::ToolKind::kHook) {
-    const surgery::BladeSettings blade;
-    electrode.bare = {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b};
-  } else {
-    electrode.bare = {X.translation, X * Vec3{0, 0, 0.25 * tool.jaw_length}};
-  }
-  const scene::CurrentParameters& current = controls.cut ? Electrode().cut : Electrode().coagulate;
-  electrode.power = current.power;
-  electrode.reach = current.reach;
-  if (!instrument::IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
-    acts_.Report(OperationError::kEnergyOutOfView, X.translation, hand);
-  std::array<surgery::Electrosurgery::Target, 96> targets;
-  const std::size_t count =
-      heat_.FindTargets(electrode, tissue.organs, *tissue.tubes, *tissue.state, targets);
-  double& idle = hands_[h].idle_seconds;
-  if (count == 0) {
-    idle += hands.seconds;
-    if (idle > Judgement().idle_seconds)
-      acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
-    return;
-  }
-  idle = 0;
-  hands_[h].has_current = true;
-  heat_.AddPower(electrode, std::span(targets).first(count));
-  if (controls.coagulate)
-    vessels_->Seal(X.translation, Electrode().seal_reach,
-                   electrode.power * hands.seconds / Electrode().seal_heat, tissue.state->position);
-  const InstrumentKind kind =
-      tool.kind == instrument::ToolKind::kHook ? InstrumentKind::kHook : InstrumentKind::kBipolar;
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool is_strand = targets[i].part >= tissue.definition->rest.size();
-    acts_.Add({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)}, hand);
-  }
-  const bool is_near =
-      std::any_of(facts_.main_ducts.begin(), facts_.main_ducts.end(), [&](std::uint32_t node) {
-        return math::Distance(tissue.state->position[node], X.translation) < Judgement().near_duct;
-      });
-  if (is_near) acts_.Report(OperationError::kEnergyNearDuct, X.translation, hand);
-}
-
-void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
-  std::array<std::uint32_t, 16> parted;
-  const std::size_t count = heat_.Step(hands.seconds, operated.state, parted);
-  smoke_ += Electrode().smoke_by_heat * heat_.Power() * hands.seconds;
+void Operation::Heat(const HandsNow& hands, OperatedTissue& tissue) noexcept {
+  std::array<std::uint32_t, kMostParted> parted;
+  const std::size_t count = parts_.heat.Step(hands.seconds, tissue.state, parted);
+  parts_.smoke += Electrode().smoke_by_heat * parts_.heat.Power() * hands.seconds;
   std::int32_t hand = -1;
   for (int i = 0; i < instrument::kHandCount; ++i) {
-    if (hands_[static_cast<std::size_t>(i)].has_current) hand = i;
+    if (hands_[static_cast<std::size_t>(i)].electrode.has_current) hand = i;
   }
   for (const std::uint32_t node : std::span(parted).first(count)) {
-    const Vec3& p = tissue.state->position[node];
+    surgery::Fact fact = FactOf(FactKind::kOrganBurnt, hand);
+    fact.position = tissue.state.position[node];
     surgery::TubePlace place;
-    if (IsOf(node, facts_.gallbladder)) {
-      tissue.conservation->Perforate(static_cast<std::size_t>(facts_.gallbladder), Electrode().burnt_hole,
-                                     operated.conserved);
-      wall_.holes.Add(node, Electrode().burnt_rim);
-      acts_.Report(OperationError::kGallbladderPerforated, p, hand);
-    } else if (IsOf(node, facts_.liver)) {
-      acts_.Report(OperationError::kLiverBurnt, p, hand);
-    } else if (vessels_->MakeHole(node, Electrode().burnt_hole, place)) {
-      EmittedAct act;
-      act.kind = EmittedAct::Kind::kHole;
-      act.position = p;
-      act.hand = hand;
-      act.vessel = cholecystectomy::JudgePlace(facts_.biliary, *vessels_, place);
-      acts_.Add(act);
+    if (IsOf(node, anatomy_.gallbladder)) {
+      tissue.conservation.Perforate(static_cast<std::size_t>(anatomy_.gallbladder), Electrode().burnt_hole,
+                                    tissue.conserved);
+      parts_.wall.holes.Add(node, Electrode().burnt_rim);
+      fact.surface = anatomy_.gallbladder;
+      Add(fact);
+    } else if (IsOf(node, anatomy_.liver)) {
+      fact.surface = anatomy_.liver;
+      Add(fact);
+    } else if (parts_.vessels->MakeHole(node, Electrode().burnt_hole, place)) {
+      AddOfTube(FactKind::kTubeBurnt, hand, place, fact.position);
     }
   }
   OpenTubeEnds(tissue);
 }
 
 /// A duct or artery that was burnt or torn off the gallbladder is open there, as one that was cut.
-void Operation::OpenTubeEnds(const TissueNow& tissue) noexcept {
-  if (retrieval_.is_in_bag) return;
+void Operation::OpenTubeEnds(const OperatedTissue& tissue) noexcept {
+  if (parts_.retrieval.is_in_bag) return;
   for (TubeEnd& end : tube_ends_) {
     if (end.is_off || std::any_of(end.strands.begin(), end.strands.end(),
-                                  [&](std::uint32_t i) { return tissue.state->strand_is_intact[i] != 0; }))
+                                  [&](std::uint32_t i) { return tissue.state.strand_is_intact[i] != 0; }))
       continue;
     end.is_off = true;
     surgery::TubePlace place;
-    if (!vessels_->MakeHole(end.node, end.section, place)) continue;
-    EmittedAct act;
-    act.kind = EmittedAct::Kind::kHole;
-    act.position = tissue.state->position[end.node];
-    act.vessel = cholecystectomy::JudgePlace(facts_.biliary, *vessels_, place);
-    // of what is divided already only the gallbladder's side is left
-    if (act.vessel.cuts == 0) acts_.Add(act);
+    if (parts_.vessels->MakeHole(end.node, end.section, place))
+      AddOfTube(FactKind::kTubeTornOff, -1, place, tissue.state.position[end.node]);
   }
-}
-
-void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
-  const auto h = static_cast<std::size_t>(hand);
-  HandState& state = hands_[h];
-  const instrument::Tool& tool = Tool(hand);
-  const double jaw = hands.joints[h].jaw;
-  if (jaw > kClipOpen * tool.max_jaw) {
-    state.has_clip_open = state.clips > 0;
-    // as long as they open, or rest; what lies there when they close is caught
-    if (jaw >= state.opened || !state.caught) {
-      state.opened = jaw;
-      state.caught = vessels_->Catch(tool, hands.X_proxy[h], jaw, tissue.state->position);
-    }
-  }
-  if (!state.has_clip_open || jaw > kClipClosed * tool.max_jaw) return;
-  state.has_clip_open = false;
-  --state.clips;
-  const surgery::ClipResult clip =
-      vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
-  state.caught.reset();
-  state.opened = 0;
-  EmittedAct act;
-  act.kind = EmittedAct::Kind::kClip;
-  act.position = hands.X_proxy[h].translation;
-  act.hand = hand;
-  act.clip = clip;
-  if (clip.kind != surgery::ClipResult::Kind::kLost)
-    act.vessel = cholecystectomy::JudgePlace(facts_.biliary, *vessels_, clip.place);
-  acts_.Add(act);
-  if (clip.kind == surgery::ClipResult::Kind::kLost) return;
-  const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
-  acts_.Add({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
-  Emit({EventKind::kClipClosed, hand, surface, vessels_->RestPoint(clip.place)});
-}
-
-/// Answers what cannot be done, once each time that it is tried.
-void Operation::RefuseImpossible(int hand, const HandsNow& hands) noexcept {
-  const auto h = static_cast<std::size_t>(hand);
-  HandState& state = hands_[h];
-  const HandControls& controls = hands.input->controls[h];
-  const instrument::Tool& tool = Tool(hand);
-  const bool bites =
-      tool.kind == instrument::ToolKind::kScissors || tool.kind == instrument::ToolKind::kClipApplier;
-  const double jaw = hands.joints[h].jaw;
-  const bool has_bitten = bites && state.was_open && jaw <= kClipClosed * tool.max_jaw;
-  if (jaw > kClipOpen * tool.max_jaw) state.was_open = true;
-  if (has_bitten) state.was_open = false;
-  const bool is_used =
-      has_bitten || controls.cut || controls.coagulate || controls.rinse || controls.aspirate;
-  const bool is_outside = hands.joints[h].depth < kOutOfTrocar;
-  if (is_used && is_outside && !state.was_outside_emitted) Emit({EventKind::kUsedOutside, hand, -1, {}});
-  state.was_outside_emitted = is_outside && (is_used || state.was_outside_emitted);
-  if (has_bitten && !is_outside && tool.kind == instrument::ToolKind::kClipApplier && state.clips == 0 &&
-      !state.has_clip_open)
-    Emit({EventKind::kNoClipsLeft, hand, -1, {}});
-}
-
-void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
-  const auto h = static_cast<std::size_t>(hand);
-  const HandControls& controls = hands.input->controls[h];
-  hands_[h].is_rinsing = controls.rinse;
-  hands_[h].is_aspirating = controls.aspirate;
-  if (controls.rinse) {
-    fluids_.Rinse(Suction().rinse_rate * hands.seconds);
-    acts_.Add({InstrumentKind::kIrrigator, Verb::kIrrigate, cholecystectomy::Target::kFluid}, hand);
-  }
-  if (!controls.aspirate) return;
-  smoke_ *= std::max(0.0, 1.0 - Suction().smoke_rate * hands.seconds);
-  EmitRetrieved(hand, stones_.Aspirate(hands.X_proxy[h].translation,
-                                       2.0 * instrument::kSuctionBore * Tool(hand).shaft_radius));
-  // the pool as a half sphere
-  const double radius = math::Cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
-  if (math::Distance(hands.X_proxy[h].translation, facts_.p_pool) > radius + Suction().pool_reach) return;
-  if (fluids_.Aspirate(Suction().aspirate_rate * hands.seconds) > 0.0)
-    acts_.Add({InstrumentKind::kIrrigator, Verb::kAspirate, cholecystectomy::Target::kFluid}, hand);
-}
-
-void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
-                       OperatedTissue& operated) noexcept {
-  const auto h = static_cast<std::size_t>(hand);
-  acts_.Add({InstrumentKind::kSpecimenBag, Verb::kPack, cholecystectomy::Target::kGallbladder}, hand);
-  if (!retrieval_.is_in_bag) EmitRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
-  if (retrieval_.is_in_bag || facts_.gallbladder < 0 || !retrieval_.is_gallbladder_free) return;
-  const scene::SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(facts_.gallbladder)];
-  Vec3 centre;
-  for (std::uint32_t i = 0; i < surface.node_count; ++i)
-    centre += tissue.state->position[surface.first_node + i] / static_cast<double>(surface.node_count);
-  const Pose& X = hands.X_device[h];
-  if (math::Distance(centre, X.translation) > kMouth) return;
-  // the other hands let go, and the bag closes around it
-  for (surgery::Grasp& grasp : operated.grasps) {
-    if (grasp.surface == facts_.gallbladder) surgery::ReleaseGrasp(*tissue.model, grasp, operated.state);
-  }
-  if (assistant_) surgery::ReleaseGrasp(*tissue.model, assistant_->Held(), operated.state);
-  surgery::Grasp& held = operated.grasps[h];
-  held = {};
-  held.surface = facts_.gallbladder;
-  held.pinch = held.damage_pinch = kBagGrip;
-  const auto capacity = static_cast<std::uint32_t>(surgery::Grasp::kCapacity);
-  const std::uint32_t step = std::max(1U, surface.node_count / capacity);
-  const Pose X_tool_world = math::Inverse(X);
-  for (std::uint32_t i = 0; i < surface.node_count && held.count < surgery::Grasp::kCapacity; i += step) {
-    const std::uint32_t node = surface.first_node + i;
-    held.nodes[held.count] = node;
-    held.p_tool_node[held.count++] = X_tool_world * tissue.state->position[node];
-    operated.state.condition[node] = tissue::NodeCondition::kPrescribed;
-  }
-  EmitRetrieved(hand, stones_.BagWith(facts_.gallbladder));
-  retrieval_.is_in_bag = true;
-  retrieval_.bag_hand = hand;
 }
 
 }  // namespace trocar::simulation

@@ -8,69 +8,69 @@
 namespace trocar::simulation {
 
 using instrument::kHandCount;
-using scene::EventKind;
+using surgery::FactKind;
 
 namespace {
-
-using cholecystectomy::OperationError;
 
 constexpr double kTornHole = 1e-6;     // of the wall that a torn spring leaves open at each end [m^2]
 constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m]
 
 }  // namespace
 
-void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+void Operation::Flow(const HandsNow& hands, OperatedTissue& tissue) noexcept {
   tissue::OrganVolume* const gallbladder =
-      facts_.gallbladder >= 0 ? &operated.conserved.organs[static_cast<std::size_t>(facts_.gallbladder)]
-                              : nullptr;
+      anatomy_.gallbladder >= 0 ? &tissue.conserved.organs[static_cast<std::size_t>(anatomy_.gallbladder)]
+                                : nullptr;
   if (gallbladder != nullptr) {
     KeepLeaked(*gallbladder);
-    const double now = gallbladder->leaked - wall_.leaked_seen;
-    if (now > 0.0) fluids_.Leak(surgery::Fluid::kBile, now);
+    const double now = gallbladder->leaked - parts_.wall.leaked_seen;
+    if (now > 0.0) parts_.fluids.Leak(surgery::Fluid::kBile, now);
     SpillStones(now, tissue);
   }
-  vessels_->Flow(hands.seconds, facts_.gallbladder, operated.conserved, fluids_);
+  parts_.vessels->Flow(hands.seconds, anatomy_.gallbladder, tissue.conserved, parts_.fluids);
   SlipClips(hands, tissue);
-  fluids_.Leak(surgery::Fluid::kBlood,
-               ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
-  if (gallbladder != nullptr) wall_.leaked_seen = gallbladder->leaked;
-  smoke_ = std::clamp(smoke_ * (1.0 - Suction().smoke_fade * hands.seconds), 0.0, 1.0);
-  retrieval_.is_gallbladder_free = attachment_.IsFree(*tissue.state, *vessels_);
+  parts_.fluids.Leak(surgery::Fluid::kBlood,
+                     ooze_.Update(tissue.state, parts_.heat, made_->definition.rest.size(), hands.seconds));
+  if (gallbladder != nullptr) parts_.wall.leaked_seen = gallbladder->leaked;
+  parts_.smoke = std::clamp(parts_.smoke * (1.0 - Suction().smoke_fade * hands.seconds), 0.0, 1.0);
+  parts_.retrieval.is_gallbladder_free = attachment_.IsFree(tissue.state, *parts_.vessels);
 }
 
 /// A bad tick takes the organ back to the last good solve, and with it the bile that ran out after that solve. It is in the
 /// ledger already: it stays out, or it would be counted again when it runs out again.
 void Operation::KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept {
-  const double back = wall_.leaked_seen - gallbladder.leaked;
+  const double back = parts_.wall.leaked_seen - gallbladder.leaked;
   if (!(back > 0.0)) return;
   gallbladder.target -= back;
-  gallbladder.leaked = wall_.leaked_seen;
+  gallbladder.leaked = parts_.wall.leaked_seen;
 }
 
-void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
-  if (facts_.gallbladder < 0) return;
+void Operation::SpillStones(double leaked, const OperatedTissue& tissue) noexcept {
+  if (anatomy_.gallbladder < 0) return;
   for (const std::uint32_t i : tissue.torn_springs) {
-    const tissue::Spring& spring = tissue.definition->springs[i];
+    const tissue::Spring& spring = tissue.definition.springs[i];
     for (const std::uint32_t node : {spring.a, spring.b}) {
-      if (IsOf(node, facts_.gallbladder)) wall_.holes.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
+      if (IsOf(node, anatomy_.gallbladder)) parts_.wall.holes.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
     }
   }
-  if (!(leaked > 0.0) || retrieval_.is_in_bag || !stones_.HasInside()) return;
-  const auto organ = static_cast<std::size_t>(facts_.gallbladder);
+  if (!(leaked > 0.0) || parts_.retrieval.is_in_bag || !parts_.stones.HasInside()) return;
+  const auto organ = static_cast<std::size_t>(anatomy_.gallbladder);
   const surgery::WallHole hole =
-      wall_.holes.FindLargest(tissue.organs[organ], tissue.state->position, organs_[organ].Mesh());
+      parts_.wall.holes.FindLargest(tissue.organs[organ], tissue.state.position, parts_.organs[organ].Mesh());
   if (!(hole.rim > 0.0)) return;
-  const int spilled = stones_.Spill(leaked, leaked + tissue.conserved->organs[organ].target, hole);
-  for (int i = 0; i < spilled; ++i) Emit({EventKind::kStoneSpilled, -1, facts_.gallbladder, {}});
+  const int spilled = parts_.stones.Spill(leaked, leaked + tissue.conserved.organs[organ].target, hole);
+  surgery::Fact fact = FactOf(FactKind::kStoneSpilled, -1);
+  fact.surface = anatomy_.gallbladder;
+  for (int i = 0; i < spilled; ++i) Add(fact);
 }
 
-void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::MoveLoose(const HandsNow& hands, const OperatedTissue& tissue) noexcept {
   X_world_tools_ = hands.X_proxy;
   surgery::StoneGround ground;
   ground.organs = tissue.organs;
-  ground.positions = tissue.state->position;
+  ground.positions = tissue.state.position;
   ground.gravity = hands.gravity;
-  ground.deepest = facts_.deepest;
+  ground.deepest = anatomy_.deepest;
   std::array<surgery::StonePusher, 2 * kHandCount> pushers;
   std::size_t count = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -78,41 +78,38 @@ void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexce
     const auto parts = instrument::CalcCapsules(Tool(hand), 0.0, kPushLength);
     pushers[count++] = {X * parts.shaft.a, X * parts.shaft.b, parts.shaft.radius};
     // jaws take stones between them; what has none pushes with its tip
-    if (Tool(hand).max_jaw == 0.0 && Tool(hand).kind != instrument::ToolKind::kBag)
+    if (Tool(hand).max_jaw == 0.0 && !instrument::AbilitiesOf(Tool(hand).kind).is_bag)
       pushers[count++] = {X * parts.upper_jaw.a, X * parts.upper_jaw.b, parts.upper_jaw.radius};
   }
   ground.pushers = std::span(pushers).first(count);
   loose_clips_.clear();
-  vessels_->FindLooseClips(loose_clips_);
-  stones_.Move(ground, hands.X_proxy, loose_clips_, hands.seconds);
+  parts_.vessels->FindLooseClips(loose_clips_);
+  parts_.stones.Move(ground, hands.X_proxy, loose_clips_, hands.seconds);
   for (int hand = 0; hand < kHandCount; ++hand) {
-    if (stones_.HasTaken(hand)) Emit({EventKind::kStoneTaken, hand, -1, {}});
+    if (parts_.stones.HasTaken(hand)) Add(FactOf(FactKind::kStoneTaken, hand));
   }
 }
 
-void Operation::SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::SlipClips(const HandsNow& hands, const OperatedTissue& tissue) noexcept {
   std::array<surgery::ClipPull, kHandCount> pulls;
   for (std::size_t hand = 0; hand < pulls.size(); ++hand)
-    pulls[hand] = {(*hands.grasps)[hand].Nodes(), -hands.forces[hand]};
+    pulls[hand] = {tissue.grasps[hand].Nodes(), -hands.forces[hand]};
   std::array<surgery::SlippedClip, 4> slipped;
-  const std::size_t count = vessels_->Slip(hands.seconds, pulls, tissue.state->position, slipped);
+  const std::size_t count = parts_.vessels->Slip(hands.seconds, pulls, tissue.state.position, slipped);
   for (const surgery::SlippedClip& clip : std::span(slipped).first(count)) {
-    acts_.Report(OperationError::kClipSlipped, clip.position, -1);
-    Emit({EventKind::kClipSlipped, -1, static_cast<std::int32_t>(organs_.size() + clip.place.tube),
-          vessels_->RestPoint(clip.place)});
+    AddOfTube(FactKind::kClipSlipped, -1, clip.place, clip.position);
   }
 }
 
 double Operation::StopJaw(int hand, double jaw_before, double jaw, bool is_holding) noexcept {
   const instrument::Tool& tool = Tool(hand);
-  const bool can_take = !is_holding && (tool.kind == instrument::ToolKind::kGrasper ||
-                                        tool.kind == instrument::ToolKind::kDissector);
-  return stones_.StopJaw(hand, tool, X_world_tools_[static_cast<std::size_t>(hand)], jaw_before, jaw,
-                         can_take);
+  const bool can_take = !is_holding && instrument::AbilitiesOf(tool.kind).takes;
+  return parts_.stones.StopJaw(hand, tool, X_world_tools_[static_cast<std::size_t>(hand)], jaw_before, jaw,
+                               can_take);
 }
 
 void Operation::EmitRetrieved(int hand, int count) noexcept {
-  for (int i = 0; i < count; ++i) Emit({EventKind::kStoneRetrieved, hand, -1, {}});
+  for (int i = 0; i < count; ++i) Add(FactOf(FactKind::kStoneRetrieved, hand));
 }
 
 }  // namespace trocar::simulation

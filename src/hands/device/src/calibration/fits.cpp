@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "trocar/device/hand_calibration.h"
 #include "trocar/host/console.h"
 #include "trocar/host/translate.h"
+#include "trocar/math/small_solver.h"
+#include "trocar/math/symmetric_eigen.h"
 
 namespace trocar::device {
 
@@ -18,8 +21,8 @@ using math::Vec3;
 
 namespace {
 
-using Matrix3 = Eigen::Matrix3d;
-using Vector3 = Eigen::Vector3d;
+using Matrix3 = math::SmallMatrix<3>;
+using Vector3 = math::SmallVector<3>;
 
 /// The shaft's direction settles in a few rounds; far more are never needed.
 constexpr int kMaxRounds = 200;
@@ -31,17 +34,46 @@ constexpr double kIndependentPoses = static_cast<double>(kMinFitPoses);
 /// At which a wrong direction of the shaft counts like a wrong place of the trocar [m]: a usual insertion depth.
 constexpr double kShaftLever = 0.1;
 
-Vector3 ToEigen(const Vec3& v) {
+Vector3 ToArray(const Vec3& v) {
   return {v.x, v.y, v.z};
 }
-Vec3 FromEigen(const Vector3& v) {
-  return {v.x(), v.y(), v.z()};
+Vec3 ToVector(const Vector3& v) {
+  return {v[0], v[1], v[2]};
 }
 Matrix3 ToMatrix(const Quaternion& q) {
-  Matrix3 rotation;
-  rotation << ToEigen(math::Rotate(q, {1, 0, 0})), ToEigen(math::Rotate(q, {0, 1, 0})),
-      ToEigen(math::Rotate(q, {0, 0, 1}));
+  const std::array<Vec3, 3> columns = {math::Rotate(q, {1, 0, 0}), math::Rotate(q, {0, 1, 0}),
+                                       math::Rotate(q, {0, 0, 1})};
+  Matrix3 rotation{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 column = ToArray(columns[k]);
+    for (std::size_t i = 0; i < 3; ++i) rotation[i][k] = column[i];
+  }
   return rotation;
+}
+/// I - a a^T, of a unit vector.
+Matrix3 ProjectionAcross(const Vec3& a) {
+  const Vector3 along = ToArray(a);
+  Matrix3 across{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) across[i][k] = (i == k ? 1.0 : 0.0) - along[i] * along[k];
+  }
+  return across;
+}
+/// sum += rows^T rows
+template <std::size_t kRows, std::size_t kCount>
+void AddGram(const std::array<math::SmallVector<kCount>, kRows>& rows, math::SmallMatrix<kCount>& sum) {
+  for (const math::SmallVector<kCount>& row : rows) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      for (std::size_t k = 0; k < kCount; ++k) sum[i][k] += row[i] * row[k];
+    }
+  }
+}
+template <std::size_t kCount>
+math::SmallMatrix<kCount> DividedBy(math::SmallMatrix<kCount> matrix, double divisor) {
+  for (math::SmallVector<kCount>& row : matrix) {
+    for (double& entry : row) entry /= divisor;
+  }
+  return matrix;
 }
 
 base::Error Poor(const std::string& text) {
@@ -141,17 +173,25 @@ double CalcUncertainty(double square, double weakest) {
   return 2.0 * std::sqrt(square / (kIndependentPoses * weakest));
 }
 
-/// Point nearest to all lines through tips[i] along shafts[i].
+/// Point nearest to all lines through tips[i] along shafts[i]; where they are parallel, of those nearest to the source.
 Vec3 MeetingPoint(const std::vector<Vec3>& tips, const std::vector<Vec3>& shafts) {
-  Matrix3 sum = Matrix3::Zero();
-  Vector3 right = Vector3::Zero();
+  Matrix3 sum{};
+  Vec3 right;
   for (std::size_t i = 0; i < tips.size(); ++i) {
-    const Vector3 a = ToEigen(shafts[i]);
-    const Matrix3 across = Matrix3::Identity() - a * a.transpose();
-    sum += across;
-    right += across * ToEigen(tips[i]);
+    const Matrix3 across = ProjectionAcross(shafts[i]);
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t k = 0; k < 3; ++k) sum[row][k] += across[row][k];
+    }
+    right += tips[i] - math::Dot(shafts[i], tips[i]) * shafts[i];
   }
-  return FromEigen(sum.completeOrthogonalDecomposition().solve(right));
+  const math::SymmetricEigen<3> eigen = math::CalcSymmetricEigen(sum);
+  const double least = 3.0 * std::numeric_limits<double>::epsilon() * eigen.values[2];
+  Vec3 point;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 direction = ToVector(eigen.vectors[i]);
+    if (eigen.values[i] > least) point += math::Dot(direction, right) / eigen.values[i] * direction;
+  }
+  return point;
 }
 
 /// Fills in motion and uncertainty of a fit from its linearised normal matrix, for the trocar and two angles of the shaft.
@@ -159,36 +199,42 @@ Vec3 MeetingPoint(const std::vector<Vec3>& tips, const std::vector<Vec3>& shafts
 /// \param tips  (poses) in the source's frame [m]
 /// \return which motion was weakest, and its remedy
 const char* JudgeTrocarMotion(std::span<const Pose> poses, const std::vector<Vec3>& tips, TrocarFit& fit) {
-  using Normal = Eigen::Matrix<double, 5, 5>;
-  const Vector3 axis = ToEigen(fit.axis_sensor);
-  Eigen::Matrix<double, 3, 2> across;
-  across.col(0) = axis.unitOrthogonal();
-  across.col(1) = axis.cross(across.col(0));
-  Normal normal = Normal::Zero();
-  Vector3 mean_shaft = Vector3::Zero();
+  const Vec3& axis = fit.axis_sensor;
+  const Vec3 first = math::AnyPerpendicular(axis), second = math::Cross(axis, first);
+  math::SmallMatrix<5> normal{};
+  Vec3 mean_shaft;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Matrix3 rotation = ToMatrix(poses[i].rotation);
-    const Vector3 shaft = rotation * axis;
-    const double depth = shaft.dot(ToEigen(tips[i] - fit.p_source_trocar));
-    Eigen::Matrix<double, 3, 5> row;
-    row.leftCols<3>() = Matrix3::Identity() - shaft * shaft.transpose();
-    row.rightCols<2>() = depth / kShaftLever * rotation * across;
-    normal += row.transpose() * row;
+    const Vec3 shaft = math::Rotate(poses[i].rotation, axis);
+    const double lever = math::Dot(shaft, tips[i] - fit.p_source_trocar) / kShaftLever;
+    const Matrix3 across = ProjectionAcross(shaft);
+    const Vector3 by_first = ToArray(lever * math::Rotate(poses[i].rotation, first)),
+                  by_second = ToArray(lever * math::Rotate(poses[i].rotation, second));
+    std::array<math::SmallVector<5>, 3> rows{};
+    for (std::size_t row = 0; row < 3; ++row)
+      rows[row] = {across[row][0], across[row][1], across[row][2], by_first[row], by_second[row]};
+    AddGram(rows, normal);
     mean_shaft += shaft;
   }
   const double count = static_cast<double>(poses.size());
-  const Eigen::SelfAdjointEigenSolver<Normal> solver(normal / count);
-  const double weakest = solver.eigenvalues()[0];
+  const math::SymmetricEigen<5> eigen = math::CalcSymmetricEigen(DividedBy(normal, count));
+  const double weakest = eigen.values[0];
   fit.quality.motion = std::sqrt(std::max(0.0, weakest));
   // of the trocar alone, whichever way the shaft is turned
   double loosest = 0;
   if (weakest > 0.0) {
-    const Matrix3 covariance = (normal / count).inverse().topLeftCorner<3, 3>();
-    loosest = Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvalues()[2];
+    Matrix3 covariance{};
+    for (std::size_t mode = 0; mode < 5; ++mode) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k)
+          covariance[i][k] += eigen.vectors[mode][i] * eigen.vectors[mode][k] / eigen.values[mode];
+      }
+    }
+    loosest = math::CalcSymmetricEigen(covariance).values[2];
   }
   const double square = fit.quality.residual * fit.quality.residual * count / (2.0 * count - 5.0);
   fit.quality.uncertainty = CalcUncertainty(square, loosest > 0.0 ? 1.0 / loosest : 0.0);
-  const double along = std::fabs(solver.eigenvectors().col(0).head<3>().dot(mean_shaft.normalized()));
+  const Vec3 open = {eigen.vectors[0][0], eigen.vectors[0][1], eigen.vectors[0][2]};
+  const double along = std::fabs(math::Dot(open, math::Normalized(mean_shaft)));
   return along > 0.7
              ? "its shafts are nearly parallel, and along them the trocar cannot be found; swing it wider, "
                "in "
@@ -211,39 +257,42 @@ std::string FormatQuality(const FitQuality& quality, std::size_t poses) {
 
 base::Result<PivotFit> FitPivot(std::span<const Pose> poses) {
   if (const base::Status good = CheckPoses(poses); !good) return good.error();
-  const auto count = static_cast<Eigen::Index>(poses.size());
-  Eigen::MatrixXd rows(3 * count, 6);
-  Eigen::VectorXd right(3 * count);
-  Matrix3 mean = Matrix3::Zero();
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Pose& pose = poses[static_cast<std::size_t>(i)];
+  const double count = static_cast<double>(poses.size());
+  std::vector<math::SmallVector<6>> rows;
+  std::vector<double> right;
+  Matrix3 mean{};
+  for (const Pose& pose : poses) {
     const Matrix3 rotation = ToMatrix(pose.rotation);
-    mean += rotation;
-    rows.block<3, 3>(3 * i, 0) = rotation;
-    rows.block<3, 3>(3 * i, 3) = -Matrix3::Identity();
-    right.segment<3>(3 * i) = -ToEigen(pose.translation);
+    const Vector3 translation = ToArray(pose.translation);
+    for (std::size_t i = 0; i < 3; ++i) {
+      math::SmallVector<6> row = {rotation[i][0], rotation[i][1], rotation[i][2], 0.0, 0.0, 0.0};
+      row[3 + i] = -1.0;
+      rows.push_back(row);
+      right.push_back(-translation[i]);
+      for (std::size_t k = 0; k < 3; ++k) mean[i][k] += rotation[i][k] / count;
+    }
   }
-  mean /= static_cast<double>(count);
-  const Eigen::VectorXd solved = rows.completeOrthogonalDecomposition().solve(right);
+  const math::SmallVector<6> solved = math::SolveLeastSquares<6>(rows, right);
   PivotFit fit;
-  fit.p_sensor_pivot = FromEigen(solved.head<3>());
-  fit.p_source_pivot = FromEigen(solved.tail<3>());
+  fit.p_sensor_pivot = {solved[0], solved[1], solved[2]};
+  fit.p_source_pivot = {solved[3], solved[4], solved[5]};
   std::vector<double> distances;
   for (const Pose& pose : poses)
     distances.push_back(math::Distance(pose * fit.p_sensor_pivot, fit.p_source_pivot));
   fit.quality = MakeQuality(distances, FindTurn(poses));
 
   // with the fixed point eliminated: how far each direction of the sensor was turned about the mean
-  Matrix3 normal = Matrix3::Zero();
+  Matrix3 normal{};
   for (const Pose& pose : poses) {
-    const Matrix3 turned = ToMatrix(pose.rotation) - mean;
-    normal += turned.transpose() * turned;
+    Matrix3 turned = ToMatrix(pose.rotation);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) turned[i][k] -= mean[i][k];
+    }
+    AddGram(turned, normal);
   }
-  const double weakest =
-      Eigen::SelfAdjointEigenSolver<Matrix3>(normal / static_cast<double>(count)).eigenvalues()[0];
+  const double weakest = math::CalcSymmetricEigen(DividedBy(normal, count)).values[0];
   fit.quality.motion = std::sqrt(std::max(0.0, weakest));
-  const double square = fit.quality.residual * fit.quality.residual * static_cast<double>(count) /
-                        static_cast<double>(3 * count - 6);
+  const double square = fit.quality.residual * fit.quality.residual * count / (3.0 * count - 6.0);
   fit.quality.uncertainty = CalcUncertainty(square, weakest);
   if (const base::Status good = CheckQuality(
           fit.quality, "the tip",
@@ -275,15 +324,14 @@ base::Result<TrocarFit> FitTrocar(std::span<const Pose> poses, const Vec3& p_sen
       shafts[i] = math::Rotate(poses[i].rotation, fit.axis_sensor);
     fit.p_source_trocar = MeetingPoint(tips, shafts);
     // the direction that the ways from the trocar to the tip share, seen from the sensor
-    Matrix3 sum = Matrix3::Zero();
+    Matrix3 sum{};
     Vec3 mean;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const Vec3 way = math::Rotate(math::Inverse(poses[i].rotation), tips[i] - fit.p_source_trocar);
-      sum += ToEigen(way) * ToEigen(way).transpose();
+      AddGram(std::array<Vector3, 1>{ToArray(way)}, sum);
       mean += way;
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix3> solver(sum);
-    Vec3 axis = FromEigen(solver.eigenvectors().col(2));
+    Vec3 axis = ToVector(math::CalcSymmetricEigen(sum).vectors[2]);
     if (math::Dot(axis, mean) < 0.0) axis = -axis;
     const double change = math::Distance(axis, fit.axis_sensor);
     fit.axis_sensor = axis;

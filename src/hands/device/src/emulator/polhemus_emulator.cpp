@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "polhemus/polhemus_layout.h"
 #include "trocar/device/emulator.h"
 
 namespace trocar::device {
@@ -11,10 +12,6 @@ namespace {
 
 /// After so long a silence of the caller's clock the records in between are not made up [s].
 constexpr double kLongestStep = 0.25;
-
-bool IsFastrak(PolhemusFormat format) noexcept {
-  return format == PolhemusFormat::kFastrakAscii || format == PolhemusFormat::kFastrakBinary;
-}
 
 /// Numbers of "1,2,4,1" or "1,1.0,0,0"; what is none ends the list.
 std::vector<double> ReadList(std::string_view text) {

@@ -13,15 +13,16 @@ namespace trocar::device {
 namespace {
 
 constexpr std::string_view kHands[kChannelCount] = {"left", "right", "laparoscope"};
-constexpr std::string_view kColumns[] = {"seen",    "pan_rad", "tilt_rad", "spin_rad",
-                                         "depth_m", "jaw_rad", "buttons"};
-constexpr std::size_t kMostColumns = std::size(kColumns);
+constexpr std::string_view kHandColumns[] = {"seen",    "pan_rad", "tilt_rad", "spin_rad",
+                                             "depth_m", "jaw_rad", "buttons"};
+constexpr std::size_t kMostColumns = std::size(kHandColumns);
 constexpr std::size_t kColumnsBefore = kMostColumns - 1;  // recordings of earlier versions have no buttons
 
 std::string Heading(std::size_t columns) {
   std::string line = "time_s";
   for (const std::string_view hand : kHands) {
-    for (std::size_t i = 0; i < columns; ++i) line.append(",").append(hand).append("_").append(kColumns[i]);
+    for (std::size_t i = 0; i < columns; ++i)
+      line.append(",").append(hand).append("_").append(kHandColumns[i]);
   }
   return line;
 }

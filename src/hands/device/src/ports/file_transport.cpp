@@ -9,7 +9,7 @@
 namespace trocar::device {
 namespace {
 
-bool IsPassing(int error) noexcept {
+bool IsPassingErrno(int error) noexcept {
   return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
 }
 
@@ -23,7 +23,7 @@ IoResult FileTransport::Read(std::span<char> buffer) noexcept {
   const ssize_t got = ::read(file_, buffer.data(), buffer.size());
   if (got > 0) return {static_cast<std::size_t>(got), false};
   // a hung-up terminal says 0 or EIO, a pulled USB plug ENODEV or ENXIO: all the same to us
-  return {0, got == 0 || !IsPassing(errno)};
+  return {0, got == 0 || !IsPassingErrno(errno)};
 }
 
 IoResult FileTransport::Write(std::string_view bytes) noexcept {
@@ -31,7 +31,7 @@ IoResult FileTransport::Write(std::string_view bytes) noexcept {
   ssize_t sent = ::send(file_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent < 0 && errno == ENOTSOCK) sent = ::write(file_, bytes.data(), bytes.size());
   if (sent >= 0) return {static_cast<std::size_t>(sent), false};
-  return {0, !IsPassing(errno)};
+  return {0, !IsPassingErrno(errno)};
 }
 
 }  // namespace trocar::device

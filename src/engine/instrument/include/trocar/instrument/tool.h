@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,8 +23,43 @@ enum class ToolKind : std::uint8_t {
   kScissors,
   kClipApplier,       ///< 10 mm; a clip closes with its jaws
   kSuctionIrrigator,  ///< no jaws
-  kBag                ///< retrieval bag; no jaws, its mouth is open
+  kBag,               ///< retrieval bag; no jaws, its mouth is open
+  kLinearStapler      ///< 12 mm; closes between two rows of staples on each side, and divides between them
 };
+
+/// Bare metal that current leaves.
+enum class Electrode : std::uint8_t {
+  kNone,
+  kToe,  ///< of the hook
+  kJaws
+};
+/// Edge that parts tissue.
+enum class Blade : std::uint8_t {
+  kNone,
+  kJaws,  ///< scissors, when they close
+  kHeel   ///< of the hook, under current
+};
+
+/// Pedals and buttons that a tool obeys.
+struct Pedals {
+  bool cut = false, coagulate = false, rinse = false, aspirate = false;
+};
+
+/// What a kind of tool can do besides pushing. Each ability is one mechanism of simulation/operation/tools.
+struct ToolAbilities {
+  bool takes = false;    ///< jaws take tissue and things, and hold them
+  bool spreads = false;  ///< jaws part strands as they open
+  bool bites = false;    ///< jaws close around a whole tube, and do something when they have closed
+  bool holds_clips = false;
+  bool staples =
+      false;  ///< closed jaws staple and divide at a press of the cut pedal; Tool::clips are its loads
+  bool sucks = false;  ///< and rinses
+  bool is_bag = false;
+  Electrode electrode = Electrode::kNone;
+  Blade blade = Blade::kNone;
+  Pedals pedals;
+};
+const ToolAbilities& AbilitiesOf(ToolKind kind) noexcept;
 
 /// Sizes of one tool. Source of the defaults: domain facts, section 1.3 (5 mm tools, 33 cm shafts).
 struct Tool {
@@ -35,11 +71,13 @@ struct Tool {
   double jaw_width = 0.0045;            ///< across the opening direction [m]
   double jaw_thickness = 0.0018;        ///< of each jaw [m]
   double max_jaw = 1.0471975511965976;  ///< whole opening, 60 deg [rad]; 0: the tool has no jaws
-  int clips = 0;                        ///< that a clip applier holds
+  int clips = 0;                        ///< that a clip applier holds; loads of a stapler
 };
 
-/// \param name  "grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator" or "bag"
-/// \return nullptr for an unknown one
+/// One of each kind, in the order of ToolKind: "grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag",
+/// "linear_stapler".
+std::span<const Tool> AllTools() noexcept;
+/// \return nullptr for an unknown name
 const Tool* FindTool(std::string_view name) noexcept;
 
 /// Toe of the hook: across the shaft at the tip, as long as in the domain facts, section 1.3 [m].

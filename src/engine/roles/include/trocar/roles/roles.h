@@ -70,6 +70,16 @@ enum class NeighbourRole : std::uint8_t {
 };
 inline constexpr std::size_t kNeighbourRoleCount = 12;
 
+/// Role of a strand that dissection divides.
+enum class StrandRole : std::uint8_t {
+  kBed,  ///< gallbladder to liver
+  kAdhesion,
+  kTriangle,    ///< fat and fibres of the hepatocystic triangle
+  kPeritoneum,  ///< its cover, front and back
+  kEnd,         ///< of a tube in its organ
+  kBand         ///< of a training task: part of a band
+};
+
 /// Tissue that a material describes.
 enum class TissueRole : std::uint8_t { kOther, kLiver, kGallbladder, kGallbladderBed, kDuct, kArtery };
 
@@ -111,6 +121,10 @@ struct RoleNames<NeighbourRole> {
       "pancreas", "kidney_right", "inferior_vena_cava", "aorta", "portal_vein_and_splenic_vein",
       "ribs",     "spine"};
   static_assert(std::size(kNames) == kNeighbourRoleCount);
+};
+template <>
+struct RoleNames<StrandRole> {
+  static constexpr const char* kNames[] = {"bed", "adhesion", "triangle", "peritoneum", "end", "band"};
 };
 template <>
 struct RoleNames<TissueRole> {

@@ -2,13 +2,11 @@
 /// \file scene_fields.h  Every value of a scene that decides a state, a picture or a verdict.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <variant>
-#include <vector>
 
 #include "trocar/base/fields.h"
 #include "trocar/scene/scene.h"
@@ -51,14 +49,6 @@ inline bool IsOnlyTold(const patient::Table& owner, const void* field) {
 }
 
 template <typename T>
-struct IsList : std::false_type {};
-template <typename T>
-struct IsList<std::vector<T>> : std::true_type {};
-template <typename T>
-struct IsFixedList : std::false_type {};
-template <typename T, std::size_t n>
-struct IsFixedList<std::array<T, n>> : std::true_type {};
-template <typename T>
 struct IsPerhaps : std::false_type {};
 template <typename T>
 struct IsPerhaps<std::optional<T>> : std::true_type {};
@@ -78,10 +68,10 @@ void VisitFields(T& value, Visitor& visitor) {
   namespace detail = fields_detail;
   if constexpr (std::is_arithmetic_v<Plain> || std::is_enum_v<Plain> || std::is_same_v<Plain, std::string>) {
     visitor.Value(value);
-  } else if constexpr (detail::IsList<Plain>::value) {
+  } else if constexpr (base::kIsList<Plain>) {
     visitor.Length(value);
     for (auto& element : value) VisitFields(element, visitor);
-  } else if constexpr (detail::IsFixedList<Plain>::value) {
+  } else if constexpr (base::kIsFixedList<Plain>) {
     for (auto& element : value) VisitFields(element, visitor);
   } else if constexpr (detail::IsPerhaps<Plain>::value) {
     visitor.Presence(value);

@@ -86,7 +86,7 @@ struct Condition {
   double angle = 0, facing_angle = 0;  ///< [rad]
   double near = 0, far = 0;            ///< [m]
   bool while_held = false;             ///< counts only while a hand holds `object`
-  int event = -1;                      ///< EventKind
+  int event = -1;                      ///< surgery::FactKind
   int error = -1;                      ///< cholecystectomy::OperationError
   int band = -1;                       ///< ModelSetup::bands
   int sheet = -1;                      ///< ModelSetup::sheets

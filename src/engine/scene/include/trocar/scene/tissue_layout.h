@@ -52,14 +52,8 @@ inline constexpr double kLobuleRadius = 0.0021;
 /// One of the strands that dissection divides.
 struct StrandInfo {
   std::uint32_t a = 0, b = 0;  ///< rows of Snapshot::positions
-  enum class Kind : std::uint8_t {
-    kBed,  ///< gallbladder to liver
-    kAdhesion,
-    kTriangle,    ///< fat and fibres of the hepatocystic triangle
-    kPeritoneum,  ///< its cover, front and back
-    kEnd,         ///< of a tube in its organ
-    kBand         ///< of a training task: part of a band
-  } kind = Kind::kBed;
+  using Kind = roles::StrandRole;
+  Kind kind = Kind::kBed;
   std::int32_t band = -1;  ///< index in ModelSetup::bands, or -1
 };
 

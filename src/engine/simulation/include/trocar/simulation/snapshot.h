@@ -15,6 +15,7 @@
 #include "trocar/scene/scene_object.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/operation_snapshot.h"
+#include "trocar/surgery/fact.h"
 #include "trocar/surgery/neighbour_contact.h"
 
 namespace trocar::simulation {
@@ -52,6 +53,7 @@ enum class Stage {
   kFindContacts,
   kUseTools,
   kHeat,
+  kWitness,
   kAssistant,
   kTopology,
   kTissue,
@@ -70,6 +72,8 @@ enum class Stage {
 std::string_view StageName(Stage stage) noexcept;
 inline constexpr int kStageCount = static_cast<int>(Stage::kCount);
 
+/// Most facts of a tick in a scene that is no operation.
+inline constexpr std::size_t kMostPlainFacts = 16;
 /// How many of the newest events a snapshot holds.
 inline constexpr std::size_t kEventRing = 8;
 
@@ -94,8 +98,10 @@ struct Snapshot {
   math::Vec3 gravity;                ///< world frame [m/s^2]
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]
-  std::uint64_t event_count = 0;                    ///< since the start; the newest are in `events`
-  std::array<scene::Event, kEventRing> events{};    ///< ring: event n at n % kEventRing
+  std::vector<surgery::Fact> facts;                 ///< of the last tick: the first fact_count count
+  std::size_t fact_count = 0;
+  std::uint64_t event_count = 0;                  ///< since the start; the newest are in `events`
+  std::array<scene::Event, kEventRing> events{};  ///< ring: event n at n % kEventRing
 };
 
 }  // namespace trocar::simulation

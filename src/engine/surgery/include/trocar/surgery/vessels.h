@@ -97,6 +97,17 @@ class Vessels {
   ClipResult Clip(const instrument::Tool& tool, const math::Pose& X_world_tool,
                   const std::optional<Caught>& caught, std::span<const math::Vec3> position) noexcept;
 
+  /// Finds where tubes lie between closed jaws, at most one place of each tube.
+  /// \return how many, as far as the span goes
+  /// \note Real-time safe.
+  std::size_t CatchBetween(const instrument::Tool& tool, const math::Pose& X_world_tool,
+                           std::span<const math::Vec3> position, std::span<Caught> caught) const noexcept;
+  /// Closes a tube with a row of staples, beside what was caught. A row holds as a clip does, and crosses none.
+  /// \param offset  along the tube [m]; a row beyond its end closes nothing
+  /// \note Real-time safe.
+  ClipResult Staple(const instrument::Tool& tool, const math::Pose& X_world_tool, const Caught& caught,
+                    double offset) noexcept;
+
   /// Clips slip towards the end of a stump where pressure or pull is more than they withstand: see surgery/clip_hold.h.
   /// After Flow, whose pressures it takes.
   /// \param[out] slipped  that fell off; others have to wait for the next tick
@@ -168,6 +179,7 @@ class Vessels {
     TubePlace place;
     void VisitState(base::StateArchive& archive);
   };
+  void Fasten(Clipped& clip, const Caught& caught, double length, ClipResult& result) noexcept;
   void MoveClips(const geometry::CentreLineCut& cut) noexcept;
   double CalcPull(const Clipped& clip, const Stump& stump, std::span<const math::Vec3> position,
                   std::span<const ClipPull> pulls) const noexcept;

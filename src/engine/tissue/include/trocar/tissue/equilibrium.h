@@ -36,7 +36,7 @@ struct SolveReport {
   int linear_iterations = 0;    ///< of conjugate gradients, all Newton steps together
   int negative_curvatures = 0;  ///< Newton steps that met a direction in which the energy is not convex
   int local_solves = 0;         ///< of the few nodes that snap through, on their own
-  /// False where positions, loads, scales or contacts were not finite; then nothing was solved, or not to the
+  /// False where positions, loads, scales, contacts or elements were not usable; then nothing was solved, or not to the
   /// end. Give it to StateGuard::Check.
   bool is_finite = true;
   int restarts = 0;  ///< how often the acceleration was taken back because the residual grew
@@ -160,7 +160,9 @@ class DeviceSolver : public EquilibriumSolver {
 };
 
 /// Largest step of the plain relaxation that converges, alpha < 2 / lambda_max with Gershgorin's bound
-/// lambda_max <= max_i (2 sum_j k_ij + k_v) [m/N]. Contacts count with their stiffness.
-double CalcLargestAlpha(const TissueModel& model, const TissueLoad& load);
+/// lambda_max <= max_i (2 sum_j k_ij + k_v) [m/N]. Contacts count with their stiffness, elements with that which they have at
+/// `position`; empty: at rest.
+double CalcLargestAlpha(const TissueModel& model, const TissueLoad& load,
+                        std::span<const math::Vec3> position = {});
 
 }  // namespace trocar::tissue

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trocar/geometry/triangle_mesh.h"
+#include "trocar/tissue/element.h"
 
 namespace trocar::base {
 class StateArchive;
@@ -127,8 +128,17 @@ void VisitState(base::StateArchive& archive, TissueState& state);
 /// At rest, nothing grasped, every strand and spring intact; fixed nodes prescribed.
 TissueState MakeRestState(const TissueModel& model);
 
-/// One-sided spring between a tool and a point of a triangle: pushes while normal . x < offset.
+/// Most contacts that a solver has the capacity for.
+inline constexpr std::size_t kMaxContacts = 1024;
+
+/// One-sided spring between a tool and a point of a triangle: pushes while normal . x < offset. A kind of element
+/// (link_elements.h has its functions).
 struct ContactSpring {
+  static constexpr std::string_view kName = "contacts";
+  static constexpr std::size_t kNodes = 3, kCapacity = 256;  // in an array of elements
+  static constexpr ElementInvariance kInvariance = ElementInvariance::kNone;
+  static constexpr std::array<ElementBond, 3> kBonds = {{{0, 1}, {1, 2}, {2, 0}}};
+
   std::array<std::uint32_t, 3> nodes{};
   std::array<double, 3> weights{};  ///< barycentric
   math::Vec3 normal;                ///< direction in which tissue is pushed, unit
@@ -136,8 +146,7 @@ struct ContactSpring {
   double stiffness = 0;             ///< [N/m]
 };
 
-/// Most contacts that a solver has the capacity for.
-inline constexpr std::size_t kMaxContacts = 1024;
+class ElementArrays;  // element_kinds.h
 
 /// Load on the system in one solve, and the scales of its stiffness.
 struct TissueLoad {
@@ -149,6 +158,8 @@ struct TissueLoad {
   double shape_scale = 1;                      ///< on virtual springs [-]
   std::span<const ContactSpring> contacts;     ///< at most kMaxContacts
   std::span<const math::Vec3> external_force;  ///< (n) or empty [N]
+  /// Elements beside the model's links: contacts between moving parts, threads, or null. They have to outlive the solve.
+  const ElementArrays* elements = nullptr;
 };
 
 /// Force of every spring, strand, load and contact on each node: the residual of the balance (domain facts

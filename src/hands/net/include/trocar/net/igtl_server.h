@@ -26,6 +26,19 @@ struct IgtlServerSettings {
   double organ_period = 0.5;      ///< between two sets of organs, simulated time [s]
 };
 
+/// Tools of one tick, world frame.
+struct ToolPoses {
+  double time = 0;  ///< simulated [s]
+  math::Pose X_world_left, X_world_right, X_world_laparoscope;
+};
+ToolPoses ToolPosesOf(const simulation::Snapshot& snapshot) noexcept;
+
+/// Nodes of all organs as they were in one tick.
+struct NodePositions {
+  double time = 0;                        ///< simulated [s]
+  std::span<const math::Vec3> p_world{};  ///< as Snapshot::positions [m]
+};
+
 /// A server that only speaks: whatever a viewer sends is thrown away, so that no message from a network can change anything.
 ///
 /// Every set is a TRANSFORM each for LeftTool, RightTool and Laparoscope, and a TDATA "Tools" of the three; organs are
@@ -43,8 +56,12 @@ class IgtlServer {
                                                         device::Clock& clock = device::SystemClock());
 
   /// Call it after every tick. Sends what is due and never waits.
-  /// \note Not real-time safe: allocates
-  void Publish(const simulation::Snapshot& snapshot);
+  /// \param nodes  of this tick or of a little before
+  /// \note Not real-time safe: allocates. Beside a running session, session::ViewerFeed calls it on a thread of its own.
+  void Publish(const ToolPoses& tools, const NodePositions& nodes);
+  void Publish(const simulation::Snapshot& snapshot) {
+    Publish(ToolPosesOf(snapshot), {snapshot.time, snapshot.positions});
+  }
 
   int Port() const noexcept { return listener_->Port(); }
   std::size_t ViewerCount() const noexcept { return viewers_.size(); }

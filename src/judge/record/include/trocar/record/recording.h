@@ -64,7 +64,7 @@ inline constexpr const char* kPhaseKind = "phase";
 /// Something that happened, for lists and for jumping to it; replay computes it again.
 struct EventMark {
   std::uint64_t tick = 0;
-  std::string kind;   ///< scene::EventName, the name of a task's or an operation's error, or kPhaseKind
+  std::string kind;   ///< surgery::FactName, the name of a task's or an operation's error, or kPhaseKind
   std::string about;  ///< for a person; may be empty; of a phase its name
   int hand = -1;      ///< scene::Hand, or -1
   bool is_error = false;

@@ -51,7 +51,7 @@ struct CameraSample {
 /// Something that happened.
 struct AttemptEvent {
   double time = 0;   ///< since the attempt's first tick [s]
-  std::string kind;  ///< scene::EventName, the name of an operation's error, or of a task's rule
+  std::string kind;  ///< surgery::FactName, the name of an operation's error, or of a task's rule
   int hand = -1;     ///< instrument::Hand, or -1
   int organ = -1;    ///< AttemptTrace::organ_names, or -1
   double force = 0;  ///< [N], 0 where it means nothing
@@ -61,6 +61,15 @@ struct AttemptEvent {
   bool is_rule =
       false;         ///< of an error: a rule of the task was broken, otherwise the operation's judge found it
   std::string text;  ///< for the trainee, a sentence; may be empty
+};
+
+/// A fact that went on for a while: the same kind, hand and part in ticks that follow each other.
+struct FactSpan {
+  std::string kind;           ///< surgery::FactName
+  int hand = -1;              ///< instrument::Hand, or -1
+  std::string part;           ///< of organ_names; or what a strand is, "bed" for instance; may be empty
+  double start = 0, end = 0;  ///< since the attempt's first tick [s], start <= end
+  double amount = 0;          ///< see surgery::FactKind: of volumes the sum, else the largest
 };
 
 /// Time between two changes of phase. A phase may come again.
@@ -113,6 +122,7 @@ struct AttemptTrace {
   std::array<std::vector<ToolSample>, instrument::kHandCount> hands;  ///< left, right: (ticks) each
   std::vector<CameraSample> camera;                                   ///< (ticks)
   std::vector<AttemptEvent> events;                                   ///< in order of time
+  std::vector<FactSpan> facts;      ///< what hands did to tissue, in order of their beginnings
   std::vector<PhaseSpan> phases;    ///< in order, without a gap; empty where the scene is no operation
   std::vector<ClipRecord> clips;    ///< in the order in which they were closed
   std::vector<FluidSample> fluids;  ///< about once a second, the first and the last tick among them

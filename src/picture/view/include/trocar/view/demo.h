@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/agent/surgeon.h"
 #include "trocar/base/result.h"
 #include "trocar/scene/scene.h"
+#include "trocar/simulation/input_source.h"
 #include "trocar/simulation/operation_result.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/simulation/snapshot.h"
@@ -30,15 +30,14 @@ struct DemoOptions {
   int threads = 1;                      ///< of the solver
   bool has_video = true;
   ViewOptions view;
-  /// nullptr, or who acts in the script's place, until they have finished; `duration` is then the longest
-  agent::Surgeon* surgeon = nullptr;
+  simulation::InputSource* source = nullptr;  ///< nullptr: the scene's script
+  /// The source's end is the end; `duration` is then the longest, and pictures come after 1, 2, 4, ... s.
+  bool is_until_end = false;
   std::vector<std::byte> start;  ///< a saved state from which it goes on; empty: the first tick
   std::function<base::Status(const simulation::Simulation&)>
       on_start;  ///< before the first tick; may be empty
-  /// may change the script's input of a tick at that time [s]; may be empty
-  std::function<void(double, scene::Input&)> change_input;
-  std::function<void(simulation::Simulation&)>
-      after_step;  ///< after every tick, before on_tick; may be empty
+  /// after every tick, with its input, before on_tick; may be empty
+  std::function<void(simulation::Simulation&, const scene::Input&)> after_step;
   std::function<void(const simulation::Snapshot&)> on_tick;  ///< after every tick; may be empty
   std::function<void(double)> on_progress;  ///< share done, 0 to 1, once a frame; may be empty
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "trocar/instrument/tool.h"
@@ -42,6 +43,7 @@ enum class LabelClass : std::uint8_t {
   kObject,       ///< of a training task
   kMark,         ///< what a training task points out
   kTrainerBox,
+  kLinearStapler,
   kCount
 };
 inline constexpr std::size_t kLabelClassCount = static_cast<std::size_t>(LabelClass::kCount);
@@ -64,6 +66,8 @@ constexpr std::uint8_t InstanceOf(std::uint16_t label) noexcept {
 /// \param has_patient  else it is a task's tissue model
 LabelClass FindLabelClass(const scene::SurfaceInfo& surface, bool has_patient) noexcept;
 LabelClass FindLabelClass(instrument::ToolKind tool) noexcept;
+/// The tool of a class; nothing of others.
+std::optional<instrument::ToolKind> ToolOf(LabelClass label) noexcept;
 /// Of what is drawn by its material alone, and of scenery.
 LabelClass FindLabelClass(render::Material material) noexcept;
 /// Of all materials.

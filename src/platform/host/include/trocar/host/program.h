@@ -11,7 +11,11 @@ namespace trocar::host {
 std::filesystem::path FindProgram();
 /// Folder of the running program; "." where the system does not say.
 std::filesystem::path FindProgramFolder();
-/// A program that only other programs start: in ../libexec/trocar of an installation, else beside the running one.
+/// Folder of an installation in which bin/, libexec/trocar/ and share/ lie, seen from the running program in either of the first two.
+std::filesystem::path FindInstallationFolder();
+/// A program that a person starts: in bin/ of an installation, else beside the running one.
+std::filesystem::path FindMainProgram(std::string_view name);
+/// A program that only other programs start: in libexec/trocar/ of an installation, else beside the running one.
 std::filesystem::path FindCompanionProgram(std::string_view name);
 
 }  // namespace trocar::host

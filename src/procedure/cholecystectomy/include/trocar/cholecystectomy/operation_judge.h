@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file operation_judge.h  Judgement of the acts of an operation: errors, phases and the critical view.
+/// \file operation_judge.h  Judgement of the facts of an operation: errors, phases and the critical view.
 /// It only looks: a tick without it leaves the same world.
 #pragma once
 
@@ -10,40 +10,14 @@
 #include "trocar/base/state_archive.h"
 #include "trocar/cholecystectomy/critical_view.h"
 #include "trocar/cholecystectomy/dissection_monitor.h"
-#include "trocar/cholecystectomy/emitted_acts.h"
+#include "trocar/cholecystectomy/hand_acts.h"
 #include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cholecystectomy/triplet.h"
-#include "trocar/instrument/camera.h"
+#include "trocar/cholecystectomy/vessel_judgement.h"
 #include "trocar/instrument/hand.h"
-#include "trocar/surgery/grasp.h"
+#include "trocar/surgery/observation.h"
 
 namespace trocar::cholecystectomy {
-
-/// Observation of a hand in a tick.
-struct ObservedHand {
-  math::Vec3 p_world_tip;      ///< of the tool that is seen [m]
-  double depth = 0;            ///< of the tool in its trocar [m]
-  bool is_retracting = false;  ///< jaws hold tissue
-  bool is_holding_liver = false;
-  Target held = Target::kNullTarget;                          ///< while retracting
-  surgery::GraspChange change = surgery::GraspChange::kNone;  ///< in this tick
-};
-
-/// Observation of an operation at the end of a tick.
-struct OperationObservation {
-  double time = 0;     ///< [s]
-  double seconds = 0;  ///< of the tick, > 0
-  const EmittedActs& acts;
-  std::array<ObservedHand, instrument::kHandCount> hands;
-  const tissue::TissueState& tissue;
-  const surgery::Vessels& vessels;
-  std::span<const surgery::OrganSurface> organs;
-  instrument::Camera camera;  ///< through which the trainee looks
-  OperationFacts facts;
-  double blood_lost = 0;   ///< since the start [m^3]
-  int spilled_stones = 0;  ///< that lie in the abdomen
-  math::Vec3 p_pool;       ///< where fluids gather, world frame [m]
-};
 
 /// From where on something counts as an error. Source: domain facts, section 1.4, for the blood and the duct; the others are tunables.
 struct JudgementSettings {
@@ -58,17 +32,28 @@ struct JudgementSettings {
   friend bool operator==(const JudgementSettings&, const JudgementSettings&) = default;
 };
 
+/// The patient as a judge has to know it; constant.
+struct JudgedAnatomy {
+  TargetTable targets;
+  BiliaryAnatomy biliary;  ///< of the ducts and arteries, which follow the organs among the surfaces
+  std::vector<std::uint32_t> main_ducts;  ///< nodes of ducts that must stay
+  std::size_t organ_count = 0;
+  bool has_critical_view = false;  ///< there is one to be had before anything is clipped
+  bool may_cut_organs = false;     ///< of a training task: its sheets are there to be cut
+};
+
 class OperationJudge {
  public:
-  /// \param has_critical_view  there is a critical view to be had before anything is clipped
-  OperationJudge(DissectionMonitor dissection, bool has_critical_view,
-                 const JudgementSettings& settings = {});
+  OperationJudge(JudgedAnatomy anatomy, DissectionMonitor dissection, const JudgementSettings& settings = {});
 
-  /// Once a tick, at its end.
+  /// First in a tick, once tools and heat have done their part: judges the facts so far by the tissue in which they came about.
   /// \note Real-time safe.
-  void Update(const OperationObservation& now) noexcept;
+  void SeeTools(const surgery::OperationObservation& now) noexcept;
+  /// Then at its end: the facts since, hands, dissection, view and phase.
+  /// \note Real-time safe.
+  void Update(const surgery::OperationObservation& now) noexcept;
 
-  /// Errors of the last Update.
+  /// Errors of the last tick.
   std::span<const ErrorEntry> NewErrors() const { return errors_.Entries().subspan(errors_before_); }
 
   const ErrorLog& Errors() const { return errors_; }
@@ -84,11 +69,14 @@ class OperationJudge {
     bool is_inserting = false;
     double blind_seconds = 0;
   };
-  void JudgeAct(const EmittedAct& act, double time) noexcept;
-  void JudgeHand(int hand, const OperationObservation& now) noexcept;
-  void JudgePhase(const OperationObservation& now) noexcept;
+  void JudgeFact(const surgery::Fact& fact, const surgery::OperationObservation& now) noexcept;
+  void JudgeTube(const surgery::Fact& fact, const surgery::OperationObservation& now) noexcept;
+  void JudgeCurrent(const surgery::Fact& fact, const surgery::OperationObservation& now) noexcept;
+  void JudgeHand(int hand, const surgery::OperationObservation& now) noexcept;
+  void JudgePhase(const surgery::OperationObservation& now) noexcept;
+  void Report(OperationError error, const surgery::Fact& fact, double time) noexcept;
 
-  bool has_view_ = true;        // constant
+  JudgedAnatomy anatomy_;       // constant
   JudgementSettings settings_;  // constant
   DissectionMonitor dissection_;
   ErrorLog errors_;
@@ -96,7 +84,8 @@ class OperationJudge {
   PhaseRecogniser phases_;
   std::array<HandState, instrument::kHandCount> hands_;
   bool was_achieved_ = false, was_completed_ = false;
-  std::size_t errors_before_ = 0;
+  std::size_t errors_before_ = 0;  // before this tick
+  std::size_t facts_seen_ = 0;     // of this tick
 };
 
 }  // namespace trocar::cholecystectomy

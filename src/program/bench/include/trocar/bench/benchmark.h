@@ -62,6 +62,7 @@ base::Result<BenchmarkResult> RunSoakBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunGrowthBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& options);
+base::Result<BenchmarkResult> RunSnapshotBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunStateBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunStoreBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunTissueBenchmark(const BenchmarkOptions& options);

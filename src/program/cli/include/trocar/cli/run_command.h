@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file run_command.h  The `trocar` command.
+/// \file run_command.h  The `trocar` command, all of it in one program: for tests, and for what lists commands.
 #pragma once
 
 #include <functional>

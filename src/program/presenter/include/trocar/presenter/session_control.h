@@ -1,33 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file session_control.h  Requests of the window's user, turned into the runner's input once a frame. No
-/// widget.
+/// \file session_control.h  Mouse, keys and panel of the window's user, turned into requests to the session. No widget.
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "trocar/device/mouse_keyboard.h"
-#include "trocar/host/clock.h"
-#include "trocar/net/igtl_server.h"
-#include "trocar/session/device_thread.h"
-#include "trocar/session/haptic_loop.h"
-#include "trocar/session/haptic_record.h"
-#include "trocar/session/runner.h"
+#include "trocar/session/session.h"
 
 namespace trocar::presenter {
 
 /// Pedal under the foot, or a key in its place.
 enum class Pedal { kCut, kCoagulate, kRinse, kAspirate, kClutch };
 
-/// Owns the running simulation and the mouse and keyboard that hold its instruments. Called from one thread.
+/// Owns a session, and the mouse and keyboard that hold its instruments. What is asked for takes effect in the session's next
+/// tick. Called from one thread.
 class SessionControl {
  public:
   /// Starts paused, with the hands at home.
-  /// \return kDeviceSettings where the scene's tools cannot be held
-  /// \param keeping  nothing, or where each attempt is recorded
-  static base::Result<std::unique_ptr<SessionControl>> Make(
-      simulation::Simulation simulation, std::optional<session::AttemptKeeping> keeping = {});
+  /// \return kDeviceSettings where the scene's tools cannot be held, or as session::Session::Open
+  static base::Result<std::unique_ptr<SessionControl>> Make(simulation::Simulation simulation,
+                                                            const session::SessionOptions& options = {});
 
   /// For a simulation that stands in the middle of an attempt: the hands rest where the tools stand, tools and settings are
   /// as they were, no pedal is pressed.
@@ -41,52 +36,49 @@ class SessionControl {
   /// \param driver   of device::kChannelCount channels, unconfigured
   /// \param buttons  what its buttons do
   void UseDevice(std::unique_ptr<device::Driver> driver,
-                 const device::ButtonMap& buttons = device::DefaultButtons());
+                 const device::ButtonMap& buttons = device::DefaultButtons()) {
+    session_->UseDevice(std::move(driver), buttons);
+  }
   /// Newest message of the device about itself, given once; empty where there is nothing new.
-  std::string TakeDeviceMessage();
+  std::string TakeDeviceMessage() { return session_->Input().TakeDeviceMessage(); }
 
-  /// Lets a haptic device hold the hands that it has channels for (the right one, or both), with force.
-  /// \param name     as device::MakeForceDriver reads it
-  /// \param buttons  what the styluses' buttons behind safety switch and jaws do
-  /// \return kDeviceSettings, the driver's error or kHapticSupervisor
-  base::Status UseHaptics(std::string_view name, const device::ButtonMap& buttons = device::DefaultButtons());
+  /// As session::Session::UseHaptics. What Advance() and Now() gave before is gone.
+  base::Status UseHaptics(std::string_view name,
+                          const device::ButtonMap& buttons = device::DefaultButtons()) {
+    now_ = nullptr;
+    return session_->UseHaptics(name, buttons);
+  }
   /// The haptic loop, or nullptr without one.
-  session::HapticLoop* Haptics() { return haptic_loop_.get(); }
-
+  session::HapticLoop* Haptics() { return session_->Haptics(); }
   /// Record of the haptic loop so far, as Advance() saw it.
-  const session::HapticRecord& GetHapticRecord() const { return haptic_record_; }
+  const session::HapticRecord& GetHapticRecord() const { return session_->GetHapticRecord(); }
+  /// Port that viewers over OpenIGTLink may connect to, or -1.
+  int ServedPort() const { return session_->ServedPort(); }
 
-  /// Shows tools and organs to viewers over OpenIGTLink from now on.
-  /// \param port  0 lets the system choose
-  /// \return kDeviceBusy where the port is taken
-  base::Status Serve(int port);
-  /// Port that viewers may connect to, or -1.
-  int ServedPort() const { return server_ != nullptr ? server_->Port() : -1; }
-
-  /// Moves the hands on by `dt` [s] and gives the newest request to the simulation; while paused the hands stand
-  /// still.
+  /// Moves the hands of mouse and keys on by `dt` [s]; while paused they stand still. A hand that somebody else has moved, they
+  /// take up where it is.
   /// \return the newest state, valid until the next call
   const simulation::Snapshot& Advance(double dt);
 
   void SetPaused(bool is_paused);
-  bool IsPaused() const { return runner_.IsPaused(); }
+  bool IsPaused() const { return session_->IsPaused(); }
   /// The newest state, as the last Advance() saw it.
   const simulation::Snapshot& Now() { return now_ != nullptr ? *now_ : Look(); }
   /// At kSlowMotion of the clock: for practice, see Runner::SetSpeed.
-  void SetSlowMotion(bool is_slow) { runner_.SetSpeed(is_slow ? kSlowMotion : 1.0); }
-  bool IsSlowMotion() const { return runner_.GetSpeed() < 1.0; }
+  void SetSlowMotion(bool is_slow) { session_->SetSpeed(is_slow ? kSlowMotion : 1.0); }
+  bool IsSlowMotion() const { return session_->GetSpeed() < 1.0; }
   static constexpr double kSlowMotion = 0.35;
   /// Back to the first tick, hands at home; keeps running or paused, and the settings.
   void Reset();
   /// The attempt is over: what is recorded ends here, and nothing more is until the next reset.
-  void EndAttempt() { runner_.EndAttempt(); }
+  void EndAttempt() { session_->EndAttempt(); }
   /// true: from the first tick on the script, or else a scripted expert, moves both hands. false: the person takes over
   /// where they are.
   void SetDemonstration(bool is_on);
   bool IsDemonstration() const { return is_demonstration_; }
   /// True if the script has come to its end.
-  bool IsDemonstrationOver() const;
-  bool HasScript() const { return runner_.HasScript(); }
+  bool IsDemonstrationOver() const { return is_demonstration_ && session_->IsDemonstrationOver(); }
+  bool HasScript() const { return session_->CanDemonstrate(); }
 
   /// Hand that the mouse and keys move while the laparoscope is not held.
   void ChooseHand(device::Channel hand);
@@ -95,7 +87,7 @@ class SessionControl {
   /// While held, the pointer and the keys move the laparoscope.
   void HoldLaparoscope(bool is_held);
   /// The automatic holder keeps both tips in the picture; taking the laparoscope ends it, where it is.
-  void SetCameraHolder(bool is_on) { input_.settings.holds_camera = is_on; }
+  void SetCameraHolder(bool is_on);
   bool HasCameraHolder() const { return input_.settings.holds_camera; }
   bool IsLaparoscopeHeld() const { return device_.GetChosen() == device::kLaparoscope; }
   /// Asks for a tool of a hand's tray; a place that the tray does not have is ignored.
@@ -107,7 +99,7 @@ class SessionControl {
   void ReleasePedals();
   /// The chosen hand's tool stands still although its device moves, until it is called again.
   void ToggleFreeze();
-  void CommandAssistant(scene::AssistantCommand command) { input_.assistant = command; }
+  void CommandAssistant(scene::AssistantCommand command);
   /// Retract, relax, release, wait, and again.
   void StepAssistant();
 
@@ -126,56 +118,46 @@ class SessionControl {
   const scene::LiveSettings& GetSettings() const { return input_.settings; }
   void SetSettings(const scene::LiveSettings& settings);
   /// Restores the settings of the scene.
-  void RestoreSettings() { SetSettings(runner_.GetScene().settings); }
+  void RestoreSettings() { SetSettings(GetScene().settings); }
 
   device::MouseKeyboard& Device() { return device_; }
-  const scene::Scene& GetScene() const { return runner_.GetScene(); }
-  std::span<const scene::SurfaceInfo> Surfaces() const { return runner_.Surfaces(); }
-  std::span<const scene::StrandInfo> Strands() const { return runner_.Strands(); }
+  const scene::Scene& GetScene() const { return session_->GetScene(); }
+  std::span<const scene::SurfaceInfo> Surfaces() const { return session_->Surfaces(); }
+  std::span<const scene::StrandInfo> Strands() const { return session_->Strands(); }
   /// Of the attempt that runs or ran last; nothing where none is kept.
-  std::optional<record::RecorderStatus> Recording() const { return runner_.RecordingStatus(); }
-  session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
+  std::optional<record::RecorderStatus> Recording() const { return session_->Recording(); }
+  session::RunnerStatistics Statistics() const { return session_->Statistics(); }
   /// The camera of the picture: the laparoscope's, with a level horizon where the scope is straight.
   math::Pose CalcView(const simulation::Snapshot& snapshot) const;
-  /// Input that the person asks for by mouse, keys and panel, with the hands as devices hold them.
+  /// Input that the person asks for by mouse, keys and panel, with hands and tools as devices hold them; as it stood at the last
+  /// Advance() or request.
   const scene::Input& GetInput() const { return input_; }
-  /// Input that the last Advance() gave to the simulation; the pedals of devices are in it, too.
-  const scene::Input& GetSentInput() const { return sent_; }
+  /// Input of the newest tick, whoever gave it: pedals of devices and of a demonstration are in it, too.
+  scene::Input LastInput() const { return session_->Input().Last(); }
+  session::Session& GetSession() { return *session_; }
 
  private:
-  SessionControl(simulation::Simulation simulation, const device::MouseKeyboardSettings& settings,
-                 std::optional<session::AttemptKeeping> keeping);
+  SessionControl(std::unique_ptr<session::Session> session, const device::MouseKeyboardSettings& settings);
   /// The newest state; what Look() gave before is gone.
-  const simulation::Snapshot& Look() { return *(now_ = &runner_.Latest()); }
+  const simulation::Snapshot& Look() { return *(now_ = &session_->Latest()); }
   void PlaceAtHome();
-  void ApplyDevice();
+  void TakeStanding() { input_ = session_->Input().Standing(); }
+  void SendHand(device::Channel channel);
+  void AdvanceMouse(const simulation::Snapshot& snapshot, double dt);
   void LimitLead(const simulation::Snapshot& snapshot);
-  void ApplyStylusButtons();
   bool MayAct() const { return !IsPaused() && !is_demonstration_; }
 
-  session::HapticLink haptic_link_;  // outlives both ends
-  session::Runner runner_;
-  std::unique_ptr<session::DeviceThread> device_thread_;  // may be null
-  session::DeviceHands device_hands_;                     // of that
-  session::DeviceHands stylus_hands_;                     // buttons of the haptic devices
-  std::string device_message_;                            // the newest
-  bool is_device_message_new_ = false;
-  std::uint64_t device_losses_ = 0;
+  std::unique_ptr<session::Session> session_;
   device::MouseKeyboard device_;
-  std::unique_ptr<session::HapticLoop> haptic_loop_;  // may be null
-  session::HapticRecord haptic_record_;
-  host::Stopwatch since_start_;
-  std::unique_ptr<net::IgtlServer> server_;  // may be null
-  std::uint64_t served_tick_ = 0;
+  std::uint64_t device_losses_ = 0;
   const simulation::Snapshot* now_ = nullptr;
-  scene::Input input_, sent_;
+  scene::Input input_;  // as it stands in the session
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;
   bool is_fulcrum_mirrored_ = false, has_depth_snap_ = false;
   double wheel_under_way_ = 0;  // turned and not walked yet [m]
   double field_of_view_ = 1.0;  // [rad]
   double pixels_ = 700;
-  double time_ = 0;  // of the newest snapshot [s]
 };
 
 }  // namespace trocar::presenter

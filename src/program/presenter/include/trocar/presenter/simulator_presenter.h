@@ -211,7 +211,8 @@ class SimulatorPresenter {
   bool Meets(SimulatorNeeds needs) const;
   bool IsChecked(Action action) const;
   bool IsForceOn() const;
-  base::Status UseDevices();
+  /// Session for a simulation: devices as the options name them, with the person's settings of them.
+  session::SessionOptions MakeSessionOptions(record::Description description);
   bool Use(simulation::Simulation simulation, record::Description description);
   void GoOn();
   void Finish();

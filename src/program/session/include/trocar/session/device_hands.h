@@ -15,10 +15,6 @@ using DeviceSamples = std::array<device::HandSample, device::kChannelCount>;
 using DeviceActs = std::array<device::HandActs, instrument::kHandCount>;
 static_assert(static_cast<std::size_t>(instrument::kHandCount) == device::kButtonHands);
 
-/// Takes every hand that the device sees; the others stay as they are. A hand's numbers go through the same limits of
-/// joints and speed as any other input.
-void ApplyHands(const DeviceSamples& samples, scene::Input& input) noexcept;
-
 /// Presses the pedals that a device holds down. Adds to the input; lifts none that somebody else holds.
 void PressPedals(const DeviceActs& acts, scene::Input& input) noexcept;
 
@@ -40,7 +36,9 @@ class DeviceHands {
   void Step(const DeviceActs& acts, scene::Input& input) noexcept;
   /// Forgets the presses since the last look: while nothing runs, buttons do nothing.
   void Ignore(const DeviceActs& acts) noexcept { seen_ = acts; }
-  /// As ApplyHands(); a hand that is frozen or whose clutch is held stands still, jaws included, and goes on from there.
+  /// Takes every hand that the device sees; the others stay as they are. A hand's numbers go through the same limits of joints
+  /// and speed as any other input. A hand that is frozen or whose clutch is held stands still, jaws included, and goes on from
+  /// there.
   void Move(const DeviceSamples& samples, const DeviceActs& acts, scene::Input& input) noexcept;
 
   /// A clutch or freeze that is not a button of the device: a key or a foot pedal.

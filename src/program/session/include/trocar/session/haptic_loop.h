@@ -96,17 +96,19 @@ struct HapticLink {
   host::NewestSlot<HapticHands> hands;                                               ///< loop to simulation
 };
 
-/// The simulation's end of the link: hands and pedals of the haptic devices take the place of the input's.
+/// The simulation's end of the link.
 class HapticHandsReader {
  public:
   /// Ticks without news from the loop after which it holds no pedal any more: a loop that stands still burns nothing.
   static constexpr int kLongestSilence = 12;
 
-  /// Call it once a tick. Does nothing while no loop runs.
+  /// Hands and acts of the haptic devices; call it once a tick.
+  /// \return nullptr while no loop runs; else valid until the next call
   /// \note Real-time safe.
-  void Take(HapticLink& link, scene::Input& input) noexcept;
+  const HapticHands* Take(HapticLink& link) noexcept;
 
  private:
+  HapticHands hands_;
   int silent_ticks_ = 0;
 };
 

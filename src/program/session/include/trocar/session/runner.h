@@ -10,6 +10,7 @@
 
 #include "trocar/record/recorder.h"
 #include "trocar/session/haptic_loop.h"
+#include "trocar/simulation/input_source.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::session {
@@ -34,29 +35,27 @@ struct AttemptKeeping {
   std::function<void(const std::filesystem::path&)> on_begin, on_end;
 };
 
+struct RunnerSettings {
+  /// nullptr, or the mailboxes of a haptic loop, which outlive the runner: every tick publishes the tissue round the tools.
+  HapticLink* haptics = nullptr;
+  /// Nothing, or where each attempt is recorded: from its first tick to the reset or the end of the runner.
+  std::optional<AttemptKeeping> keeping{};
+  /// Given the state after each tick, by the simulation's thread, before Latest() shows it: hands it over and returns. May be
+  /// empty.
+  std::function<void(const simulation::Snapshot&)> after_tick{};
+};
+
 /// Owns the simulation thread. All members are called from one other thread (the window's).
 class Runner {
  public:
   /// Starts paused.
   /// \param simulation  taken over
-  /// \param haptics     nullptr, or the mailboxes of a haptic loop, which must outlive this: hands that it drives take
-  ///                    the place of the input's, and every tick publishes their tissue
-  /// \param keeping     nothing, or where each attempt is recorded: from its first tick to the reset or the end of this
-  explicit Runner(simulation::Simulation simulation, HapticLink* haptics = nullptr,
-                  std::optional<AttemptKeeping> keeping = {});
+  /// \param source      of each tick's input; outlives this, and is called by the simulation's thread alone
+  Runner(simulation::Simulation simulation, simulation::InputSource& source, RunnerSettings settings = {});
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  /// The newest wish of the person; used from the next tick on until another comes.
-  void SetInput(const scene::Input& input);
-  /// true: the scene's script moves the hands and the input's hands are ignored. Where the scene has none, a scripted
-  /// expert acts in the place of the input, from the next reset on; the settings stay the input's.
-  void SetScripted(bool is_scripted);
-  /// Whether there is a script, or an expert for this scene.
-  bool HasScript() const;
-  /// The script has come to its end, or the expert has done all there is to do.
-  bool IsScriptOver() const;
   /// Slow motion: simulated seconds in a second of the clock, at most 1. An attempt that was slowed down is practice: what is
   /// recorded of it ends there, and nothing more is recorded before a reset at full speed.
   /// \param speed  clamped to kSlowest and 1
