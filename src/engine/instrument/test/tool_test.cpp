@@ -19,7 +19,7 @@ constexpr const char* kNames[] = {"grasper",      "maryland",          "hook", "
                                   "clip_applier", "suction_irrigator", "bag",  "linear_stapler"};
 
 TEST(AllTools, StandInTheOrderOfTheirKinds) {
-  ASSERT_EQ(AllTools().size(), static_cast<std::size_t>(ToolKind::kLinearStapler) + 1);
+  ASSERT_EQ(AllTools().size(), kToolKindCount);
   for (std::size_t i = 0; i < AllTools().size(); ++i)
     EXPECT_EQ(static_cast<std::size_t>(AllTools()[i].kind), i) << AllTools()[i].name;
 }

@@ -21,8 +21,9 @@ static_assert(std::endian::native == std::endian::little, "a message is little-e
 template <typename Enum>
 inline constexpr std::uint64_t kEnumerators = 0;
 template <>
-inline constexpr std::uint64_t kEnumerators<scene::EventKind> =
-    static_cast<std::uint64_t>(scene::EventKind::kOperationError) + 1;
+inline constexpr std::uint64_t kEnumerators<surgery::FactKind> = surgery::kFactKindCount;
+template <>
+inline constexpr std::uint64_t kEnumerators<instrument::ToolKind> = instrument::kToolKindCount;
 template <>
 inline constexpr std::uint64_t kEnumerators<scene::TaskPhase> =
     static_cast<std::uint64_t>(scene::TaskPhase::kEnded) + 1;

@@ -394,7 +394,7 @@ void ExpectUsable(const Snapshot& seen) {
   for (const auto& triangle : o.topology.triangles) {
     for (const std::uint32_t node : triangle) ASSERT_LT(node, seen.positions.size());
   }
-  for (const scene::Event& event : seen.events) ASSERT_FALSE(EventName(event.kind).empty());
+  for (const scene::Event& event : seen.events) ASSERT_FALSE(surgery::FactName(event.kind).empty());
 }
 
 // Bytes of somebody who knows the format: the checksum fits. What is not refused can be used.

@@ -3,6 +3,7 @@
 /// the direction in which the upper jaw opens.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -26,6 +27,8 @@ enum class ToolKind : std::uint8_t {
   kBag,               ///< retrieval bag; no jaws, its mouth is open
   kLinearStapler      ///< 12 mm; closes between two rows of staples on each side, and divides between them
 };
+
+inline constexpr std::size_t kToolKindCount = static_cast<std::size_t>(ToolKind::kLinearStapler) + 1;
 
 /// Bare metal that current leaves.
 enum class Electrode : std::uint8_t {
