@@ -18,6 +18,9 @@ configure() {
   fi
 }
 
+# what is opened is built, and nothing else: docs/decisions/0073-what-is-opened-is-built.md
+configure_release() { configure release -DTROCAR_BUILD_TESTS=OFF -DTROCAR_PARTS_WHEN_CALLED=ON; }
+
 # build PRESET [targets]
 build() {
   say "building build/$1"

@@ -21,7 +21,7 @@ class StaplerTest : public OperationHarness {
     scene_ = *OperationScene();
     auto& tray = scene_.instruments[kRight].tray;
     tray.push_back(*instrument::FindTool("linear_stapler"));
-    tray.back().jaw_length = 0.020;  // so that nothing else lies between them
+    tray.back().jaw_length = 0.012;  // so that nothing else lies between them
     MakeOperation(scene_);
     input_.controls[kRight].tool = static_cast<std::uint8_t>(tray.size() - 1);
     instrument::TrocarJoints wanted;
@@ -31,20 +31,31 @@ class StaplerTest : public OperationHarness {
   }
   const instrument::Tool& Stapler() const { return scene_.instruments[kRight].tray.back(); }
 
-  /// Puts the jaws across a line, where nothing else of the ducts and vessels is near.
+  /// Distance of the nearest duct or vessel but one from the line of the closed jaws [m].
+  double FindOtherTube(const Vec3& hinge, const Vec3& tip, std::int32_t but) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < Tissue().surfaces.size(); ++i) {
+      const scene::SurfaceInfo& tube = Tissue().surfaces[i];
+      if (tube.radii.empty() || static_cast<std::int32_t>(i) == but) continue;
+      for (std::uint32_t k = 0; k < tube.node_count; ++k) {
+        const Vec3& p = state_.position[tube.first_node + k];
+        const double at = math::Dot(p - hinge, tip - hinge) / math::SquaredDistance(hinge, tip);
+        least = std::min(least, math::Distance(p, math::Lerp(hinge, tip, std::clamp(at, 0.0, 1.0))));
+      }
+    }
+    return least;
+  }
+  /// Puts the jaws across a line, as far as can be from the ducts and vessels that are not meant.
   /// \param inside  from the line to the tip of the jaws [m]
-  void PutAcross(const Vec3& p, const Vec3& axis, double inside) {
+  /// \param best  how far they were elsewhere: only a better place is taken [m]
+  void PutAcross(const Vec3& p, const Vec3& axis, double inside, std::int32_t meant, double& best) {
     const Vec3 side = math::AnyPerpendicular(axis);
-    double best = -1;
     for (int i = 0; i < 24; ++i) {
       const Vec3 along = math::Rotate(math::RotationAbout(axis, i * M_PI / 12), side);
-      const Vec3 tip = p + inside * along, middle = tip - 0.5 * Stapler().jaw_length * along;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const Vec3& node : state_.position) {
-        if (math::Distance(node, p) > 0.008) nearest = std::min(nearest, math::Distance(node, middle));
-      }
-      if (nearest <= best) continue;
-      best = nearest;
+      const Vec3 tip = p + inside * along;
+      const double free = FindOtherTube(tip - Stapler().jaw_length * along, tip, meant);
+      if (free <= best) continue;
+      best = free;
       const math::Quaternion turn = math::RotationBetween({0, 0, -1}, along);
       const math::Quaternion spin = math::RotationBetween(math::Rotate(turn, {1, 0, 0}), axis);
       hands_.X_proxy[kRight] = hands_.X_device[kRight] = {spin * turn, tip};
@@ -87,20 +98,22 @@ class StaplerTest : public OperationHarness {
     }
     return bile() - before;
   }
-  /// Over the middle of the cystic duct.
+  /// Over the cystic duct, where the others are farthest.
   void PutAcrossDuct(double inside) {
     const auto tube = scene::FindSurface(Tissue().surfaces, roles::TubeRole::kCysticDuct);
     const scene::SurfaceInfo& duct = Tissue().surfaces[static_cast<std::size_t>(tube)];
-    const std::uint32_t middle = duct.first_node + duct.node_count / 2;
-    PutAcross(math::Lerp(state_.position[middle], state_.position[middle + 1], 0.5),
-              math::Normalized(state_.position[middle + 1] - state_.position[middle]), inside);
+    double best = 0;
+    for (std::uint32_t k = duct.first_node + 2; k + 3 < duct.first_node + duct.node_count; ++k)
+      PutAcross(math::Lerp(state_.position[k], state_.position[k + 1], 0.5),
+                math::Normalized(state_.position[k + 1] - state_.position[k]), inside, tube, best);
+    ASSERT_GT(best, Stapler().jaw_thickness) << "the knife is as wide as the jaws are thick";
   }
 
   scene::Scene scene_;
 };
 
 TEST_F(StaplerTest, ADuctIsDividedAndBothEndsHoldPressure) {
-  PutAcrossDuct(0.010);
+  PutAcrossDuct(0.006);
   const auto facts = Fire();
   EXPECT_EQ(Count(facts, FactKind::kClipClosed), 4u) << "two rows on each side";
   ASSERT_EQ(Count(facts, FactKind::kTubeCut), 1u);
@@ -124,7 +137,8 @@ TEST_F(StaplerTest, AHollowOrganIsDividedAndStaysTight) {
   const Vec3 fundus = patient.LandmarkOf(roles::LandmarkRole::kFundus)->position;
   const Vec3 neck = patient.LandmarkOf(roles::LandmarkRole::kInfundibulum)->position;
   const Vec3 axis = math::Normalized(neck - fundus);
-  PutAcross(fundus + 0.006 * axis, axis, 0.010);
+  double best = 0;
+  PutAcross(fundus + 0.006 * axis, axis, 0.010, -1, best);
   const auto facts = Fire();
   const auto is_cut = [this](const surgery::Fact& fact) {
     return fact.kind == FactKind::kOrganCut && fact.surface == gallbladder_;

@@ -18,6 +18,7 @@ using trocar::test::HandDriver;
 using trocar::test::kLongest;
 using trocar::test::Screen;
 using trocar::test::WaitFor;
+namespace instrument = trocar::instrument;
 namespace math = trocar::math;
 namespace files = trocar::files;
 namespace scene = trocar::scene;

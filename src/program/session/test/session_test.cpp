@@ -66,6 +66,7 @@ class Reader {
       while (!is_stopping_) {
         const device::IoResult got = line->Read(buffer);
         bytes_.append(buffer.data(), got.count);
+        received_ += got.count;
         if (got.count == 0) device::SystemClock().Sleep(0.001);
       }
     });
@@ -75,7 +76,12 @@ class Reader {
   }
   /// \return the times of the left tool's poses [s]
   std::vector<double> Stop() {
-    device::SystemClock().Sleep(0.2);  // what is on its way
+    // what is on its way
+    for (std::size_t before = 1, now = 0; before != now;) {
+      before = received_;
+      device::SystemClock().Sleep(0.4);
+      now = received_;
+    }
     is_stopping_ = true;
     thread_.join();
     const auto number = [this](std::size_t at, int count) {
@@ -100,6 +106,7 @@ class Reader {
 
  private:
   std::string bytes_;
+  std::atomic<std::size_t> received_{0};
   int organs_ = 0;
   std::atomic<bool> is_stopping_{false};
   std::thread thread_;
@@ -129,6 +136,16 @@ class SessionTest : public scene::SmallScene {
   static bool Eventually(const std::function<bool()>& claim) {
     for (int i = 0; i < 4000 && !claim(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return claim();
+  }
+  /// \return the last tick that was made before a pause
+  std::uint64_t AwaitRest() {
+    std::uint64_t before = 0, now = session_->Latest().tick;
+    do {
+      before = now;
+      device::SystemClock().Sleep(0.1);
+      now = session_->Latest().tick;
+    } while (before != now);
+    return now;
   }
   bool RunTo(std::uint64_t tick) {
     return Eventually([&] { return session_->Latest().tick >= tick; });
@@ -174,8 +191,7 @@ TEST_F(SessionTest, DeviceViewersAndRecordingWithoutAWindow) {
   ASSERT_TRUE(RunTo(200));
   EXPECT_NE(session_->Input().Last().hands, before) << "the device moves";
   session_->SetPaused(true);
-  device::SystemClock().Sleep(0.05);
-  const std::uint64_t last = session_->Latest().tick;
+  const std::uint64_t last = AwaitRest();
   const std::vector<double> times = reader.Stop();
   EXPECT_EQ(session_->Statistics().ticks, last);
 
@@ -309,8 +325,7 @@ TEST_F(SessionTest, ALostDevicePausesWithoutAnybodyLooking) {
   ASSERT_TRUE(Eventually([&] { return session_->IsPaused(); }));
   EXPECT_FALSE(session_->Input().Standing().controls[kRight].coagulate);
   EXPECT_GE(session_->Input().DeviceLosses(), 1u);
-  device::SystemClock().Sleep(0.05);
-  const std::uint64_t tick = session_->Latest().tick;
+  const std::uint64_t tick = AwaitRest();
   device::SystemClock().Sleep(0.1);
   EXPECT_EQ(session_->Latest().tick, tick);
 }
