@@ -19,6 +19,7 @@
 
 namespace trocar::agent {
 
+/// Fibres that are to be parted with the hook, and how the other hand draws meanwhile.
 struct DissectionGoal {
   std::string what;
   std::vector<std::uint32_t> strands;
@@ -40,8 +41,8 @@ struct HookField {
   std::span<const math::Vec3> rest, positions;  ///< (nodes) at rest and now [m]
   std::span<const std::uint8_t> is_intact;      ///< (strands)
   std::span<const std::uint32_t> main_ducts;    ///< nodes of ducts that must stay
-  std::span<const std::uint32_t>
-      careful_nodes;                        ///< of arteries that must stay, and of small ducts of the bed
+  /// Of arteries that must stay, and of small ducts of the bed.
+  std::span<const std::uint32_t> careful_nodes;
   std::vector<collision::Segment> entries;  ///< where a duct or artery that is whole enters the organ [m]
   /// Distance from a segment to the nearest organ [m].
   std::function<double(const collision::Segment&)> clearance;

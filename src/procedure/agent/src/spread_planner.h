@@ -42,8 +42,8 @@ struct SeenSpread {
 /// What is seen in this tick.
 struct SpreadSight {
   std::span<const std::uint8_t> is_intact;  ///< (strands of the scene)
-  std::function<SeenSpread(const Spreading&)>
-      look;                        ///< before the jaws; asked when a pose is chosen or checked
+  /// Before the jaws; asked when a pose is chosen or checked.
+  std::function<SeenSpread(const Spreading&)> look;
   std::function<bool()> is_clear;  ///< nothing more is to be parted
   math::Pose X_world_tool;         ///< of the tool that is seen
 };
