@@ -165,7 +165,7 @@ TEST(MakeParts, TheSuctionTubeHasSideHolesIntoItsBore) {
 TEST(MakeParts, OnlyTheClipApplierHoldsAClip) {
   for (const char* name : kNames) {
     const bool has_clip = FindPart(MakeParts(*FindTool(name)), ToolPart::Kind::kUpperClip) != nullptr;
-    EXPECT_EQ(has_clip, FindTool(name)->clips > 0) << name;
+    EXPECT_EQ(has_clip, AbilitiesOf(FindTool(name)->kind).holds_clips) << name;
   }
   const std::vector<ToolPart> parts = MakeParts(*FindTool("clip_applier"));
   const geometry::Box leg = geometry::CalcBox(FindPart(parts, ToolPart::Kind::kUpperClip)->mesh.positions);

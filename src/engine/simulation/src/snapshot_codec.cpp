@@ -151,13 +151,13 @@ bool IsWithin(const Snapshot& snapshot, const SnapshotLayout& layout) noexcept {
         !IsIndexOrNone(event.error, cholecystectomy::kOperationErrorCount))
       return false;
   }
-  for (const surgery::Fact& fact : snapshot.facts) {
+  if (snapshot.fact_count > snapshot.facts.size()) return false;
+  for (const surgery::Fact& fact : std::span(snapshot.facts).first(snapshot.fact_count)) {
     if (!IsIndexOrNone(fact.hand, instrument::kHandCount) || !IsIndexOrNone(fact.object, objects) ||
         !IsIndexOrNone(fact.surface, layout.surfaces) ||
         !IsIndexOrNone(fact.strand, snapshot.operation.strand_is_intact.size()))
       return false;
   }
-  if (snapshot.fact_count > snapshot.facts.size()) return false;
   return IsWithin(snapshot.operation, layout) && IsWithin(snapshot.task, layout);
 }
 
