@@ -52,7 +52,8 @@ inline SnapshotLayout MakeSampleLayout() {
   SnapshotLayout layout;
   Visit(
       layout.shape, [](auto&) {}, [](auto& list) { list.resize(kSampleLength); });
-  layout.shape.event_count = kEventRing;  // the ring is full
+  layout.shape.event_count = kEventRing;    // the ring is full
+  layout.shape.fact_count = kSampleLength;  // and so is the list
   layout.model = 0x0123456789abcdef;
   layout.surfaces = layout.neighbours = layout.rules = 4;
   layout.tools = {4, 4};
