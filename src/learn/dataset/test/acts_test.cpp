@@ -15,6 +15,7 @@ class ActWatchTest : public testing::Test {
   ActWatchTest() {
     scene_.patient.organs.resize(2);
     surfaces_.resize(2);
+    for (scene::SurfaceInfo& organ : surfaces_) organ.triangles.resize(1);
     surfaces_[0].look = "liver";
     surfaces_[0].organ = roles::OrganRole::kLiver;
     surfaces_[1].look = "gallbladder";
