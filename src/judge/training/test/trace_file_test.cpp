@@ -36,7 +36,7 @@ AttemptTrace MakeFullTrace() {
                      false, ""};
   trace.events[1] = {0.06, "wire_touched",    -1, -1, 0.0, {}, true, cholecystectomy::Severity::kMajor,
                      true, "The ring touched"};
-  trace.facts = {{"current_into", 1, "bed", 0.02, 0.05, 0.0}, {"rinse", 0, "", 0.05, 0.1, 2e-6}};
+  trace.facts = {{"current_into", 1, "bed_strand", 0.02, 0.05, 0.0}, {"rinse", 0, "", 0.05, 0.1, 2e-6}};
   trace.phases = {{"Preparation", 0, 0.05}, {"ClippingCutting", 0.05, 0.1}};
   trace.clips = {{0.05, 1, "cystic_duct", false, true, 0.003, 1.2}, {0.06, 0, "", true, false, {}, {}}};
   trace.fluids = {{0, 0, 0}, {0.1, 1e-6, 2e-6}};
@@ -61,7 +61,7 @@ TEST(TraceFile, KeepsEverything) {
   EXPECT_EQ(read->events[0].position, trace.events[0].position);
   EXPECT_TRUE(read->events[1].is_rule);
   ASSERT_EQ(read->facts.size(), 2u);
-  EXPECT_EQ(read->facts[0].part, "bed");
+  EXPECT_EQ(read->facts[0].part, "bed_strand");
   EXPECT_EQ(read->facts[1].amount, 2e-6);
   EXPECT_EQ(read->clips[0].angle, trace.clips[0].angle);
   EXPECT_EQ(read->goals[1].time, std::nullopt);

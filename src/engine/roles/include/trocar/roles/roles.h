@@ -124,7 +124,8 @@ struct RoleNames<NeighbourRole> {
 };
 template <>
 struct RoleNames<StrandRole> {
-  static constexpr const char* kNames[] = {"bed", "adhesion", "triangle", "peritoneum", "end", "band"};
+  static constexpr const char* kNames[] = {"bed_strand",        "adhesion_strand", "triangle_strand",
+                                           "peritoneum_strand", "end_strand",      "band_strand"};
 };
 template <>
 struct RoleNames<TissueRole> {

@@ -67,7 +67,7 @@ struct AttemptEvent {
 struct FactSpan {
   std::string kind;           ///< surgery::FactName
   int hand = -1;              ///< instrument::Hand, or -1
-  std::string part;           ///< of organ_names; or what a strand is, "bed" for instance; may be empty
+  std::string part;           ///< of organ_names; or what a strand is, "bed_strand" for instance; may be empty
   double start = 0, end = 0;  ///< since the attempt's first tick [s], start <= end
   double amount = 0;          ///< see surgery::FactKind: of volumes the sum, else the largest
 };
