@@ -148,7 +148,9 @@ TYPED_TEST(EveryElement, WholeStiffnessIsTheDerivativeOfTheForce) {
 TYPED_TEST(EveryElement, FirmStiffnessIsPositiveAndWithinItsBounds) {
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     math::Random random(seed);
-    const auto [element, x] = MakeExample<TypeParam>(random);
+    const auto example = MakeExample<TypeParam>(random);
+    const auto& element = std::get<0>(example);  // clang 14 lets no lambda see a structured binding
+    const auto& x = std::get<1>(example);
     const Dense firm = CalcDense(element, x, StiffnessPart::kFirm);
     const Dense bound = CalcDense(element, x, StiffnessPart::kBound);
     const double rounding = 1e-9 * bound.Largest();
