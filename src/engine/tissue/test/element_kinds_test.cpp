@@ -149,8 +149,8 @@ TYPED_TEST(EveryElement, FirmStiffnessIsPositiveAndWithinItsBounds) {
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     math::Random random(seed);
     const auto example = MakeExample<TypeParam>(random);
-    const auto& element = std::get<0>(example);  // clang 14 lets no lambda see a structured binding
-    const auto& x = std::get<1>(example);
+    const auto& element = example.element;  // clang 14 lets no lambda see a structured binding
+    const auto& x = example.position;
     const Dense firm = CalcDense(element, x, StiffnessPart::kFirm);
     const Dense bound = CalcDense(element, x, StiffnessPart::kBound);
     const double rounding = 1e-9 * bound.Largest();
