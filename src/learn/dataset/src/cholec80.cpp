@@ -33,7 +33,7 @@ class Cholec80Writer : public VideoWriter {
 
   base::Status Add(const Frame& frame, const simulation::Simulation& /*simulation*/) override {
     // a picture has a million labels
-    static const auto kTools = [] {
+    static const auto tool_of = [] {
       std::array<std::optional<instrument::ToolKind>, view::kLabelClassCount> tools;
       for (std::size_t i = 0; i < tools.size(); ++i)
         tools[i] = view::ToolOf(static_cast<view::LabelClass>(i));
@@ -41,7 +41,7 @@ class Cholec80Writer : public VideoWriter {
     }();
     std::array<bool, kCholec80Tools.size()> is_there{};
     for (const std::uint16_t label : frame.geometry.labels) {
-      const auto kind = kTools[static_cast<std::size_t>(view::ClassOf(label))];
+      const auto kind = tool_of[static_cast<std::size_t>(view::ClassOf(label))];
       if (kind) is_there[static_cast<std::size_t>(cholecystectomy::InstrumentOf(*kind))] = true;
     }
     tools_ += std::to_string(frame.number);
