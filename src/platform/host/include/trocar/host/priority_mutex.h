@@ -22,8 +22,8 @@ class PriorityMutex {
   PriorityMutex(const PriorityMutex&) = delete;
   PriorityMutex& operator=(const PriorityMutex&) = delete;
 
-  void lock() noexcept { ::pthread_mutex_lock(&mutex_); }
-  void unlock() noexcept { ::pthread_mutex_unlock(&mutex_); }
+  void lock() noexcept { ::pthread_mutex_lock(&mutex_); }      // NOLINT: std::lock_guard calls it so
+  void unlock() noexcept { ::pthread_mutex_unlock(&mutex_); }  // NOLINT
 
  private:
   pthread_mutex_t mutex_;
