@@ -65,9 +65,9 @@ struct AttemptEvent {
 
 /// A fact that went on for a while: the same kind, hand and part in ticks that follow each other.
 struct FactSpan {
-  std::string kind;           ///< surgery::FactName
-  int hand = -1;              ///< instrument::Hand, or -1
-  std::string part;           ///< of organ_names; or what a strand is, "bed_strand" for instance; may be empty
+  std::string kind;  ///< surgery::FactName
+  int hand = -1;     ///< instrument::Hand, or -1
+  std::string part;  ///< of organ_names; or what a strand is, "bed_strand" for instance; may be empty
   double start = 0, end = 0;  ///< since the attempt's first tick [s], start <= end
   double amount = 0;          ///< see surgery::FactKind: of volumes the sum, else the largest
 };
