@@ -103,6 +103,12 @@ void AddBenchCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--url", arguments->options.url,
                    "An empty PostgreSQL database for the store (postgresql://...)")
       ->type_name("URL");
+  command
+      ->add_option("--beside", arguments->options.beside,
+                   "Another build's trocar: the operation is timed with both, by turns in one run")
+      ->type_name("PROGRAM");
+  command->add_flag("!--no-errors", arguments->options.judges_errors,
+                    "Do not hold the operation's ticks against their equilibrium");
   command->add_option("--labels", arguments->options.labels, "Label map of liver and gallbladder for growth")
       ->type_name("FILE");
   AddJsonFlag(*command, arguments->is_json, "Machine-readable: suite, machine, cases, ratios");

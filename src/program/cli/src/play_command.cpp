@@ -26,6 +26,7 @@
 #include "trocar/files/operation_level_file.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/files/task_file.h"
+#include "trocar/host/clock.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/version.h"
@@ -249,7 +250,8 @@ RunReport MakeRunReport(const scene::Scene& scene, const PlayArguments& argument
 /// Without pictures.
 base::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                                    const PlayArguments& arguments) {
-  auto made = simulation::Simulation::Make(scene, {.threads = host::UseThreads(arguments.threads)});
+  auto made = simulation::Simulation::Make(
+      scene, {.threads = host::UseThreads(arguments.threads), .now = host::NowNanoseconds});
   if (!made) return made.error();
   simulation::Simulation simulation = std::move(*made);
   if (auto restored = GoOn(arguments.files, arguments.most_seconds, simulation, surgeon); !restored)

@@ -13,6 +13,7 @@
 #include "trocar/base/statistics.h"
 #include "trocar/cholecystectomy/injury.h"
 #include "trocar/cholecystectomy/operation_end.h"
+#include "trocar/host/clock.h"
 #include "trocar/host/json.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/translate.h"
@@ -181,7 +182,8 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     progress.Show(Share(now));
   };
   if (play.output.empty()) {
-    auto made = simulation::Simulation::Make(scene, {.threads = host::UseThreads(play.threads)});
+    auto made = simulation::Simulation::Make(
+        scene, {.threads = host::UseThreads(play.threads), .now = host::NowNanoseconds});
     if (!made.ok()) return made.error();
     simulation::Simulation simulation = std::move(*made);
     if (auto restored = GoOn(play.files, play.most_seconds, simulation, surgeon); !restored) return restored;

@@ -28,6 +28,7 @@ TEST(PlayCommand, PrintsTheVerdictAsJsonAndTheSameAgain) {
                           "tick_p99_ms", "cut_tick_max_ms", "hash", "score", "time_s"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["completed"], true);
+  EXPECT_GT(json["tick_p99_ms"], 0.0);
   EXPECT_TRUE(json["errors"].empty()) << run.out;
   const Printed again =
       RunTrocar({"play", "expert", "--task", "instrument_navigation", "--seed", "3", "--json"});

@@ -21,6 +21,8 @@ struct BenchmarkOptions {
   int steps = 3000;        ///< random actions of the soak, over all environments
   std::uint64_t seed = 1;  ///< of those actions
   std::string labels;      ///< label map that growth draws its phantom of; empty: of generated patients
+  std::string beside;         ///< another build's program, which the operation is timed by turns with; empty: none
+  bool judges_errors = true;  ///< whether the operation's ticks are held against their equilibrium, too
   std::string url;  ///< an empty database for the store; empty: a SQLite file for the time of the benchmark
 };
 
@@ -61,6 +63,7 @@ base::Result<BenchmarkResult> RunEnvironmentBenchmark(const BenchmarkOptions& op
 base::Result<BenchmarkResult> RunSoakBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunGrowthBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& options);
+base::Result<BenchmarkResult> RunOperationBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunSnapshotBenchmark(const BenchmarkOptions& options);
 base::Result<BenchmarkResult> RunStateBenchmark(const BenchmarkOptions& options);
