@@ -241,20 +241,22 @@ base::Result<BenchmarkResult> RunOperationBenchmark(const BenchmarkOptions& opti
   host::ProgressBar bar("the operation, part by part",
                         (options.repeats + 1) * static_cast<double>(kPartCount));
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
+    // the other first: what is no such program is told at once
+    const auto other = options.beside.empty()
+                           ? base::Result<std::map<std::string, double>>(std::map<std::string, double>())
+                           : AskOther(options.beside, options.threads);
+    if (!other) return other.error();
+    for (const auto& [name, value] : *other) {
+      const bool is_rate = name.ends_with("ticks_per_s") || name.ends_with("times_real_time");
+      const auto [entry, is_new] = others.try_emplace(name, value);
+      if (!is_new) entry->second = is_rate ? std::max(entry->second, value) : std::min(entry->second, value);
+    }
     for (std::size_t at = 0; at < kPartCount; ++at) {
       bar.SetLabel(kParts[at].name);
       bar.Show(repeat * static_cast<double>(kPartCount) + static_cast<double>(at));
       auto player = operation->Begin(kParts[at], bar);
       if (!player) return player.error();
       if (const auto run = Run(kParts[at], *player, options.threads, times[at]); !run) return run.error();
-    }
-    if (options.beside.empty()) continue;
-    const auto other = AskOther(options.beside, options.threads);
-    if (!other) return other.error();
-    for (const auto& [name, value] : *other) {
-      const bool is_rate = name.ends_with("ticks_per_s") || name.ends_with("times_real_time");
-      const auto [entry, is_new] = others.try_emplace(name, value);
-      if (!is_new) entry->second = is_rate ? std::max(entry->second, value) : std::min(entry->second, value);
     }
   }
   for (std::size_t at = 0; options.judges_errors && at < kPartCount; ++at) {

@@ -48,6 +48,31 @@ TEST(EnvironmentBenchmarkSlow, MeasuresEveryEnvironmentAndItsPictures) {
   EXPECT_EQ(result->ratios.size(), 4U);
 }
 
+TEST(OperationBenchmark, AsksTheOtherProgramFirst) {
+  const auto result = RunOperationBenchmark({.repeats = 1, .beside = "/bin/false"});
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, base::ErrorCode::kUsage);
+  EXPECT_NE(result.error().Text().find("/bin/false"), std::string::npos);
+}
+
+// Minutes: the scripted surgeons play up to where each part begins, where that is not in the cache yet.
+TEST(OperationBenchmarkSlow, MeasuresEveryPart) {
+  const auto result = RunOperationBenchmark({.repeats = 1});
+  ASSERT_TRUE(result.ok()) << result.error().Text();
+  const auto value_of = [&](std::string_view name) {
+    for (const BenchmarkCase& entry : result->cases)
+      if (entry.name == name) return entry.value;
+    return -1.0;
+  };
+  for (const char* name :
+       {"operation/ticks_per_s", "operation/tick_p99", "operation/times_real_time",
+        "operation/traction/tick_p50", "operation/fat/tick_p50", "operation/clips/tick_p50",
+        "operation/bed/tick_p50", "operation/bleeding/tick_cut"})
+    EXPECT_GT(value_of(name), 0) << name;
+  EXPECT_EQ(value_of("operation/judged_ticks") + value_of("operation/unsettled_ticks"), 60);
+  EXPECT_LT(value_of("operation/true_error_median"), 1e-3);
+}
+
 TEST(ElementaryBenchmark, ComparesEveryFunctionWithTheLibrarys) {
   const auto result = RunElementaryBenchmark({.repeats = 0});
   ASSERT_TRUE(result.ok()) << result.error().Text();
