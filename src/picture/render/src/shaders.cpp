@@ -110,7 +110,7 @@ vec4 WithBrightness(vec3 colour) { return vec4(colour, dot(colour, vec3(0.299, 0
 )";
 
 const char* const kTissueFragmentShader = R"(
-const float kGrainScale = 3.1, kGrainTilt = 0.45;
+const float kGrainScale = 2.1, kGrainTilt = 0.22;
 const float kBroadGloss = 150.0;  // exponent; a broader highlight than that has no white middle
 in vec4 v_mark;
 in float v_pallor;
@@ -126,7 +126,8 @@ uniform vec3 u_gloss;        // wet, wet exponent, sheen
 void main() {
   vec4 detail = texture(u_pattern, v_rest.xyz * u_detail_scale);
   vec4 broad = texture(u_pattern, v_rest.xyz * u_broad_scale + vec3(0.31, 0.17, 0.53));
-  vec3 slope = texture(u_bumps, v_rest.xyz * u_bump_scale).xyz * 2.0 - 1.0;
+  vec4 bumps = texture(u_bumps, v_rest.xyz * u_bump_scale);
+  vec3 slope = bumps.xyz * 2.0 - 1.0;
 
   // the lamp is a few millimetres from the lens: its direction to first order, nearly of unit length
   float inverse_distance = inversesqrt(dot(v_position, v_position));
@@ -141,7 +142,9 @@ void main() {
   vec3 albedo = mix(u_low, u_high, clamp(0.55 * detail.r + 1.1 * broad.r - 0.32, 0.0, 1.0));
   albedo = mix(albedo, u_cell, u_amounts.x * (1.0 - detail.a));
   float vessel = clamp((broad.b - 1.0 + u_amounts.z) / u_amounts.z, 0.0, 1.0);
-  albedo = mix(albedo, u_vessel, u_amounts.y * vessel * vessel);
+  // branches are a third as wide as stems, and paler
+  float branch = clamp((detail.b - 1.0 + 0.6 * u_amounts.z) / (0.6 * u_amounts.z), 0.0, 1.0);
+  albedo = mix(albedo, u_vessel, u_amounts.y * max(vessel * vessel, 0.55 * branch * branch));
   // stretched tissue is white, its vessels are empty; patches of it whiten first
   albedo = mix(albedo, kPallor, v_pallor * (0.55 + 0.45 * detail.r));
   // a thin wall seen edge-on is brighter and paler
@@ -152,16 +155,18 @@ void main() {
   if (v_mark != vec4(0.0)) {
     // the edges of a burn and of a film of liquid follow the tissue's grain
     float grain = 0.5 * detail.r + 0.5 * broad.r - 0.5;
-    float cooked = clamp(v_mark.x + 0.5 * grain * v_mark.x, 0.0, 1.0);
-    albedo = mix(albedo, kBlanched * (0.7 + 0.6 * detail.r) * mix(vec3(1.0), sqrt(albedo), 0.5), 0.85 * cooked);
+    // a burn's marks stand at vertices: what is ragged between them hides the triangles
+    float ragged = grain + 0.8 * (bumps.a - 0.5) - 0.5 * (detail.g - 0.5);
+    float cooked = smoothstep(0.0, 1.0, v_mark.x + 0.8 * ragged * sqrt(v_mark.x));
+    albedo = mix(albedo, kBlanched * (0.6 + 0.6 * detail.r) * mix(vec3(1.0), sqrt(albedo), 0.7), 0.7 * cooked);
     vec2 film = smoothstep(0.10, 0.75, v_mark.zw + 0.5 * grain);
     // a thin film colours what is under it, a thick one hides it
     albedo *= mix(vec3(1.0), sqrt(kBileFilm), film.y);
     albedo = mix(albedo, kBileFilm, 0.6 * film.y * film.y);
     albedo *= mix(vec3(1.0), sqrt(kBloodFilm), film.x);
     albedo = mix(albedo, kBloodFilm, 0.85 * film.x * film.x);
-    float brown = smoothstep(0.05, 0.40, v_mark.y + 0.35 * grain * sqrt(v_mark.y));
-    float black = smoothstep(0.35, 0.80, v_mark.y + 0.50 * grain);
+    float brown = smoothstep(0.03, 0.45, v_mark.y + 0.9 * ragged * sqrt(v_mark.y));
+    float black = smoothstep(0.42, 0.95, v_mark.y + 0.9 * ragged * sqrt(v_mark.y));
     albedo = mix(mix(albedo, kScorched, brown), kCharred, black);
     wet_share = mix(mix(wet_share, max(wet_share, 0.8), max(film.x, film.y)), 0.12, max(brown, 0.6 * cooked));
     sheen_share *= 1.0 - 0.85 * brown;
@@ -186,7 +191,7 @@ void main() {
     coat = normalize(coat - (nearness * min(u_bump, 0.26)) * (kGrainTilt * (tilt - n * dot(n, tilt)) + 0.75 * slope));
     coat_cosine = max(0.5 * (dot(coat, l) + dot(coat, to_eye)), 0.0);
     // where it stands out of the coat it is dry
-    island = 1.0 - nearness * min(1.0, 4.0 * u_bump) * (0.92 - 0.92 * smoothstep(0.54, 0.70, grain.a));
+    island = 1.0 - nearness * min(1.0, 4.0 * u_bump) * (0.6 - 0.6 * smoothstep(0.46, 0.70, grain.a));
   }
 #endif
   float sharpness = u_gloss.y;

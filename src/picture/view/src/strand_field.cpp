@@ -21,7 +21,9 @@ using render::Material;
 
 constexpr double kFibreWidth = 0.00016;    // m, of areolar tissue
 constexpr double kShownLength = 0.0035;    // m; a shorter strand lies between what it joins and is not seen
+constexpr double kDrawn = 1.08;            // of its rest length, from which on a strand of the bed is seen
 constexpr double kWebBreadth = 1.3;        // of the bed's web in distances to its neighbour
+constexpr double kFatGrain = 3.0;          // how much finer its pattern is than that of the omentum [-]
 constexpr double kFatChange = 0.00012;     // m; less movement leaves the fat's surface as it is
 constexpr double kAdhesionWidth = 0.0007;  // m
 constexpr double kEndSpread = 0.0007;      // m, of a fibre's root about its node
@@ -74,6 +76,12 @@ StrandField::StrandField(std::span<const scene::StrandInfo> strands, std::span<c
 
 void StrandField::AddTo(render::Renderer& renderer, render::Frame& frame,
                         const simulation::Snapshot& snapshot, const Film& film) {
+  AddFibres(frame, snapshot);
+  AddFat(renderer, frame, snapshot);
+  WetFat(renderer, film);
+}
+
+void StrandField::AddFibres(render::Frame& frame, const simulation::Snapshot& snapshot) const {
   const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
   for (std::size_t i = 0; i < strands_.size(); ++i) {
     if (i < intact.size() && intact[i] == 0) continue;
@@ -88,7 +96,8 @@ void StrandField::AddTo(render::Renderer& renderer, render::Frame& frame,
     };
     switch (strand.info.kind) {
       case Kind::kBed:
-        if (length < kShownLength) break;
+        // what is not drawn lies under the peritoneum that folds over from organ to organ
+        if (length < kShownLength || length < kDrawn * strand.rest_length) break;
         // a web that thins out as it is drawn, and a thread in every second of them
         frame.fibres.push_back({a, b, strand.breadth, 0.3 * wave, Material::kFilm, 3 * seed});
         if (i % 2 == 0) add_fibre(kFibreWidth * random.Uniform(0.7, 1.5));
@@ -108,8 +117,6 @@ void StrandField::AddTo(render::Renderer& renderer, render::Frame& frame,
         break;  // the tube itself shows it
     }
   }
-  AddFat(renderer, frame, snapshot);
-  WetFat(renderer, film);
 }
 
 void StrandField::FindRaw(const simulation::Snapshot& snapshot, std::vector<std::uint8_t>& rows) const {
@@ -142,7 +149,10 @@ void StrandField::AddFat(render::Renderer& renderer, render::Frame& frame,
     fat_.Make(wanted_);
     const geometry::TriangleMesh& mesh = fat_.Mesh();
     if (!mesh.triangles.empty()) {
-      surface_ = renderer.AddSurface(mesh.triangles, fat_.Rest(), Material::kFat, fat_.AmbientOcclusion());
+      // its lobules are small beside those of the omentum, of which the material is
+      grain_.assign(fat_.Rest().begin(), fat_.Rest().end());
+      for (Vec3& place : grain_) place = kFatGrain * place;
+      surface_ = renderer.AddSurface(mesh.triangles, grain_, Material::kFat, fat_.AmbientOcclusion());
       normals_.resize(mesh.positions.size());
       geometry::CalcVertexNormals(mesh.positions, mesh.triangles, normals_);
       renderer.UpdateSurface(surface_, mesh.positions, normals_);

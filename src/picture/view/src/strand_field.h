@@ -26,6 +26,8 @@ class StrandField {
   /// when it has changed, and wet where liquid lies or runs.
   void AddTo(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot,
              const Film& film);
+  /// Of those, fibres and films alone. What the bed's strands span is seen where it is drawn.
+  void AddFibres(render::Frame& frame, const simulation::Snapshot& snapshot) const;
   /// The fat that was added last.
   std::span<const FatLobule> Fat() const { return wanted_; }
 
@@ -45,8 +47,8 @@ class StrandField {
   std::vector<Strand> strands_;
   surgery::FatLobules lobules_;
   FatBody fat_;
-  std::vector<FatLobule> shown_, wanted_;  // of the surface that is uploaded; of this snapshot
-  std::vector<math::Vec3> normals_;
+  std::vector<FatLobule> shown_, wanted_;    // of the surface that is uploaded; of this snapshot
+  std::vector<math::Vec3> normals_, grain_;  // of that surface; where its pattern is taken from
   render::SurfaceId surface_;
   std::vector<render::SurfaceMark> marks_;  // of the fat
   bool is_wet_ = false;
