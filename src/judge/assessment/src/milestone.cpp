@@ -25,13 +25,15 @@ std::string_view DescribeUntil(Milestone milestone) noexcept {
 }
 
 void MilestoneWatch::See(const simulation::Snapshot& now) noexcept {
-  const simulation::OperationSnapshot& operation = now.operation;
-  if (reached_ == Milestone::kStart && operation.critical_view.IsAchieved())
-    reached_ = Milestone::kCriticalView;
-  if (reached_ == Milestone::kCriticalView && operation.facts.structures_entering == 0)
-    reached_ = Milestone::kDivided;
-  if (reached_ == Milestone::kDivided && operation.is_gallbladder_free) reached_ = Milestone::kFree;
-  if (reached_ == Milestone::kFree && operation.is_completed) reached_ = Milestone::kCompleted;
+  const std::size_t count = procedure_ == nullptr ? 0 : procedure_->parts.size();
+  for (auto next = static_cast<std::size_t>(reached_) + 1; next < count; ++next) {
+    if (!procedure_->parts[next].is_reached(now.operation.procedure, RetrievalOf(now.operation))) return;
+    reached_ = static_cast<Milestone>(next);
+  }
+}
+
+surgery::RetrievalObservation RetrievalOf(const simulation::OperationSnapshot& now) noexcept {
+  return {now.is_organ_free, now.is_in_bag, now.is_completed};
 }
 
 }  // namespace trocar::assessment

@@ -44,7 +44,7 @@ base::Result<Preparation> Operate(const Step& step, const PreparationSettings& s
                                   simulation::Simulation simulation, Preparation preparation) {
   auto surgeon = agent::MakeSurgeon("expert", scene, settings.surgeon_seed);
   if (!surgeon.ok()) return surgeon.error();
-  MilestoneWatch watch;
+  MilestoneWatch watch(scene::ProcedureOf(*scene));
   while (!watch.HasReached(step.from)) {
     const simulation::Snapshot& now = simulation.GetSnapshot();
     if ((*surgeon)->HasFinished() || now.time >= kMostSeconds) {

@@ -86,7 +86,7 @@ void ReadSupplies(const JsonView& root, scene::OperationParameters& made) {
   ReadJunction(group.Object("artery_bed"), made.supplies.artery_bed);
   ReadJunction(group.Object("liver"), made.supplies.liver);
   ReadJunction(group.Object("bowel"), made.supplies.bowel);
-  ReadJunction(group.Object("gallbladder"), made.supplies.gallbladder);
+  ReadJunction(group.Object("gallbladder"), made.supplies.hollow_organ);
   made.supplies.lumen_share = group.Number("lumen_share", kLeastShare);
 }
 

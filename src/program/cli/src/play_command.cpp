@@ -118,7 +118,7 @@ nlohmann::ordered_json TaskErrorJson(const scene::Scene& scene, const scene::Tas
   const auto& p = error.position;
   nlohmann::ordered_json json = {{"error", rule.name},
                                  {"about", rule.about},
-                                 {"severity", cholecystectomy::NameOf(rule.severity)},
+                                 {"severity", surgery::NameOf(rule.severity)},
                                  {"time_s", error.time},
                                  {"at_mm", {1e3 * p.x, 1e3 * p.y, 1e3 * p.z}}};
   if (error.object >= 0) json["object"] = scene.objects[static_cast<std::size_t>(error.object)].name;
@@ -132,8 +132,8 @@ void PrintForProgram(const scene::Scene& scene, const PlayReport& report) {
                                  {"critical_errors", nlohmann::ordered_json::array()},
                                  {"errors", nlohmann::ordered_json::array()}};
   for (const scene::TaskError& error : report.errors) {
-    const bool is_critical = scene.task->errors[static_cast<std::size_t>(error.rule)].severity ==
-                             cholecystectomy::Severity::kCritical;
+    const bool is_critical =
+        scene.task->errors[static_cast<std::size_t>(error.rule)].severity == surgery::Severity::kCritical;
     json[is_critical ? "critical_errors" : "errors"].push_back(TaskErrorJson(scene, error));
   }
   json.update({{"blood_ml", report.blood_ml},
@@ -175,7 +175,7 @@ void PrintTaskResult(const scene::Scene& scene, const PlayReport& report) {
     if (report.task.errors[e] == 0) continue;
     const scene::ErrorRule& rule = scene.task->errors[e];
     Say("  {1} x {2}: {3} ({4}, {5} points each)\n", report.task.errors[e], rule.name, Translate(rule.about),
-        Translate(cholecystectomy::NameOf(rule.severity)), ShownNumber(rule.penalty));
+        Translate(surgery::NameOf(rule.severity)), ShownNumber(rule.penalty));
   }
   Say("Tick p99 {1} ms, state hash {2}\n", ShownNumber(report.tick_p99_ms, 3), base::HashText(report.hash));
   Say("Training feedback, not certified assessment.\n");

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "trocar/scene/procedure.h"
 #include "trocar/simulation/snapshot.h"
 
 namespace trocar::assessment {
@@ -23,9 +24,15 @@ std::optional<Milestone> FindMilestone(std::string_view name) noexcept;
 /// For a surgeon: "until the critical view of safety"
 std::string_view DescribeUntil(Milestone milestone) noexcept;
 
-/// Follows an operation tick by tick. Milestones are reached in their order and are never taken back.
+/// How far what is taken out is on its way.
+surgery::RetrievalObservation RetrievalOf(const simulation::OperationSnapshot& now) noexcept;
+
+/// Follows an operation tick by tick. Milestones are the procedure's parts (scene::Procedure::parts), reached in their order and never
+/// taken back.
 class MilestoneWatch {
  public:
+  /// \param procedure  of the scene; null: nothing but the start is reached
+  explicit MilestoneWatch(const scene::Procedure* procedure = nullptr) noexcept : procedure_(procedure) {}
   void See(const simulation::Snapshot& now) noexcept;
   /// Of an operation that goes on from a state in which a milestone had been reached.
   void Begin(Milestone from) noexcept { reached_ = from; }
@@ -33,6 +40,7 @@ class MilestoneWatch {
   bool HasReached(Milestone milestone) const noexcept { return reached_ >= milestone; }
 
  private:
+  const scene::Procedure* procedure_;
   Milestone reached_ = Milestone::kStart;
 };
 

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/instrument/hand.h"
 #include "trocar/math/vector.h"
+#include "trocar/surgery/error_log.h"
 
 namespace trocar::training {
 
@@ -57,7 +57,7 @@ struct AttemptEvent {
   double force = 0;  ///< [N], 0 where it means nothing
   std::optional<math::Vec3> position;  ///< world frame [m]
   bool is_error = false;
-  cholecystectomy::Severity severity = cholecystectomy::Severity::kMinor;  ///< of an error
+  surgery::Severity severity = surgery::Severity::kMinor;  ///< of an error
   bool is_rule =
       false;         ///< of an error: a rule of the task was broken, otherwise the operation's judge found it
   std::string text;  ///< for the trainee, a sentence; may be empty

@@ -54,6 +54,7 @@ class OperationEnd {
   double Elapsed(const simulation::Snapshot& now) const noexcept { return now.time - begin_; }
 
  private:
+  const scene::Procedure* procedure_ = nullptr;
   assessment::MilestoneWatch watch_;
   assessment::Milestone from_ = assessment::Milestone::kStart, until_ = assessment::Milestone::kCompleted;
   double begin_ = 0, last_ = 0, time_limit_ = 0;  // [s]
