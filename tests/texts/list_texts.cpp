@@ -190,6 +190,8 @@ void PrintMedicine() {
       Print(error.explanation);
       PrintWords(std::string(error.name));
     }
+    for (const scene::PhaseRow& phase : procedure->phases) Print(phase.about);
+    for (const scene::PartRow& part : procedure->parts.subspan(1)) Print(part.until);
   }
   for (const surgery::Severity severity :
        {surgery::Severity::kMinor, surgery::Severity::kMajor, surgery::Severity::kCritical})
@@ -368,10 +370,6 @@ int main(int count, char** arguments) {
        {assessment::CusumVerdict::kAcceptable, assessment::CusumVerdict::kUnacceptable,
         assessment::CusumVerdict::kUndecided})
     Print(assessment::VerdictSentence(verdict));
-  for (const assessment::Milestone milestone :
-       {assessment::Milestone::kCriticalView, assessment::Milestone::kDivided, assessment::Milestone::kFree,
-        assessment::Milestone::kCompleted})
-    Print(assessment::DescribeUntil(milestone));
   PrintHelpOfCommands();
   PrintTablesOfCommands();
   PrintMedicine();

@@ -25,7 +25,7 @@ bool MayBeDivided(const Procedure* procedure, roles::TubeRole tube) noexcept {
 }
 
 std::string_view PhaseName(const Procedure* procedure, std::uint8_t phase) noexcept {
-  return procedure != nullptr && phase < procedure->phases.size() ? procedure->phases[phase]
+  return procedure != nullptr && phase < procedure->phases.size() ? procedure->phases[phase].name
                                                                   : std::string_view();
 }
 

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/assessment/milestone.h"
 
+#include "trocar/procedures/find_procedure.h"
+
 namespace trocar::assessment {
 
+namespace {
+
+const scene::PartRow& PartOf(Milestone milestone) {
+  static const scene::Procedure& procedure = *procedures::FindProcedure(procedures::kUsualProcedure);
+  return procedure.parts[static_cast<std::size_t>(milestone)];
+}
+
+}  // namespace
+
 std::string_view NameOf(Milestone milestone) noexcept {
-  constexpr std::string_view kNames[] = {"start", "critical_view", "divided", "free", "completed"};
-  return kNames[static_cast<std::size_t>(milestone)];
+  return PartOf(milestone).name;
 }
 
 std::optional<Milestone> FindMilestone(std::string_view name) noexcept {
@@ -17,11 +27,7 @@ std::optional<Milestone> FindMilestone(std::string_view name) noexcept {
 }
 
 std::string_view DescribeUntil(Milestone milestone) noexcept {
-  constexpr std::string_view kTexts[] = {"from the start", "until the critical view of safety stands",
-                                         "until nothing enters the gallbladder any more",
-                                         "until the gallbladder is off its bed",
-                                         "until the gallbladder has left in its bag"};
-  return kTexts[static_cast<std::size_t>(milestone)];
+  return PartOf(milestone).until;
 }
 
 void MilestoneWatch::See(const simulation::Snapshot& now) noexcept {

@@ -48,10 +48,20 @@ constexpr std::array<scene::PartRow, 5> kParts = {
      {"free", "until the gallbladder is off its bed", IsFree},
      {"completed", "until the gallbladder has left in its bag", IsOut}}};
 
-std::array<std::string_view, kPhaseCount> ListPhases() {
-  std::array<std::string_view, kPhaseCount> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = NameOf(static_cast<Phase>(i));
-  return names;
+/// The phases of Cholec80 (Twinanda et al. 2017) in words.
+constexpr std::array<std::string_view, kPhaseCount> kPhaseTexts = {
+    "Preparation",
+    "Dissection of the hepatocystic triangle",
+    "Clipping and cutting",
+    "Dissection of the gallbladder from its bed",
+    "Packing the gallbladder",
+    "Cleaning and coagulation",
+    "Taking the gallbladder out"};
+
+std::array<scene::PhaseRow, kPhaseCount> ListPhases() {
+  std::array<scene::PhaseRow, kPhaseCount> phases;
+  for (std::size_t i = 0; i < phases.size(); ++i) phases[i] = {NameOf(static_cast<Phase>(i)), kPhaseTexts[i]};
+  return phases;
 }
 
 std::unique_ptr<scene::ProcedureJudge> MakeJudge(const scene::OperatedPatient& patient) {
@@ -77,7 +87,7 @@ std::unique_ptr<scene::ProcedureJudge> MakeJudge(const scene::OperatedPatient& p
 }
 
 scene::Procedure MakeTissueTask() {
-  static const std::array<std::string_view, kPhaseCount> phases = ListPhases();
+  static const std::array<scene::PhaseRow, kPhaseCount> phases = ListPhases();
   scene::Procedure procedure;
   procedure.name = "tissue_task";
   // states of environments have always called it so, also where there is none

@@ -47,7 +47,8 @@ TEST(Procedures, HaveTablesWhoseRowsAreToldApart) {
     EXPECT_FALSE(procedure->phases.empty()) << procedure->name;
     EXPECT_LE(procedure->phases.size(), 255u) << "a snapshot holds its number in a byte";
     EXPECT_LE(procedure->errors.size(), 255u) << "so does a state";
-    ExpectDifferent(*procedure, procedure->phases, self);
+    ExpectDifferent(*procedure, procedure->phases, [](const scene::PhaseRow& row) { return row.name; });
+    ExpectDifferent(*procedure, procedure->phases, [](const scene::PhaseRow& row) { return row.about; });
     ExpectDifferent(*procedure, procedure->criteria, self);
     ExpectDifferent(*procedure, procedure->sights, self);
     ExpectDifferent(*procedure, procedure->measures, [](const scene::MeasureRow& row) { return row.name; });

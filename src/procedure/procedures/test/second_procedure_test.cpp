@@ -40,7 +40,8 @@ enum class AppendectomyError : std::uint8_t { kCaecumBurnt, kCurrentUsed, kCount
 constexpr std::array<surgery::ErrorRow, 2> kErrors = {
     {{"caecum_burnt", "The electrode burnt the caecum.", surgery::Severity::kCritical},
      {"current_used", "The pedal was pressed.", surgery::Severity::kMinor}}};
-constexpr std::array<std::string_view, 2> kPhases = {"Exposure", "Burning"};
+constexpr std::array<scene::PhaseRow, 2> kPhases = {
+    {{"Exposure", "Showing the appendix"}, {"Burning", "Burning"}}};
 constexpr std::array<scene::MeasureRow, 1> kMeasures = {{{"held_share", "held", true}}};
 constexpr std::array<TubeRole, 1> kDivided = {kAppendicularArtery};
 constexpr std::array<scene::OwnRole<OrganRole>, 2> kOrganRoles = {

@@ -29,6 +29,7 @@
 #include "trocar/host/safe_file.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/version.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/scene/task.h"
 #include "trocar/session/input_sources.h"
 #include "trocar/simulation/attempt_end.h"
@@ -209,14 +210,14 @@ base::Status PrintList() {
     for (const std::string& level : task.levels) levels += (levels.empty() ? "" : ", ") + level;
     PrintTask(task.key, levels, *scene);
   }
-  const auto operation = files::FindOperation("cholecystectomy", {}, 0);
+  const auto operation = files::FindOperation(procedures::kUsualProcedure, {}, 0);
   if (!operation) return operation.error();
   const auto operation_levels = files::ListOperationLevels();
   if (!operation_levels) return operation_levels.error();
   std::string levels;
   for (const scene::OperationLevel& level : *operation_levels)
     levels += (levels.empty() ? "" : ", ") + level.key;
-  if (*operation) PrintTask("cholecystectomy", levels, **operation);
+  if (*operation) PrintTask(procedures::kUsualProcedure, levels, **operation);
   PrintLine();
   std::vector<std::vector<std::string>> rows = {{"surgeon", "error", "about"}};
   for (const agent::SurgeonEntry& entry : agent::ListSurgeons())

@@ -34,7 +34,7 @@ std::string Print(const char* format, Values... values) {
 }  // namespace
 
 ForceThresholds FindForceThresholds(roles::OrganRole organ) noexcept {
-  return organ == roles::OrganRole::kGallbladder ? ForceThresholds{8.0, 12.0} : ForceThresholds{3.0, 6.0};
+  return roles::IsHollow(organ) ? ForceThresholds{8.0, 12.0} : ForceThresholds{3.0, 6.0};
 }
 
 ForceLevel JudgeForce(double force, const ForceThresholds& thresholds) noexcept {

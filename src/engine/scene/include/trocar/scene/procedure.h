@@ -30,6 +30,12 @@ struct PatientTissue;
 struct Scene;
 struct VesselAnatomy;
 
+/// Phase of a procedure.
+struct PhaseRow {
+  std::string_view name;   ///< in files and data sets: "ClippingCutting"
+  std::string_view about;  ///< for a person: "Clipping and cutting"
+};
+
 /// Quantity that says how far a procedure has come.
 struct MeasureRow {
   std::string_view name;        ///< in outcomes: "cleared_share"
@@ -123,7 +129,7 @@ struct Procedure {
   std::span<const roles::TubeRole>
       divided;  ///< ducts and arteries that may be divided; every other one must stay
 
-  std::span<const std::string_view> phases;
+  std::span<const PhaseRow> phases;
   std::span<const MeasureRow> measures;
   std::span<const std::string_view> criteria, sights;  ///< of the view; none: no view is asked for
   std::span<const surgery::ErrorRow> errors;

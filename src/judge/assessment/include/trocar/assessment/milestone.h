@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file milestone.h  Moments of a cholecystectomy between which a part of it is trained.
+/// \file milestone.h  Moments of an operation between which a part of it is trained: rows of Procedure::parts.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace trocar::assessment {
 enum class Milestone : std::uint8_t {
   kStart,         ///< "start": the first tick
   kCriticalView,  ///< "critical_view": the critical view of safety stands, and has been seen from front and behind
-  kDivided,       ///< "divided": after that view, nothing enters the gallbladder any more
-  kFree,          ///< "free": the gallbladder hangs on nothing
+  kDivided,       ///< "divided": after that view, nothing enters the organ any more
+  kFree,          ///< "free": the organ hangs on nothing
   kCompleted  ///< "completed": it has left the abdomen in its bag
 };
 std::string_view NameOf(Milestone milestone) noexcept;

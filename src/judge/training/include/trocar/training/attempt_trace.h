@@ -128,7 +128,7 @@ struct AttemptTrace {
   std::vector<FluidSample> fluids;  ///< about once a second, the first and the last tick among them
   std::vector<GoalRecord> goals;    ///< of the task, in its order
   int stones_lost = 0;              ///< spilled gallstones that were left behind
-  int stones_spilled = 0;           ///< that left the gallbladder through a hole
+  int stones_spilled = 0;           ///< that left their organ through a hole
   std::optional<double> critical_view_time;  ///< when the critical view of safety was first achieved [s]
   bool is_operation = false;  ///< a patient is operated on: errors, phases and fluids are judged
   AttemptOutcome outcome;

@@ -10,12 +10,13 @@
 #include "trocar/assessment/milestone.h"
 #include "trocar/centre/course_page.h"
 #include "trocar/presenter/options.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::presenter {
 
 /// The operation that is delivered.
-inline constexpr const char* kOperationTask = "cholecystectomy";
+inline constexpr const char* kOperationTask = procedures::kUsualProcedure;
 
 /// A part is a step of the delivered course of that operation, on any patient and at any level.
 struct OperationPart {
