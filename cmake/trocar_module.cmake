@@ -8,7 +8,7 @@
 #   all else                                     -O3          -O1
 #   tests; of fast modules as their modules                   -O0
 set(TROCAR_FAST_MODULES
-  anatomy base cholecystectomy collision files geometry haptics host images instrument math meshing patient record render rigid scene simulation surgery tissue
+  anatomy base cholecystectomy collision files geometry haptics host images instrument math meshing patient procedures record render rigid scene simulation surgery tissue
   tissue_cuda training view)
 set(TROCAR_SHOWING_MODULES assessment centre cli doctor editor gui presenter rehearsal report sound store study)
 
@@ -37,7 +37,7 @@ function(trocar_module name)
   endif()
   list(TRANSFORM arg_DEPENDS PREPEND trocar_)
   # in a browser the engine's own tests run, and those of what judges in it
-  if(EMSCRIPTEN AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/src/(engine/[a-z]+|procedure/cholecystectomy)$")
+  if(EMSCRIPTEN AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/src/(engine/[a-z]+|procedure/(cholecystectomy|procedures))$")
     set(arg_TESTS)
   endif()
   set(missing ${arg_TEST_DEPENDS})

@@ -20,6 +20,7 @@
 #include "trocar/host/data_folder.h"
 #include "trocar/host/threads.h"
 #include "trocar/record/input_codec.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/scene/task.h"
 
 namespace trocar::python {
@@ -221,11 +222,19 @@ py::dict DescribeOperation(const Running& running) {
   const simulation::OperationSnapshot& now = running.simulation.GetSnapshot().operation;
   const auto& fluids = now.flow.ledger.fluids;
   py::dict out;
-  out["phase"] = std::string(cholecystectomy::NameOf(now.phase));
-  out["cleared"] = now.facts.cleared_share;
-  out["detached"] = now.facts.detached_share;
-  out["structures_entering"] = now.facts.structures_entering;
-  out["is_gallbladder_free"] = now.is_gallbladder_free;
+  const scene::Procedure* procedure = scene::ProcedureOf(running.simulation.GetScene());
+  out["phase"] = std::string(scene::PhaseName(procedure, now.procedure.phase));
+  for (std::size_t row = 0; procedure != nullptr && row < procedure->measures.size(); ++row) {
+    const scene::MeasureRow& measure = procedure->measures[row];
+    const double value = now.procedure.Measure(row);
+    const py::str name{std::string(measure.short_name)};
+    if (measure.is_share) {
+      out[name] = value;
+    } else {
+      out[name] = std::lround(value);
+    }
+  }
+  out["is_gallbladder_free"] = now.is_organ_free;
   out["is_in_bag"] = now.is_in_bag;
   out["is_completed"] = now.is_completed;
   out["errors"] = now.errors;
@@ -288,9 +297,9 @@ py::list DescribeEvents(const Running& running, std::uint64_t since) {
     entry["surface"] = SurfaceName(running, event.organ);
     entry["object"] = ObjectName(running, event.object);
     entry["force"] = event.force;
-    entry["error"] = event.error < 0 ? py::object(py::none())
-                                     : py::str(std::string(cholecystectomy::NameOf(
-                                           static_cast<cholecystectomy::OperationError>(event.error))));
+    const surgery::ErrorRow* error =
+        scene::FindError(scene::ProcedureOf(running.simulation.GetScene()), event.error);
+    entry["error"] = error == nullptr ? py::object(py::none()) : py::str(std::string(error->name));
     out.append(entry);
   }
   return out;
@@ -300,24 +309,27 @@ py::object DescribeCriticalView(const Running& running) {
   const auto result = running.simulation.GetOperationResult();
   if (!result) return py::none();
   py::dict out;
-  out["criteria"] = result->critical_view.criteria;
-  out["score"] = result->critical_view.Sum();
-  out["is_achieved"] = result->critical_view.IsAchieved();
-  out["was_achieved"] = result->was_critical_view_achieved;
-  out["is_seen_from_front"] = result->critical_view.is_seen_from_front;
-  out["is_seen_from_behind"] = result->critical_view.is_seen_from_behind;
-  out["missing"] = cholecystectomy::ExplainCriticalView(result->facts, result->critical_view);
+  const scene::ProcedureResult& judged = result->procedure;
+  out["criteria"] = std::vector<int>(judged.now.view.criteria.begin(), judged.now.view.criteria.end());
+  out["score"] = judged.now.view.Sum();
+  out["is_achieved"] = judged.now.view.IsAchieved();
+  out["was_achieved"] = judged.was_view_achieved;
+  out["is_seen_from_front"] = judged.now.view.IsSeen(0);
+  out["is_seen_from_behind"] = judged.now.view.IsSeen(1);
+  out["missing"] = judged.missing;
   return out;
 }
 
 py::list DescribeErrors(const Running& running) {
   py::list out;
   if (const auto result = running.simulation.GetOperationResult()) {
-    for (const cholecystectomy::ErrorEntry& error : result->errors.Entries()) {
+    const surgery::ErrorLog& log = result->procedure.errors;
+    for (const surgery::ErrorEntry& error : log.Entries()) {
+      const surgery::ErrorRow& row = log.RowOf(error);
       py::dict entry;
-      entry["error"] = std::string(cholecystectomy::NameOf(error.error));
-      entry["about"] = std::string(cholecystectomy::ExplanationOf(error.error));
-      entry["severity"] = std::string(cholecystectomy::NameOf(cholecystectomy::SeverityOf(error.error)));
+      entry["error"] = std::string(row.name);
+      entry["about"] = std::string(row.explanation);
+      entry["severity"] = std::string(surgery::NameOf(row.severity));
       entry["time"] = error.time;
       entry["place"] = ToArray(error.place);
       entry["hand"] = error.hand < 0

@@ -21,7 +21,6 @@
 #include "trocar/base/error_codes.h"
 #include "trocar/bench/benchmark.h"
 #include "trocar/centre/centre_commands.h"
-#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cli/run_command.h"
 #include "trocar/contours/contour_fit.h"
 #include "trocar/device/device_spec.h"
@@ -38,6 +37,7 @@
 #include "trocar/presenter/settings_form.h"
 #include "trocar/presenter/simulator_commands.h"
 #include "trocar/presenter/tutorial.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/report/agreement.h"
 #include "trocar/scene/event.h"
 #include "trocar/scene/task.h"
@@ -185,15 +185,17 @@ void PrintMedicine() {
     Print(metric.about);
   }
   Print(training::MetricsDisclaimer());
-  for (int error = 0; error < static_cast<int>(cholecystectomy::OperationError::kCount); ++error) {
-    const auto one = static_cast<cholecystectomy::OperationError>(error);
-    Print(cholecystectomy::ExplanationOf(one));
-    PrintWords(std::string(cholecystectomy::NameOf(one)));
+  for (const scene::Procedure* procedure : procedures::ListProcedures()) {
+    for (const surgery::ErrorRow& error : procedure->errors) {
+      Print(error.explanation);
+      PrintWords(std::string(error.name));
+    }
+    for (const scene::PhaseRow& phase : procedure->phases) Print(phase.about);
+    for (const scene::PartRow& part : procedure->parts.subspan(1)) Print(part.until);
   }
-  for (const cholecystectomy::Severity severity :
-       {cholecystectomy::Severity::kMinor, cholecystectomy::Severity::kMajor,
-        cholecystectomy::Severity::kCritical})
-    Print(cholecystectomy::NameOf(severity));
+  for (const surgery::Severity severity :
+       {surgery::Severity::kMinor, surgery::Severity::kMajor, surgery::Severity::kCritical})
+    Print(surgery::NameOf(severity));
   for (const instrument::Tool& tool : instrument::AllTools()) PrintWords(tool.name);
   for (int kind = 0; kind <= static_cast<int>(surgery::FactKind::kVerdict); ++kind)
     PrintWords(std::string(surgery::FactName(static_cast<surgery::FactKind>(kind))));
@@ -368,10 +370,6 @@ int main(int count, char** arguments) {
        {assessment::CusumVerdict::kAcceptable, assessment::CusumVerdict::kUnacceptable,
         assessment::CusumVerdict::kUndecided})
     Print(assessment::VerdictSentence(verdict));
-  for (const assessment::Milestone milestone :
-       {assessment::Milestone::kCriticalView, assessment::Milestone::kDivided, assessment::Milestone::kFree,
-        assessment::Milestone::kCompleted})
-    Print(assessment::DescribeUntil(milestone));
   PrintHelpOfCommands();
   PrintTablesOfCommands();
   PrintMedicine();

@@ -41,6 +41,28 @@ int Patient::OrganOf(roles::OrganRole role) const {
   return -1;
 }
 
+std::vector<PatientBed> Patient::ListBeds() const {
+  std::vector<PatientBed> beds;
+  for (const roles::OrganBed& known : roles::kOrganBeds) {
+    const PatientBed bed{OrganOf(known.organ), OrganOf(known.host)};
+    if (bed.organ >= 0 || bed.host >= 0) beds.push_back(bed);
+  }
+  for (const Attachment& attachment : attachments) {
+    const PatientBed bed{static_cast<int>(attachment.organ_a), static_cast<int>(attachment.organ_b)};
+    const bool is_known = std::any_of(beds.begin(), beds.end(), [&](const PatientBed& other) {
+      return other == bed || (other.organ == bed.host && other.host == bed.organ);
+    });
+    if (!is_known) beds.push_back(bed);
+  }
+  return beds;
+}
+
+int Patient::HollowOrgan() const {
+  const auto found = std::find_if(organs.begin(), organs.end(),
+                                  [](const Organ& organ) { return roles::IsHollow(organ.role); });
+  return found == organs.end() ? -1 : static_cast<int>(found - organs.begin());
+}
+
 int Patient::TubeOf(roles::TubeRole role) const {
   for (std::size_t i = 0; i < tubes.size(); ++i) {
     if (tubes[i].role == role) return static_cast<int>(i);

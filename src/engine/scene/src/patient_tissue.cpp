@@ -172,22 +172,22 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
   }
 }
 
-/// Where the gallbladder's free wall has grown to the liver: strands as strong as the bed's, to be dissected.
+/// Where an organ's free wall has grown to the one in whose bed it lies: strands as strong as the bed's, to be dissected.
 void AddAdhesions(const Scene& scene, const OrganMaterial& bed, double share, PatientTissue& made) {
-  const auto pairs = FindAdhesions(scene.patient, share);
-  if (pairs.empty()) return;
-  const int liver = scene.patient.OrganOf(OrganRole::kLiver),
-            gallbladder = scene.patient.OrganOf(OrganRole::kGallbladder);
-  const auto& mesh = scene.patient.organs[gallbladder].mesh;
-  const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
-  for (const auto& pair : pairs) {
-    made.definition.strands.push_back({made.surfaces[gallbladder].first_node + pair.first,
-                                       made.surfaces[liver].first_node + pair.second,
-                                       bed.young_modulus / bed.wall_thickness * areas[pair.first]});
-    made.conservation.strand_binds.push_back(1);
-    made.max_elongation.push_back(bed.failure_strain * bed.wall_thickness);
-    made.strand_organs.push_back(gallbladder);
-    NameStrand(StrandInfo::Kind::kAdhesion, made);
+  for (const patient::PatientBed& of : scene.patient.ListBeds()) {
+    const auto pairs = FindAdhesions(scene.patient, of, share);
+    if (pairs.empty()) continue;
+    const auto& mesh = scene.patient.organs[static_cast<std::size_t>(of.organ)].mesh;
+    const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
+    for (const auto& pair : pairs) {
+      made.definition.strands.push_back({made.surfaces[of.organ].first_node + pair.first,
+                                         made.surfaces[of.host].first_node + pair.second,
+                                         bed.young_modulus / bed.wall_thickness * areas[pair.first]});
+      made.conservation.strand_binds.push_back(1);
+      made.max_elongation.push_back(bed.failure_strain * bed.wall_thickness);
+      made.strand_organs.push_back(of.organ);
+      NameStrand(StrandInfo::Kind::kAdhesion, made);
+    }
   }
 }
 
@@ -288,7 +288,7 @@ void AddConnectiveTissue(const Scene& scene, const ConnectiveTissue& fat, double
     const double share = fibre.is_peritoneum ? kPeritoneumShare : 1.0;
     definition.strands.push_back(
         {node_of(fibre.a), node_of(fibre.b), share * kFatModulus * spacing * spacing / fibre.length});
-    // what lies on the liver shares its place; duct and gallbladder may leave
+    // what lies on the liver shares its place; ducts and hollow organs may leave
     const bool binds = fibre.b.of == FibreEnd::Of::kLobule ||
                        (fibre.b.of == FibreEnd::Of::kOrgan && static_cast<int>(fibre.b.which) == liver);
     made.conservation.strand_binds.push_back(binds ? 1 : 0);
@@ -328,7 +328,7 @@ void AddBands(const ModelSetup& model, PatientTissue& made) {
 }  // namespace
 
 base::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNodes& spare) {
-  const Pathology pathology = CalcPathology(scene.patient);
+  const patient::Pathology pathology = patient::CalcPathology(scene.patient);
   const auto materials = CalcPatientMaterials(scene, pathology);
   PatientTissue made;
   if (scene.patient.organs.size() > tissue::kMaxClosedOrgans) {
@@ -348,8 +348,8 @@ base::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
     made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {
-    const OrganMaterial* bed = FindMaterial(materials, TissueRole::kGallbladderBed);
-    if (bed == nullptr) return MissingMaterial(NameOf(TissueRole::kGallbladderBed));
+    const OrganMaterial* bed = FindMaterial(materials, roles::kBedTissue);
+    if (bed == nullptr) return MissingMaterial(NameOf(roles::kBedTissue));
     AddAttachments(scene, *bed, made);
     AddAdhesions(scene, *bed, pathology.adhesions, made);
   }

@@ -14,8 +14,8 @@ namespace trocar::scene {
 using math::Vec3;
 namespace {
 
-using cholecystectomy::VesselRole;
 using roles::OrganRole;
+using roles::TubeRole;
 using surgery::FlowJunction;
 using surgery::FlowVessel;
 using surgery::Fluid;
@@ -31,11 +31,11 @@ std::vector<double> CalcArcs(const std::vector<Vec3>& points) {
 }
 
 /// What nothing is known of must stay, as the common hepatic duct and the right hepatic artery must.
-VesselRole RoleOf(const patient::Tube& tube) {
+TubeRole RoleOf(const patient::Tube& tube) {
   const bool is_artery = tube.kind == patient::TubeKind::kArtery;
-  const bool is_known = tube.role != VesselRole::kOther && roles::IsDuct(tube.role) != is_artery;
+  const bool is_known = tube.role != TubeRole::kOther && roles::IsDuct(tube.role) != is_artery;
   if (is_known) return tube.role;
-  return is_artery ? VesselRole::kRightHepaticArtery : VesselRole::kCommonHepaticDuct;
+  return is_artery ? TubeRole::kRightHepaticArtery : TubeRole::kCommonHepaticDuct;
 }
 
 /// Builds junctions where tubes end and where others join them.
@@ -113,9 +113,9 @@ class VesselBuilder {
     if (tube.kind == patient::TubeKind::kArtery) {
       supply = IsOrgan(organ) ? settings_.artery_bed : settings_.aorta;
     } else {
-      supply = role == OrganRole::kLiver         ? settings_.liver
-               : role == OrganRole::kGallbladder ? settings_.gallbladder
-                                                 : settings_.bowel;
+      supply = role == OrganRole::kLiver ? settings_.liver
+               : roles::IsHollow(role)   ? settings_.hollow_organ
+                                         : settings_.bowel;
     }
     supplies_.push_back({Root(Node(t, EndPoint(t, is_first))), supply, t, organ});
   }
@@ -135,7 +135,7 @@ class VesselBuilder {
     std::vector<FlowVessel> vessels;
     std::vector<std::vector<std::uint32_t>> of_tube(patient_.tubes.size());
     std::vector<std::vector<double>> starts(patient_.tubes.size());
-    cholecystectomy::BiliaryAnatomy anatomy;
+    VesselAnatomy anatomy;
     for (std::size_t t = 0; t < patient_.tubes.size(); ++t) {
       const patient::Tube& tube = patient_.tubes[t];
       std::sort(cuts_[t].begin(), cuts_[t].end(),
@@ -153,22 +153,22 @@ class VesselBuilder {
         anatomy.roles.push_back(RoleOf(tube));
       }
     }
-    std::vector<std::uint32_t> gallbladder_ducts;
+    std::vector<std::uint32_t> organ_ducts;
     for (const Supply& supply : supplies_) {
       const std::uint32_t j = number[Root(supply.group)];
       junctions[j] = supply.junction;
       const bool is_artery = patient_.tubes[supply.tube].kind == patient::TubeKind::kArtery;
       const OrganRole role = patient_.RoleOfOrgan(supply.organ);
-      if (role == OrganRole::kGallbladder) {
-        anatomy.gallbladder.push_back(j);
-        if (!is_artery) gallbladder_ducts.push_back(j);
+      if (roles::IsHollow(role)) {
+        anatomy.hollow_organ.push_back(j);
+        if (!is_artery) organ_ducts.push_back(j);
       } else if (is_artery && role == OrganRole::kLiver) {
         anatomy.right_liver = j;
       } else if (is_artery) {
         if (!IsOrgan(supply.organ)) anatomy.aorta = j;
       } else if (role != OrganRole::kLiver) {
         anatomy.bowel = j;
-      } else if (!anatomy.liver || RoleOf(patient_.tubes[supply.tube]) == VesselRole::kCommonHepaticDuct) {
+      } else if (!anatomy.liver || RoleOf(patient_.tubes[supply.tube]) == TubeRole::kCommonHepaticDuct) {
         anatomy.liver = j;
       }
     }
@@ -176,13 +176,13 @@ class VesselBuilder {
     auto network = surgery::FlowNetwork::Make(std::move(vessels), std::move(junctions), fluids_);
     if (!network.ok()) return network.error();
     return PatientVessels{VesselMap{std::move(*network), std::move(arcs_), std::move(of_tube),
-                                    std::move(starts), std::move(gallbladder_ducts)},
+                                    std::move(starts), std::move(organ_ducts)},
                           std::move(anatomy)};
   }
 
   /// Which end of each vessel bile or blood comes from, and how far below the confluence it begins: by the shortest way from
   /// the liver's duct, or from the aorta.
-  static void FindUpstream(const std::vector<FlowVessel>& vessels, cholecystectomy::BiliaryAnatomy& anatomy) {
+  static void FindUpstream(const std::vector<FlowVessel>& vessels, VesselAnatomy& anatomy) {
     std::uint32_t junction_count = 0;
     for (const FlowVessel& vessel : vessels)
       junction_count = std::max({junction_count, vessel.from + 1, vessel.to + 1});
@@ -200,7 +200,7 @@ class VesselBuilder {
       const bool is_from = distance[vessel.from] <= distance[vessel.to];
       anatomy.is_upstream_from.push_back(is_from);
       const double upper = distance[is_from ? vessel.from : vessel.to];
-      anatomy.below_confluence.push_back(std::isfinite(upper) ? upper : 0.0);
+      anatomy.below_source.push_back(std::isfinite(upper) ? upper : 0.0);
     }
   }
 

@@ -58,8 +58,8 @@ Stiffness MeasureStiffness(const PatientTissue& tissue, std::string_view surface
 }
 
 TEST(Pathology, PatientWithoutParametersIsHealthy) {
-  EXPECT_EQ(CalcPathology(BuiltIn().patient), Pathology{});
-  const auto materials = CalcPatientMaterials(BuiltIn(), Pathology{});
+  EXPECT_EQ(patient::CalcPathology(BuiltIn().patient), patient::Pathology{});
+  const auto materials = CalcPatientMaterials(BuiltIn(), patient::Pathology{});
   for (std::size_t i = 0; i < materials.size(); ++i) {
     EXPECT_EQ(materials[i].young_modulus, BuiltIn().materials[i].young_modulus);
     EXPECT_EQ(materials[i].foundation_modulus, BuiltIn().materials[i].foundation_modulus);
@@ -73,7 +73,7 @@ TEST(Pathology, PatientWithoutParametersIsHealthy) {
                            {"triangle_fibrosis", 0},
                            {"adhesions", 0},
                            {"gallbladder_wall", 2}});
-  EXPECT_EQ(CalcPathology(zero.patient), Pathology{});
+  EXPECT_EQ(patient::CalcPathology(zero.patient), patient::Pathology{});
 }
 
 TEST(Pathology, CirrhoticLiverIsElevenTimesAsStiff) {
@@ -84,7 +84,8 @@ TEST(Pathology, CirrhoticLiverIsElevenTimesAsStiff) {
   EXPECT_NEAR(whole.edges / healthy.edges, 11, 1e-9);
   EXPECT_NEAR(half.foundation / healthy.foundation, std::sqrt(11.0), 1e-9);
   // 5.4 kPa becomes 59.4 kPa, the literature's diseased liver
-  const auto materials = CalcPatientMaterials(BuiltIn(), CalcPathology(With({{"cirrhosis", 1}}).patient));
+  const auto materials =
+      CalcPatientMaterials(BuiltIn(), patient::CalcPathology(With({{"cirrhosis", 1}}).patient));
   EXPECT_NEAR(MaterialOf(materials, "liver").foundation_modulus, 59400, 1);
   EXPECT_EQ(MaterialOf(materials, "gallbladder").young_modulus,
             MaterialOf(BuiltIn().materials, "gallbladder").young_modulus);
@@ -123,8 +124,9 @@ TEST(Pathology, AdhesionsTieTheFreeWallToTheLiverNearby) {
   EXPECT_GT(grown.definition.strands.size(), healthy.definition.strands.size() + 30);
   EXPECT_EQ(grown.conservation.strand_binds.size(), grown.definition.strands.size());
   const auto& patient = BuiltIn().patient;
-  const auto few = FindAdhesions(patient, 0.3), many = FindAdhesions(patient, 0.9);
-  EXPECT_TRUE(FindAdhesions(patient, 0).empty());
+  const patient::PatientBed bed_of = patient.ListBeds().front();
+  const auto few = FindAdhesions(patient, bed_of, 0.3), many = FindAdhesions(patient, bed_of, 0.9);
+  EXPECT_TRUE(FindAdhesions(patient, bed_of, 0).empty());
   EXPECT_GT(few.size(), 10u);
   EXPECT_GT(many.size(), few.size());
   // more of the disease keeps what there was

@@ -45,7 +45,7 @@ base::Status Simulation::Content::MakeParts() {
     auto operation = Operation::Make(scene, model->tissue);
     if (!operation.ok()) return operation.error();
     world.operation = std::move(*operation);
-    judgement.operation.emplace(world.operation->MakeJudge());
+    judgement.procedure = world.operation->MakeJudge();
   }
   conservation = std::make_unique<tissue::Conservation>(tissue_model, made.conservation);
   world.tissue = model->tissue_at_start;
@@ -217,10 +217,7 @@ std::span<const scene::StrandInfo> Simulation::Strands() const {
 std::optional<OperationResult> Simulation::GetOperationResult() const {
   const Content& c = *content_;
   if (c.world.operation == nullptr) return std::nullopt;
-  OperationResult result;
-  c.world.operation->AddTo(result);
-  AddTo(*c.judgement.operation, result);
-  return result;
+  return c.world.operation->CalcResult(c.judgement.procedure.get());
 }
 const Snapshot& Simulation::GetSnapshot() const {
   return content_->snapshot;

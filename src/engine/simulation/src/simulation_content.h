@@ -45,9 +45,9 @@ struct WorldState {
   instrument::TrocarJoints laparoscope;  ///< where it is held
 };
 
-/// State of the observers, which only look: the judge of the operation, the monitor of the task, and the events.
+/// State of the observers, which only look: the judge of the procedure, the monitor of the task, and the events.
 struct JudgementState {
-  std::optional<cholecystectomy::OperationJudge> operation;  ///< where the scene is one
+  std::unique_ptr<scene::ProcedureJudge> procedure;  ///< where the scene is an operation that somebody judges
   TaskMonitor monitor;
   scene::TaskSnapshot task;
   std::array<scene::Event, kEventRing> events{};

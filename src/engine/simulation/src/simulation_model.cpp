@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "operation/operated_anatomy.h"
 #include "operation/operation.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/geometry/mesh_measures.h"
@@ -124,7 +125,9 @@ base::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(
   const tissue::TissueModel tissue_model = tissue::MakeTissueModel(model->tissue->definition);
   model->walls = MakeWalls(model->scene->patient, *model->tissue);
   model->walls_tear = tissue::HasTearingSprings(tissue_model);
-  model->hollow_organ = model->scene->patient.OrganOf(roles::OrganRole::kGallbladder);
+  // what is taken out, else the one that there is
+  const std::int32_t operated = FindOperatedOrgans(*model->scene, model->tissue->surfaces).organ;
+  model->hollow_organ = operated >= 0 ? operated : model->scene->patient.HollowOrgan();
   if (const auto filled = Fill(tissue_model, threads, *model); !filled.ok()) return filled.error();
   model->fingerprint = CalcFingerprint(*model);
   model->first_fingerprint = CalcFirstFingerprint(*model);

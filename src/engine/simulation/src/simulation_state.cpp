@@ -111,7 +111,7 @@ void Simulation::Content::VisitWorld(base::StateArchive& archive) {
 
 void Simulation::Content::VisitJudgement(base::StateArchive& archive) {
   JudgementState& j = judgement;
-  if (j.operation) archive.Field("judge", *j.operation);
+  if (j.procedure != nullptr) archive.Field("judge", *j.procedure);
   archive.Field("task_monitor", j.monitor);
   archive.Field("task", j.task);
   archive.Field("events", j.events);

@@ -184,8 +184,8 @@ void Simulation::Content::Heat() noexcept {
 
 /// A judge sees what tools and heat did while the tissue is as it was then.
 void Simulation::Content::WitnessTools() noexcept {
-  if (world.operation == nullptr) return;
-  judgement.operation->SeeTools(world.operation->Observe(tick.hands, GetTissue(), tick.hands.camera));
+  if (judgement.procedure == nullptr) return;
+  judgement.procedure->SeeTools(world.operation->Observe(tick.hands, GetTissue(), tick.hands.camera));
 }
 
 void Simulation::Content::Assist() noexcept {
@@ -352,10 +352,11 @@ void Simulation::Content::Judge() noexcept {
   j.was_frozen = is_frozen;
   if (world.operation == nullptr) return;
   RememberFacts(tick.facts.All().first(of_operation));
-  j.operation->Update(world.operation->Observe(tick.hands, GetTissue(), GetCamera()));
-  for (const cholecystectomy::ErrorEntry& entry : j.operation->NewErrors()) {
+  if (j.procedure == nullptr) return;
+  j.procedure->Update(world.operation->Observe(tick.hands, GetTissue(), GetCamera()));
+  for (const surgery::ErrorEntry& entry : j.procedure->NewErrors()) {
     scene::Event& event = Remember({FactKind::kVerdict, world.tick, entry.hand, -1, 0.0});
-    event.error = static_cast<std::int32_t>(entry.error);
+    event.error = entry.error.row;
     event.p_rest = entry.place;
   }
 }
@@ -399,7 +400,7 @@ void Simulation::Content::Publish() noexcept {
   }
   if (w.operation != nullptr) {
     w.operation->Publish(w.tissue, snapshot.operation);
-    simulation::Publish(*judgement.operation, snapshot.operation);
+    if (judgement.procedure != nullptr) simulation::Publish(*judgement.procedure, snapshot.operation);
   }
   snapshot.residual = tick.report.residual;
   snapshot.iterations = tick.report.iterations;

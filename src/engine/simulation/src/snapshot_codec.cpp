@@ -109,12 +109,15 @@ bool IsWithin(const OperationSnapshot& o, const SnapshotLayout& layout) noexcept
   for (const surgery::StoneSnapshot& stone : o.stones) {
     if (!IsIndexOrNone(stone.hand, instrument::kHandCount)) return false;
   }
-  for (const int criterion : o.critical_view.criteria) {
-    if (criterion < 0 || criterion > 2) return false;
-  }
+  const scene::ProcedureSnapshot& procedure = o.procedure;
+  if (procedure.phase > 0 && procedure.phase >= layout.phases) return false;
+  if (std::any_of(procedure.view.criteria.begin(), procedure.view.criteria.end(),
+                  [](std::uint8_t grade) { return grade > scene::ViewScore::kWhole; }))
+    return false;
   return o.clip_count <= o.clips.size() && o.tube_cut_count <= o.tube_cuts.size() &&
          o.flow.leak_count <= o.flow.leaks.size() && o.flow.ooze_count <= o.flow.oozes.size() &&
-         AreTruthValues(o.strand_is_intact) && AreTruthValues(o.band_is_whole);
+         AreTruthValues(o.strand_is_intact) && AreTruthValues(o.band_is_whole) &&
+         AreTruthValues(procedure.view.sights);
 }
 
 bool IsWithin(const scene::TaskSnapshot& task, const SnapshotLayout& layout) noexcept {
@@ -148,8 +151,7 @@ bool IsWithin(const Snapshot& snapshot, const SnapshotLayout& layout) noexcept {
   const std::uint64_t events = std::min<std::uint64_t>(snapshot.event_count, snapshot.events.size());
   for (const scene::Event& event : std::span(snapshot.events).first(static_cast<std::size_t>(events))) {
     if (!IsIndexOrNone(event.hand, instrument::kHandCount) || !IsIndexOrNone(event.organ, layout.surfaces) ||
-        !IsIndexOrNone(event.object, objects) ||
-        !IsIndexOrNone(event.error, cholecystectomy::kOperationErrorCount))
+        !IsIndexOrNone(event.object, objects) || !IsIndexOrNone(event.error, layout.procedure_errors))
       return false;
   }
   if (snapshot.fact_count > snapshot.facts.size()) return false;

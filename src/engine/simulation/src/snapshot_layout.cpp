@@ -15,6 +15,10 @@ SnapshotLayout DescribeSnapshots(const Simulation& simulation) {
   layout.neighbours = scene.patient.neighbours.size();
   for (std::size_t hand = 0; hand < layout.tools.size(); ++hand)
     layout.tools[hand] = std::max<std::size_t>(scene.instruments[hand].tray.size(), 1);
+  if (const scene::Procedure* procedure = scene::ProcedureOf(scene)) {
+    layout.phases = procedure->phases.size();
+    layout.procedure_errors = procedure->errors.size();
+  }
   if (!scene.task) return layout;
   layout.rules = scene.task->errors.size();
   for (const scene::Goal& goal : scene.task->goals) layout.goal_steps.push_back(goal.steps.size());

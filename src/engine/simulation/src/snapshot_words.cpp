@@ -32,8 +32,6 @@ inline constexpr std::uint64_t kEnumerators<surgery::Fluid> = surgery::kFluidCou
 template <>
 inline constexpr std::uint64_t kEnumerators<surgery::StonePlace> =
     static_cast<std::uint64_t>(surgery::StonePlace::kTakenOut) + 1;
-template <>
-inline constexpr std::uint64_t kEnumerators<cholecystectomy::Phase> = cholecystectomy::kPhaseCount;
 
 template <typename T>
 std::uint64_t WordOf(const T& value) noexcept {

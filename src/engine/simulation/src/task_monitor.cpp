@@ -79,7 +79,7 @@ Finding FindOfTissue(const Scene& scene, const OperationSnapshot& now, const Con
     return {now.band_is_whole[i] == 0, math::Lerp(band.from, band.to, 0.5), -1};
   }
   if (c.sheet >= 0) {
-    const cholecystectomy::PatternCut& sheet = now.sheets[static_cast<std::size_t>(c.sheet)];
+    const surgery::PatternCut& sheet = now.sheets[static_cast<std::size_t>(c.sheet)];
     const bool is_true = c.kind == ConditionKind::kCutFree      ? sheet.is_free
                          : c.kind == ConditionKind::kCutOffLine ? sheet.farthest >= c.amount
                                                                 : sheet.off_area >= c.amount;

@@ -101,21 +101,25 @@ base::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
   return made;
 }
 
-/// The gallbladder lies on the liver, ducts and vessels on both; of other organs nothing is known to touch.
+/// An organ touches the one in whose bed it lies, ducts and vessels touch both; of other organs nothing is known to touch.
 void ToolContacts::MakePairs(const Scene& scene, const tissue::TissueModel& model,
                              const tissue::TissueState& at_start) {
-  const int liver = scene.patient.OrganOf(OrganRole::kLiver),
-            gallbladder = scene.patient.OrganOf(OrganRole::kGallbladder);
-  if (liver >= 0 && gallbladder >= 0) {
-    for (const auto& [from, to] : {std::pair{gallbladder, liver}, std::pair{liver, gallbladder}}) {
+  const std::vector<patient::PatientBed> beds = scene.patient.ListBeds();
+  std::vector<int> touched;  // organs in beds, and those whose beds they are
+  for (const patient::PatientBed& bed : beds) {
+    for (const int organ : {bed.host, bed.organ}) {
+      if (organ >= 0 && std::find(touched.begin(), touched.end(), organ) == touched.end())
+        touched.push_back(organ);
+    }
+    if (!bed.IsWhole()) continue;
+    for (const auto& [from, to] : {std::pair{bed.organ, bed.host}, std::pair{bed.host, bed.organ}}) {
       AddPair(surgery::MakeOrganPair(organs_, at_start.position, static_cast<std::uint8_t>(from),
                                      static_cast<std::uint8_t>(to), {}, organ_settings_),
               model);
     }
   }
   for (std::size_t tube = 0; tube < tubes_.tubes.size(); ++tube) {
-    for (const int organ : {liver, gallbladder}) {
-      if (organ < 0) continue;
+    for (const int organ : touched) {
       AddPair(surgery::MakeTubePair(organs_, at_start.position, tubes_.tubes[tube],
                                     static_cast<std::uint8_t>(organs_.size() + tube),
                                     static_cast<std::uint8_t>(organ), organ_settings_),

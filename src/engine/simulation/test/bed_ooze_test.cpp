@@ -7,12 +7,12 @@
 #include <cmath>
 
 #include "operation_harness.h"
+#include "trocar/patient/pathology.h"
 #include "trocar/patient/patient.h"
-#include "trocar/scene/pathology.h"
 
 namespace trocar::simulation {
 
-using scene::CalcPathology;
+using patient::CalcPathology;
 using scene::StrandInfo;
 
 namespace {
@@ -25,7 +25,7 @@ class BedOozeTest : public OperationHarness {
 
   void Make(double bleeding) {
     const scene::SurfaceInfo& liver = Tissue().surfaces[static_cast<std::size_t>(liver_)];
-    std::vector<surgery::LiverFibre> fibres;
+    std::vector<surgery::BedFibre> fibres;
     bed_.clear();
     on_liver_.assign(Tissue().strands.size(), 0);
     for (std::uint32_t i = 0; i < on_liver_.size(); ++i) {
@@ -144,7 +144,7 @@ TEST_F(BedOozeTest, IsCountedAsBlood) {
   EXPECT_GT(result.bed_blood, 1e-6);
   EXPECT_NEAR(blood.left, result.bed_blood, 1e-3 * blood.left);
   EXPECT_NEAR(blood.left, blood.pooled + blood.aspirated, 1e-3 * blood.left);
-  EXPECT_EQ(result.errors.Count(cholecystectomy::OperationError::kBleeding), 0u);
+  EXPECT_EQ(CountErrors("bleeding"), 0u);
 }
 
 }  // namespace

@@ -172,7 +172,10 @@ std::size_t CountErrorsOutOfView(bool holds_camera) {
     input.controls[kRight].coagulate = tick >= 300;
     simulation->Step(input);
   }
-  return simulation->GetOperationResult()->errors.Count(cholecystectomy::OperationError::kEnergyOutOfView);
+  const surgery::ErrorLog errors = simulation->GetOperationResult()->procedure.errors;
+  return static_cast<std::size_t>(std::ranges::count_if(
+      errors.Entries(),
+      [&](const surgery::ErrorEntry& entry) { return errors.RowOf(entry).name == "energy_out_of_view"; }));
 }
 
 // What is judged is what the trainee sees: the holder's picture, not the one that the hand's device points at.

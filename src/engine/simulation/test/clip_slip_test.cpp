@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "operation/gallbladder_anatomy.h"
+#include "operation/operated_anatomy.h"
 #include "operation_harness.h"
 #include "trocar/cholecystectomy/vessel_judgement.h"
 #include "trocar/scene/patient_vessels.h"
@@ -107,7 +107,7 @@ class ClipSlipTest : public OperationHarness {
     return after;
   }
 
-  cholecystectomy::BiliaryAnatomy anatomy_;
+  scene::VesselAnatomy anatomy_;
   std::optional<surgery::Vessels> vessels_;
   surgery::TopologyChange change_;
   surgery::FluidLedger ledger_;

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "operation/operation.h"
@@ -70,7 +71,8 @@ class OperationHarness : public testing::Test {
     auto made = Operation::Make(scene, SharedTissue());
     ASSERT_TRUE(made.ok()) << made.error().Text();
     operation_ = std::move(*made);
-    judge_.emplace(operation_->MakeJudge());
+    judge_ = operation_->MakeJudge();
+    ASSERT_NE(judge_, nullptr);
     BeginTick();
     input_ = scene::CalcScriptInput(*OperationScene(), 0.0);
     grasps_ = {};
@@ -110,11 +112,12 @@ class OperationHarness : public testing::Test {
     hands_.time += kTick;
     is_judged_ = true;
   }
-  OperationResult Result() const {
-    OperationResult result;
-    operation_->AddTo(result);
-    AddTo(*judge_, result);
-    return result;
+  OperationResult Result() const { return operation_->CalcResult(judge_.get()); }
+  /// Number of errors of that name so far.
+  std::size_t CountErrors(std::string_view name) const {
+    const auto row = scene::FindError(*OperationScene()->operation->procedure, name);
+    EXPECT_TRUE(row.has_value()) << name;
+    return row ? judge_->Errors().Count(*row) : 0;
   }
   OperationSnapshot Published() const {
     OperationSnapshot snapshot;
@@ -187,7 +190,7 @@ class OperationHarness : public testing::Test {
   std::unique_ptr<Operation> operation_;
   surgery::FactList facts_;  // of the tick
   bool is_judged_ = false;   // the tick is over
-  std::optional<cholecystectomy::OperationJudge> judge_;
+  std::unique_ptr<scene::ProcedureJudge> judge_;
   scene::Input input_;
   HandsNow hands_;
   std::array<surgery::Grasp, instrument::kHandCount> grasps_;

@@ -79,7 +79,8 @@ TEST_F(OrganSets, APhantomOfBlocksIsOperatedOn) {
                        R"(, "operation": {"fat_spacing_mm": 0})"));
   const auto result = simulation_->GetOperationResult();
   ASSERT_TRUE(result.has_value());
-  EXPECT_EQ(result->injuries.strasberg, cholecystectomy::Strasberg::kNone);
+  for (const scene::Finding& finding : result->procedure.findings)
+    EXPECT_FALSE(finding.is_harm) << finding.name;
   EXPECT_EQ(result->stones.all, 0);
   EXPECT_FALSE(result->is_completed);
 }

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "bad_tick.h"
-#include "operation/gallbladder_anatomy.h"
+#include "operation/operated_anatomy.h"
 #include "operation_harness.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/patient/patient.h"
@@ -276,7 +276,6 @@ TEST_F(SpillTest, ATornWallSpillsStonesThatAreToldAndCounted) {
   const OperationResult result = Result();
   ASSERT_GT(result.stones.spilled, 1);
   EXPECT_EQ(emitted, result.stones.spilled);
-  EXPECT_EQ(result.injuries.spilled_stones, result.stones.spilled);
   EXPECT_EQ(result.stones.inside + result.stones.spilled, result.stones.all);
   EXPECT_NEAR(result.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left, 15e-6, 1e-12);
 }
@@ -343,9 +342,9 @@ TEST_F(SpillTest, WhatIsNotRetrievedIsAnErrorWhenTheBagIsOut) {
     TakeGallbladderOut();
     const OperationResult result = Result();
     ASSERT_TRUE(result.is_completed);
-    const std::size_t errors = result.errors.Count(cholecystectomy::OperationError::kStonesLeft);
+    const std::size_t errors = CountErrors("stones_left");
     EXPECT_EQ(errors, retrieves ? 0u : 1u);
-    EXPECT_EQ(result.injuries.spilled_stones == 0, retrieves);
+    EXPECT_EQ(result.stones.spilled == 0, retrieves);
   }
 }
 
@@ -445,7 +444,9 @@ TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
   const OperationResult result = *simulation.GetOperationResult();
   EXPECT_GE(result.stones.spilled, 2);
   EXPECT_EQ(result.stones.spilled, emitted);
-  EXPECT_GT(result.errors.Count(cholecystectomy::OperationError::kGallbladderPerforated), 0u);
+  EXPECT_GT(result.procedure.errors.Count(
+                *scene::FindError(*scene->operation->procedure, "gallbladder_perforated")),
+            0u);
   // no more than their share of the bile
   const OrganSnapshot& bile = seen.organs[static_cast<std::size_t>(scene->patient.FindOrgan("gallbladder"))];
   EXPECT_LE(result.stones.spilled, 1 + 40 * bile.leaked / (bile.leaked + bile.target) * 1.6);

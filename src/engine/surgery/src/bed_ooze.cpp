@@ -13,10 +13,10 @@ constexpr double kLeastLeft = 1e-12;  // a place that has less has clotted [m^3]
 
 }  // namespace
 
-BedOoze::BedOoze(std::span<const LiverFibre> fibres, double bleeding, const BedOozeSettings& settings)
+BedOoze::BedOoze(std::span<const BedFibre> fibres, double bleeding, const BedOozeSettings& settings)
     : settings_(settings) {
   std::size_t in_bed = 0;
-  for (const LiverFibre& fibre : fibres) {
+  for (const BedFibre& fibre : fibres) {
     places_.push_back({fibre.strand, fibre.node, true, 0.0});
     in_bed += fibre.is_bed ? 1 : 0;
   }

@@ -24,7 +24,7 @@ using math::Exp;
 using math::Log;
 
 constexpr double kSpread = 0.25;       // of the logarithm of diameters within one patient
-constexpr double kMostFilling = 0.5;   // of the gallbladder by stones
+constexpr double kMostFilling = 0.5;   // of the organ by stones
 constexpr double kSmallest = 0.001;    // diameter; what is smaller is sludge [m]
 constexpr double kFriction = 0.45;     // of a stone on wet serosa and fat: a tunable
 constexpr double kHolds = 0.60;        // of one that lies: it has settled

@@ -101,13 +101,13 @@ void Vessels::Flow(double seconds, std::int32_t hollow, tissue::ConservationStat
   if (acts_.openings.empty()) return;
   tissue::OrganVolume* organ = hollow >= 0 ? &conserved.organs[static_cast<std::size_t>(hollow)] : nullptr;
   if (organ != nullptr) {
-    for (const std::uint32_t j : map_.gallbladder_ducts)
+    for (const std::uint32_t j : map_.organ_ducts)
       map_.network.SetPressure(j, std::clamp(organ->pressure, 0.0, 20e3));
   }
   report_ = map_.network.Solve(acts_);
   for (const Leak& leak : report_.Leaks()) ledger.Leak(leak.fluid, leak.rate * seconds);
   if (organ == nullptr) return;
-  for (const std::uint32_t j : map_.gallbladder_ducts) {
+  for (const std::uint32_t j : map_.organ_ducts) {
     const double lost = map_.network.SupplyAt(j) * seconds;
     const double before = organ->target + organ->leaked;
     if (lost > 0.0 && organ->target - lost > settings_.least_filling * before)

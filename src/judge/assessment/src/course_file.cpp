@@ -6,6 +6,7 @@
 #include "trocar/files/task_file.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/json.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::assessment {
@@ -112,7 +113,8 @@ void ReadOperationOf(const JsonView& view, const fs::path& folder, Step& step) {
     is_operation = document.ok() && document->Root().Has("operation");
   }
   if (!is_operation)
-    Refuse(view, "there is no operation \"" + step.operation + "\"; delivered is cholecystectomy");
+    Refuse(view, "there is no operation \"" + step.operation + "\"; delivered is " +
+                     std::string(procedures::kUsualProcedure));
   if (view.Has("patient")) step.patient = ReadPatient(view.Object("patient"), folder);
   step.from = ReadMilestone(view, "from", Milestone::kStart);
   step.until = ReadMilestone(view, "until", Milestone::kCompleted);

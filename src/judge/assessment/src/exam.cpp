@@ -22,6 +22,7 @@
 #include "trocar/host/json_choice.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/safe_file.h"
+#include "trocar/procedures/find_procedure.h"
 
 namespace trocar::assessment {
 namespace {
@@ -91,8 +92,8 @@ base::Status CheckNames(const ExamSettings& settings) {
     auto operation = files::FindOperation(settings.operation, {}, 0);
     if (!operation.ok()) return operation.error();
     if (*operation) return {};
-    return Error{ErrorCode::kExamInvalid,
-                 "there is no operation \"" + settings.operation + "\"; delivered is cholecystectomy"};
+    return Error{ErrorCode::kExamInvalid, "there is no operation \"" + settings.operation +
+                                              "\"; delivered is " + std::string(procedures::kUsualProcedure)};
   }
   const auto tasks = files::ListTasks();
   if (!tasks.ok()) return tasks.error();

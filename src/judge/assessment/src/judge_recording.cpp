@@ -30,24 +30,26 @@ Attempt Describe(const record::Description& description) {
   return attempt;
 }
 
-/// Whether an operation stands where a part of it begins.
+/// Whether an operation stands where a part of it begins: that moment and the one before it have come, and no later one.
 bool StandsAt(Milestone milestone, const simulation::Simulation& simulation) {
   const auto result = simulation.GetOperationResult();
-  if (!result) return milestone == Milestone::kStart;
-  switch (milestone) {
-    case Milestone::kStart:
-      return simulation.GetSnapshot().tick == 0;
-    case Milestone::kCriticalView:
-      return result->was_critical_view_achieved && result->facts.structures_entering > 0;
-    case Milestone::kDivided:
-      return result->was_critical_view_achieved && result->facts.structures_entering == 0 &&
-             !result->is_gallbladder_free;
-    case Milestone::kFree:
-      return result->is_gallbladder_free && !result->is_completed;
-    case Milestone::kCompleted:
-      return result->is_completed;
+  const scene::Procedure* procedure = scene::ProcedureOf(simulation.GetScene());
+  const auto part = static_cast<std::size_t>(milestone);
+  if (!result || procedure == nullptr || part >= procedure->parts.size())
+    return milestone == Milestone::kStart;
+  if (milestone == Milestone::kStart) return simulation.GetSnapshot().tick == 0;
+  const simulation::OperationSnapshot& operation = simulation.GetSnapshot().operation;
+  scene::ProcedureSnapshot now = operation.procedure;
+  // a view that was had once counts, also where it is no more to be had
+  if (result->procedure.was_view_achieved) {
+    std::fill(now.view.criteria.begin(), now.view.criteria.end(), scene::ViewScore::kWhole);
+    std::fill(now.view.sights.begin(), now.view.sights.end(), std::uint8_t{1});
   }
-  return false;
+  const auto is_reached = [&](std::size_t i) {
+    return procedure->parts[i].is_reached(now, RetrievalOf(operation));
+  };
+  return is_reached(part - 1) && is_reached(part) &&
+         (part + 1 == procedure->parts.size() || !is_reached(part + 1));
 }
 
 base::Result<Attempt> Complete(Attempt attempt, Replay& replay, const ReplaySettings& settings) {
@@ -70,7 +72,7 @@ base::Result<PlayedAttempt> PlayAttempt(Replay& replay, Milestone from, Mileston
   const auto count = static_cast<double>(std::max<std::size_t>(1, recording.inputs.size()));
   record::TraceBuilder builder(replay.GetSimulation());
   builder.Add(replay.GetSimulation().GetSnapshot());
-  MilestoneWatch watch;
+  MilestoneWatch watch(scene::ProcedureOf(replay.GetSimulation().GetScene()));
   watch.Begin(from);
   const bool is_part = until != Milestone::kCompleted;
   while (!replay.IsAtEnd() && !(is_part && watch.HasReached(until))) {

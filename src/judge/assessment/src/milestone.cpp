@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/assessment/milestone.h"
 
+#include "trocar/procedures/find_procedure.h"
+
 namespace trocar::assessment {
 
+namespace {
+
+const scene::PartRow& PartOf(Milestone milestone) {
+  static const scene::Procedure& procedure = *procedures::FindProcedure(procedures::kUsualProcedure);
+  return procedure.parts[static_cast<std::size_t>(milestone)];
+}
+
+}  // namespace
+
 std::string_view NameOf(Milestone milestone) noexcept {
-  constexpr std::string_view kNames[] = {"start", "critical_view", "divided", "free", "completed"};
-  return kNames[static_cast<std::size_t>(milestone)];
+  return PartOf(milestone).name;
 }
 
 std::optional<Milestone> FindMilestone(std::string_view name) noexcept {
@@ -17,21 +27,19 @@ std::optional<Milestone> FindMilestone(std::string_view name) noexcept {
 }
 
 std::string_view DescribeUntil(Milestone milestone) noexcept {
-  constexpr std::string_view kTexts[] = {"from the start", "until the critical view of safety stands",
-                                         "until nothing enters the gallbladder any more",
-                                         "until the gallbladder is off its bed",
-                                         "until the gallbladder has left in its bag"};
-  return kTexts[static_cast<std::size_t>(milestone)];
+  return PartOf(milestone).until;
 }
 
 void MilestoneWatch::See(const simulation::Snapshot& now) noexcept {
-  const simulation::OperationSnapshot& operation = now.operation;
-  if (reached_ == Milestone::kStart && operation.critical_view.IsAchieved())
-    reached_ = Milestone::kCriticalView;
-  if (reached_ == Milestone::kCriticalView && operation.facts.structures_entering == 0)
-    reached_ = Milestone::kDivided;
-  if (reached_ == Milestone::kDivided && operation.is_gallbladder_free) reached_ = Milestone::kFree;
-  if (reached_ == Milestone::kFree && operation.is_completed) reached_ = Milestone::kCompleted;
+  const std::size_t count = procedure_ == nullptr ? 0 : procedure_->parts.size();
+  for (auto next = static_cast<std::size_t>(reached_) + 1; next < count; ++next) {
+    if (!procedure_->parts[next].is_reached(now.operation.procedure, RetrievalOf(now.operation))) return;
+    reached_ = static_cast<Milestone>(next);
+  }
+}
+
+surgery::RetrievalObservation RetrievalOf(const simulation::OperationSnapshot& now) noexcept {
+  return {now.is_organ_free, now.is_in_bag, now.is_completed};
 }
 
 }  // namespace trocar::assessment

@@ -16,6 +16,7 @@
 #include "trocar/host/user_folder.h"
 #include "trocar/host/version.h"
 #include "trocar/patient/patient.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::assessment {
@@ -44,7 +45,7 @@ base::Result<Preparation> Operate(const Step& step, const PreparationSettings& s
                                   simulation::Simulation simulation, Preparation preparation) {
   auto surgeon = agent::MakeSurgeon("expert", scene, settings.surgeon_seed);
   if (!surgeon.ok()) return surgeon.error();
-  MilestoneWatch watch;
+  MilestoneWatch watch(scene::ProcedureOf(*scene));
   while (!watch.HasReached(step.from)) {
     const simulation::Snapshot& now = simulation.GetSnapshot();
     if ((*surgeon)->HasFinished() || now.time >= kMostSeconds) {
@@ -90,8 +91,8 @@ base::Result<Preparation> PrepareStep(const Step& step, const PreparationSetting
   auto found = files::FindOperation(step.operation, preparation.patient, settings.surgeon_seed, step.level);
   if (!found.ok()) return found.error();
   if (!*found) {
-    return Error{ErrorCode::kUnknownName,
-                 "there is no operation \"" + step.operation + "\"; delivered is cholecystectomy"};
+    return Error{ErrorCode::kUnknownName, "there is no operation \"" + step.operation + "\"; delivered is " +
+                                              std::string(procedures::kUsualProcedure)};
   }
   const auto scene = std::make_shared<const scene::Scene>(std::move(**found));
   auto simulation = simulation::Simulation::Make(scene, {.threads = host::UseThreads(settings.threads)});

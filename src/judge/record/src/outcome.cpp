@@ -4,11 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "trocar/cholecystectomy/critical_view.h"
-#include "trocar/cholecystectomy/injury.h"
-#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/host/json.h"
 #include "trocar/host/json_text.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/simulation/attempt_end.h"
 
 namespace trocar::record {
@@ -37,29 +35,33 @@ ordered_json OutcomeOf(const scene::Task& task, const scene::TaskSnapshot& now) 
   return json;
 }
 
-ordered_json OutcomeOf(const OperationResult& result) {
+ordered_json OutcomeOf(const OperationResult& result, const scene::Procedure* procedure) {
+  const scene::ProcedureResult& judged = result.procedure;
   const auto left = [&](surgery::Fluid fluid) {
     return kMillilitre * result.fluids.fluids[static_cast<std::size_t>(fluid)].left;
   };
   ordered_json errors = ordered_json::array();
-  for (const cholecystectomy::ErrorEntry& entry : result.errors.Entries()) {
-    errors.push_back({{"error", cholecystectomy::NameOf(entry.error)},
-                      {"severity", cholecystectomy::NameOf(cholecystectomy::SeverityOf(entry.error))},
+  for (const surgery::ErrorEntry& entry : judged.errors.Entries()) {
+    errors.push_back({{"error", judged.errors.RowOf(entry).name},
+                      {"severity", surgery::NameOf(judged.errors.RowOf(entry).severity)},
                       {"time_s", entry.time},
                       {"hand", entry.hand}});
   }
-  return {{"completed", result.is_completed},
-          {"critical_view", result.was_critical_view_achieved},
-          {"phase", cholecystectomy::NameOf(result.phase)},
-          {"error_count", result.errors.Count()},
-          {"errors", std::move(errors)},
-          {"strasberg", cholecystectomy::StrasbergName(result.injuries.strasberg)},
-          {"right_liver_without_blood", result.injuries.is_right_liver_without_blood},
-          {"blood_ml", left(surgery::Fluid::kBlood)},
-          {"bile_ml", left(surgery::Fluid::kBile)},
-          {"stones_spilled", result.stones.spilled},
-          {"cleared_share", result.facts.cleared_share},
-          {"detached_share", result.facts.detached_share}};
+  ordered_json json = {{"completed", result.is_completed},
+                       {"critical_view", judged.was_view_achieved},
+                       {"phase", scene::PhaseName(procedure, judged.now.phase)},
+                       {"error_count", judged.errors.Count()},
+                       {"errors", std::move(errors)}};
+  for (const scene::Finding& finding : judged.findings)
+    std::visit([&](const auto& value) { json[std::string(finding.name)] = value; }, finding.value);
+  json["blood_ml"] = left(surgery::Fluid::kBlood);
+  json["bile_ml"] = left(surgery::Fluid::kBile);
+  json["stones_spilled"] = result.stones.spilled;
+  for (std::size_t row = 0; procedure != nullptr && row < procedure->measures.size(); ++row) {
+    const scene::MeasureRow& measure = procedure->measures[row];
+    if (measure.is_share) json[std::string(measure.name)] = judged.now.Measure(row);
+  }
+  return json;
 }
 
 std::optional<ordered_json> ReadObject(std::string_view outcome) {
@@ -78,7 +80,8 @@ std::string CalcOutcome(const simulation::Simulation& simulation) {
   const simulation::Snapshot& now = simulation.GetSnapshot();
   ordered_json json = {{"seconds", now.time}};
   if (const auto& task = simulation.GetScene().task) json["task"] = OutcomeOf(*task, now.task);
-  if (const auto result = simulation.GetOperationResult()) json["operation"] = OutcomeOf(*result);
+  if (const auto result = simulation.GetOperationResult())
+    json["operation"] = OutcomeOf(*result, scene::ProcedureOf(simulation.GetScene()));
   return Written(json);
 }
 

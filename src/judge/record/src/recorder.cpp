@@ -53,7 +53,7 @@ struct Entry {
   bool is_keyframe = false;  // ... for the recording, or else for the index beside it
   std::uint8_t event_count = 0;
   std::uint8_t error_count = 0;
-  std::optional<cholecystectomy::Phase> phase;  // of an operation, where another one began
+  std::optional<std::uint8_t> phase;  // of an operation, where another one began
   std::array<scene::Event, simulation::kEventRing> events{};
   std::array<scene::TaskError, 4> errors{};  // of the task's rules
 };
@@ -118,7 +118,7 @@ int Handover::TakeStateSlot() {
 /// What the simulation's thread has handed over so far, and when it saves the next states.
 struct Progress {
   std::uint64_t events = 0, errors = 0, next_keyframe = 0, next_index = 0;
-  cholecystectomy::Phase phase{};
+  std::uint8_t phase = 0;
 };
 
 /// Inputs that the writing thread gathers.
@@ -205,8 +205,8 @@ void Recorder::Content::NoteEvents(const simulation::Snapshot& now, Entry& entry
     entry.errors[entry.error_count++] = now.task.last_errors[n % ring_size];
   progress.errors = now.task.error_count;
   entry.phase.reset();
-  if (scene.operation && now.operation.phase != progress.phase)
-    entry.phase = progress.phase = now.operation.phase;
+  if (scene.operation && now.operation.procedure.phase != progress.phase)
+    entry.phase = progress.phase = now.operation.procedure.phase;
 }
 
 /// A keyframe or a state of the index, where one is due.
@@ -265,10 +265,11 @@ void Recorder::Content::WriteState(const Entry& entry) {
 
 void Recorder::Content::WriteEvents(const Entry& entry) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (std::uint8_t i = 0; i < entry.event_count; ++i) list.push_back(EventJson(entry.events[i]));
+  const scene::Procedure* procedure = scene::ProcedureOf(scene);
+  for (std::uint8_t i = 0; i < entry.event_count; ++i) list.push_back(EventJson(entry.events[i], procedure));
   for (std::uint8_t i = 0; i < entry.error_count; ++i)
     list.push_back(TaskErrorJson(*scene.task, entry.tick, entry.errors[i]));
-  if (entry.phase) list.push_back(PhaseJson(entry.tick, *entry.phase));
+  if (entry.phase) list.push_back(PhaseJson(entry.tick, scene::PhaseName(procedure, *entry.phase)));
   const std::string text = host::FormatJson(list);
   writer.Put(ChunkKind::kEvents, entry.tick, BytesOf(text));
 }
@@ -411,7 +412,7 @@ base::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   content->status.bytes = content->writer.Bytes();
   content->progress.events = simulation.GetSnapshot().event_count;
   content->progress.errors = simulation.GetSnapshot().task.error_count;
-  content->progress.phase = simulation.GetSnapshot().operation.phase;
+  content->progress.phase = simulation.GetSnapshot().operation.procedure.phase;
   content->progress.next_keyframe = description.first_tick + content->intervals.keyframe;
   content->progress.next_index = description.first_tick + content->intervals.index;
   if (content->intervals.index > 0) {

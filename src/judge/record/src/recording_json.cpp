@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "trocar/base/state_hash.h"
-#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/host/json.h"
 #include "trocar/host/json_text.h"
 
@@ -124,12 +123,12 @@ bool ReadEnding(std::string_view text, Ending& ending) {
          ReadText(json, "outcome", ending.outcome);
 }
 
-ordered_json EventJson(const scene::Event& event) {
-  if (event.kind == surgery::FactKind::kVerdict && event.error >= 0) {
-    const auto error = static_cast<cholecystectomy::OperationError>(event.error);
+ordered_json EventJson(const scene::Event& event, const scene::Procedure* procedure) {
+  const bool is_verdict = event.kind == surgery::FactKind::kVerdict;
+  if (const surgery::ErrorRow* error = is_verdict ? scene::FindError(procedure, event.error) : nullptr) {
     return {{"tick", event.tick},
-            {"kind", cholecystectomy::NameOf(error)},
-            {"about", cholecystectomy::ExplanationOf(error)},
+            {"kind", error->name},
+            {"about", error->explanation},
             {"hand", event.hand},
             {"error", true}};
   }
@@ -141,8 +140,8 @@ ordered_json TaskErrorJson(const scene::Task& task, std::uint64_t tick, const sc
   return {{"tick", tick}, {"kind", rule.name}, {"about", rule.about}, {"hand", error.hand}, {"error", true}};
 }
 
-ordered_json PhaseJson(std::uint64_t tick, cholecystectomy::Phase phase) {
-  return {{"tick", tick}, {"kind", kPhaseKind}, {"about", cholecystectomy::NameOf(phase)}, {"hand", -1}};
+ordered_json PhaseJson(std::uint64_t tick, std::string_view phase) {
+  return {{"tick", tick}, {"kind", kPhaseKind}, {"about", phase}, {"hand", -1}};
 }
 
 bool ReadEvents(std::string_view text, std::vector<EventMark>& events) {

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/record/recording.h"
 #include "trocar/scene/event.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/scene/task.h"
 
 namespace trocar::record {
@@ -23,11 +23,12 @@ bool ReadDescription(std::string_view text, Description& description);
 std::string WriteEnding(const Ending& ending);
 bool ReadEnding(std::string_view text, Ending& ending);
 
-nlohmann::ordered_json EventJson(const scene::Event& event);
+/// \param procedure  whose verdicts there are; null where there are none
+nlohmann::ordered_json EventJson(const scene::Event& event, const scene::Procedure* procedure);
 nlohmann::ordered_json TaskErrorJson(const scene::Task& task, std::uint64_t tick,
                                      const scene::TaskError& error);
 /// A phase of an operation that begins.
-nlohmann::ordered_json PhaseJson(std::uint64_t tick, cholecystectomy::Phase phase);
+nlohmann::ordered_json PhaseJson(std::uint64_t tick, std::string_view phase);
 /// Appends a list of them.
 bool ReadEvents(std::string_view text, std::vector<EventMark>& events);
 

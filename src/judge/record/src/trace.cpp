@@ -9,17 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/cholecystectomy/injury.h"
-#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/math/elementary.h"
 #include "trocar/record/replay.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/simulation/attempt_end.h"
 
 namespace trocar::record {
 namespace {
 
-using cholecystectomy::OperationError;
 using math::Vec3;
 using scene::SurfaceInfo;
 using simulation::InstrumentSnapshot;
@@ -67,11 +65,10 @@ bool IsVolume(FactKind kind) {
 }
 
 /// What a rule says of an operation's error that the judge has found in the same tick is not a second error.
-bool Restates(const scene::ErrorRule& rule, const std::vector<OperationError>& found) {
+bool Restates(const scene::ErrorRule& rule, const std::vector<std::int32_t>& found) {
   return std::any_of(rule.when.begin(), rule.when.end(), [&](const scene::Condition& condition) {
     return condition.kind == scene::ConditionKind::kOperationError &&
-           std::any_of(found.begin(), found.end(),
-                       [&](OperationError error) { return static_cast<int>(error) == condition.error; });
+           std::find(found.begin(), found.end(), condition.error) != found.end();
   });
 }
 
@@ -97,7 +94,8 @@ struct TraceBuilder::Content {
     double score = 0, task_time = 0;  // of the task; [s]
   } last;
   std::uint64_t first_tick = 0, missed = 0, known_events = 0, known_task_errors = 0;
-  std::vector<int> clip_tubes;  // surface, or -1
+  const scene::Procedure* procedure = nullptr;  // of static storage
+  std::vector<int> clip_tubes;                  // surface, or -1
   std::vector<roles::StrandRole> strand_roles;
   std::vector<std::size_t> going_on;  // of trace.facts
 
@@ -108,8 +106,8 @@ struct TraceBuilder::Content {
   }
   void AddHand(const Snapshot& now, const scene::HandControls& controls, std::size_t hand);
   void AddEvents(const Snapshot& now);
-  void AddEvent(const Snapshot& now, const scene::Event& event, std::vector<OperationError>& found);
-  void AddBrokenRules(const Snapshot& now, const std::vector<OperationError>& found);
+  void AddEvent(const Snapshot& now, const scene::Event& event, std::vector<std::int32_t>& found);
+  void AddBrokenRules(const Snapshot& now, const std::vector<std::int32_t>& found);
   void AddFacts(const Snapshot& now);
   void AddClips(const Snapshot& now);
   void AddJudgement(const Snapshot& now);
@@ -136,6 +134,7 @@ TraceBuilder::TraceBuilder(const simulation::Simulation& simulation) : content_(
     }
   }
   c.task = scene.task;
+  c.procedure = scene::ProcedureOf(scene);
   c.field_of_view = scene.laparoscope.field_of_view;
   c.trace.dt = scene.tick_seconds;
   c.trace.is_operation = simulation.GetOperationResult().has_value();
@@ -187,7 +186,7 @@ void TraceBuilder::Content::AddHand(const Snapshot& now, const scene::HandContro
 }
 
 void TraceBuilder::Content::AddEvent(const Snapshot& now, const scene::Event& event,
-                                     std::vector<OperationError>& found) {
+                                     std::vector<std::int32_t>& found) {
   training::AttemptEvent entry;
   entry.time = TimeOf(event.tick);
   entry.kind = surgery::FactName(event.kind);
@@ -196,19 +195,20 @@ void TraceBuilder::Content::AddEvent(const Snapshot& now, const scene::Event& ev
   entry.force = event.force;
   if (event.hand >= 0)
     entry.position = now.instruments[static_cast<std::size_t>(event.hand)].X_world_tool.translation;
-  if (event.kind == FactKind::kVerdict && event.error >= 0) {
-    const auto error = static_cast<OperationError>(event.error);
-    found.push_back(error);
-    entry.kind = cholecystectomy::NameOf(error);
-    entry.text = cholecystectomy::ExplanationOf(error);
+  const surgery::ErrorRow* const error =
+      event.kind == FactKind::kVerdict ? scene::FindError(procedure, event.error) : nullptr;
+  if (error != nullptr) {
+    found.push_back(event.error);
+    entry.kind = error->name;
+    entry.text = error->explanation;
     entry.is_error = true;
-    entry.severity = cholecystectomy::SeverityOf(error);
+    entry.severity = error->severity;
     entry.position = event.p_rest;  // of an error: where it happened
   }
   trace.events.push_back(std::move(entry));
 }
 
-void TraceBuilder::Content::AddBrokenRules(const Snapshot& now, const std::vector<OperationError>& found) {
+void TraceBuilder::Content::AddBrokenRules(const Snapshot& now, const std::vector<std::int32_t>& found) {
   const auto ring = static_cast<std::uint64_t>(now.task.last_errors.size());
   const std::uint64_t oldest = now.task.error_count > ring ? now.task.error_count - ring : 0;
   for (std::uint64_t n = std::max(known_task_errors, oldest); n < now.task.error_count; ++n) {
@@ -292,7 +292,7 @@ void TraceBuilder::Content::AddClips(const Snapshot& now) {
 void TraceBuilder::Content::AddEvents(const Snapshot& now) {
   const auto ring = static_cast<std::uint64_t>(now.events.size());
   const std::uint64_t oldest = now.event_count > ring ? now.event_count - ring : 0;
-  std::vector<OperationError> found;
+  std::vector<std::int32_t> found;
   for (std::uint64_t n = std::max(known_events, oldest); n < now.event_count; ++n) {
     AddEvent(now, now.events[n % ring], found);
   }
@@ -309,8 +309,8 @@ void TraceBuilder::Content::AddJudgement(const Snapshot& now) {
     if (now.task.goals[g].is_done && !done) done = time;
   }
   if (!trace.is_operation) return;
-  if (now.operation.critical_view.IsAchieved() && !trace.critical_view_time) trace.critical_view_time = time;
-  const std::string_view phase = cholecystectomy::NameOf(now.operation.phase);
+  if (now.operation.procedure.view.IsAchieved() && !trace.critical_view_time) trace.critical_view_time = time;
+  const std::string_view phase = scene::PhaseName(procedure, now.operation.procedure.phase);
   if (trace.phases.empty() || trace.phases.back().name != phase) {
     if (!trace.phases.empty()) trace.phases.back().end = time;
     trace.phases.push_back({std::string(phase), time, time});
@@ -366,7 +366,7 @@ training::AttemptTrace TraceBuilder::Calc() const {
     if (clip.is_lost || tube < 0) continue;
     const SurfaceInfo& vessel = c.surfaces[static_cast<std::size_t>(tube)];
     record.vessel = vessel.name;
-    record.is_misplaced = !clip.IsGood() || !cholecystectomy::MayBeDivided(vessel.tube);
+    record.is_misplaced = !clip.IsGood() || !scene::MayBeDivided(c.procedure, vessel.tube);
     for (std::size_t j = 0; j < trace.clips.size(); ++j) {
       if (j == i || last.clips[j].is_lost || c.clip_tubes[j] != tube) continue;
       const double gap = math::Distance(clip.p_rest, last.clips[j].p_rest);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "recorded_scene.h"
+#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/training/attempt_metrics.h"
 #include "trocar/training/trace_file.h"
 
@@ -154,7 +155,7 @@ TEST_F(TraceTest, AnErrorOfTheOperationSaysWhichAndWhere) {
   EXPECT_EQ(trace.events[0].kind, "wrong_structure_cut");
   EXPECT_TRUE(trace.events[0].is_error);
   EXPECT_FALSE(trace.events[0].is_rule);
-  EXPECT_EQ(trace.events[0].severity, cholecystectomy::Severity::kCritical);
+  EXPECT_EQ(trace.events[0].severity, surgery::Severity::kCritical);
   EXPECT_EQ(trace.events[0].position, (math::Vec3{1, 2, 3}));
   EXPECT_FALSE(trace.events[0].text.empty());
 }

@@ -16,7 +16,7 @@
 namespace trocar::report {
 namespace {
 
-using cholecystectomy::Severity;
+using surgery::Severity;
 using training::BetterWhen;
 
 // what stands on the first pages; the last section has everything
@@ -177,12 +177,11 @@ Section MakeCourse(const AttemptReport& report) {
                  {host::Translate("Where"), false, 1.1}},
                 {}};
     for (const ErrorRow& error : report.errors) {
-      table.rows.push_back(
-          {{FormatClock(std::round(error.time))},
-           {host::Translate(cholecystectomy::NameOf(error.severity)), ToneOf(error.severity)},
-           {host::TranslateComposed(error.what)},
-           {error.hand == 0 || error.hand == 1 ? HandName(kHands[error.hand]) : kDash},
-           {error.where.empty() ? kDash : host::TranslateComposed(error.where)}});
+      table.rows.push_back({{FormatClock(std::round(error.time))},
+                            {host::Translate(surgery::NameOf(error.severity)), ToneOf(error.severity)},
+                            {host::TranslateComposed(error.what)},
+                            {error.hand == 0 || error.hand == 1 ? HandName(kHands[error.hand]) : kDash},
+                            {error.where.empty() ? kDash : host::TranslateComposed(error.where)}});
     }
     section.blocks.emplace_back(std::move(table));
   }

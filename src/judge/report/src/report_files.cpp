@@ -179,7 +179,7 @@ std::string FormatJson(const AttemptReport& report) {
         {{"goal", goal.name}, {"reached_s", goal.time ? ordered_json(*goal.time) : ordered_json()}});
   for (const ErrorRow& error : report.errors) {
     ordered_json one = {
-        {"time_s", error.time}, {"severity", cholecystectomy::NameOf(error.severity)}, {"what", error.what}};
+        {"time_s", error.time}, {"severity", surgery::NameOf(error.severity)}, {"what", error.what}};
     if (error.hand == 0 || error.hand == 1) one["hand"] = error.hand == 0 ? "left" : "right";
     if (!error.where.empty()) one["where"] = error.where;
     json["errors"].push_back(std::move(one));

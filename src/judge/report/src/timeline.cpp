@@ -20,16 +20,15 @@ constexpr double kPhaseHeight = 24, kLaneHeight = 18, kForceHeight = 74, kGap = 
 constexpr double kViewLabel = 16;  // its base line, where there is a critical view
 
 struct Lane {
-  cholecystectomy::Severity severity;
+  surgery::Severity severity;
   const char* name;
   Ink ink;
   MarkKind kind;
 };
 constexpr std::array<Lane, 3> kLanes = {
-    {{cholecystectomy::Severity::kCritical, host::Mark("Critical errors"), Ink::kCritical,
-      MarkKind::kDiamond},
-     {cholecystectomy::Severity::kMajor, host::Mark("Major errors"), Ink::kMajor, MarkKind::kTriangle},
-     {cholecystectomy::Severity::kMinor, host::Mark("Minor errors"), Ink::kMinor, MarkKind::kDot}}};
+    {{surgery::Severity::kCritical, host::Mark("Critical errors"), Ink::kCritical, MarkKind::kDiamond},
+     {surgery::Severity::kMajor, host::Mark("Major errors"), Ink::kMajor, MarkKind::kTriangle},
+     {surgery::Severity::kMinor, host::Mark("Minor errors"), Ink::kMinor, MarkKind::kDot}}};
 
 void AddRowName(Drawing& drawing, double middle, const std::string& name) {
   drawing.shapes.emplace_back(Label{{kLabelRoom - 34, middle + 4}, name, Ink::kMuted, Anchor::kEnd, 11});
@@ -84,11 +83,10 @@ void AddForce(Drawing& drawing, const AttemptReport& report, std::size_t hand, c
              1.2, Dash::kDashed});
   }
   for (const ErrorRow& error : report.errors) {
-    if (error.severity == cholecystectomy::Severity::kMinor) continue;
-    drawing.shapes.emplace_back(
-        Line{frame.Map(std::vector<Vec2>{{error.time, frame.y.low}, {error.time, frame.y.high}}),
-             error.severity == cholecystectomy::Severity::kCritical ? Ink::kCritical : Ink::kMajor, 0.8,
-             Dash::kDotted});
+    if (error.severity == surgery::Severity::kMinor) continue;
+    drawing.shapes.emplace_back(Line{
+        frame.Map(std::vector<Vec2>{{error.time, frame.y.low}, {error.time, frame.y.high}}),
+        error.severity == surgery::Severity::kCritical ? Ink::kCritical : Ink::kMajor, 0.8, Dash::kDotted});
   }
   drawing.shapes.emplace_back(
       Line{frame.Map(report.hands[hand].force), hand == 0 ? Ink::kLeft : Ink::kRight, 1.3});

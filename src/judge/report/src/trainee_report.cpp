@@ -185,9 +185,9 @@ TraineeReport MakeTraineeReport(const std::vector<AttemptReport>& reports) {
                    report.seconds,
                    0,
                    report.errors.size()};
-    row.critical_errors = static_cast<std::size_t>(std::count_if(
-        report.errors.begin(), report.errors.end(),
-        [](const ErrorRow& error) { return error.severity == cholecystectomy::Severity::kCritical; }));
+    row.critical_errors = static_cast<std::size_t>(
+        std::count_if(report.errors.begin(), report.errors.end(),
+                      [](const ErrorRow& error) { return error.severity == surgery::Severity::kCritical; }));
     trainee.attempts.push_back(std::move(row));
   }
   if (!reports.empty()) {

@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // How numbers, times and keys are said to a person.
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
-#include <utility>
 
 #include "trocar/host/text_table.h"
 #include "trocar/host/translate.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/report/attempt_report.h"
 
 namespace trocar::report {
 namespace {
 
-// the phases of Cholec80 (Twinanda et al. 2017) in words
-constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kPhases = {{
-    {"Preparation", host::Mark("Preparation")},
-    {"CalotTriangleDissection", host::Mark("Dissection of the hepatocystic triangle")},
-    {"ClippingCutting", host::Mark("Clipping and cutting")},
-    {"GallbladderDissection", host::Mark("Dissection of the gallbladder from its bed")},
-    {"GallbladderPackaging", host::Mark("Packing the gallbladder")},
-    {"CleaningCoagulation", host::Mark("Cleaning and coagulation")},
-    {"GallbladderRetraction", host::Mark("Taking the gallbladder out")},
-}};
 constexpr const char* kMonths[] = {host::Mark("January"), host::Mark("February"), host::Mark("March"),
                                    host::Mark("April"),   host::Mark("May"),      host::Mark("June"),
                                    host::Mark("July"),    host::Mark("August"),   host::Mark("September"),
@@ -79,8 +67,10 @@ std::string FormatDate(const std::string& date) {
 }
 
 std::string PhaseName(const std::string& phase) {
-  for (const auto& [key, name] : kPhases) {
-    if (phase == key) return host::Translate(name);
+  for (const scene::Procedure* procedure : procedures::ListProcedures()) {
+    for (const scene::PhaseRow& row : procedure->phases) {
+      if (phase == row.name) return host::Translate(row.about);
+    }
   }
   return phase;
 }

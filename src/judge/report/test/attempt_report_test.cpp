@@ -37,7 +37,7 @@ TEST(MakeAttemptReport, HoldsWhatTheTraceSays) {
   const AttemptReport report = test::MakeOperationReport();
   EXPECT_EQ(report.outcome, "The operation was completed in 4 min.");
   ASSERT_EQ(report.errors.size(), 3u);
-  EXPECT_EQ(report.errors[2].severity, cholecystectomy::Severity::kCritical);
+  EXPECT_EQ(report.errors[2].severity, surgery::Severity::kCritical);
   EXPECT_EQ(report.errors[2].where, "cystic duct");
   EXPECT_NEAR(*report.blood_ml, 12.5, 1e-9);
   EXPECT_NEAR(*report.critical_view_time, 0.39 * 240, 1e-9);

@@ -38,17 +38,15 @@ inline training::AttemptTrace MakeTrace(double seconds, bool is_operation) {
   }
   trace.is_operation = is_operation;
   training::AttemptEvent error;
-  const auto add = [&](double time, cholecystectomy::Severity severity, int hand, int organ,
-                       const char* text) {
+  const auto add = [&](double time, surgery::Severity severity, int hand, int organ, const char* text) {
     error.time = time, error.kind = "an_error", error.hand = hand, error.organ = organ;
     error.is_error = true, error.severity = severity, error.text = text;
     trace.events.push_back(error);
   };
-  add(0.11 * seconds, cholecystectomy::Severity::kMinor, 1, 0, "The force on the tissue was too great");
-  add(0.42 * seconds, cholecystectomy::Severity::kMajor, 0, 1,
+  add(0.11 * seconds, surgery::Severity::kMinor, 1, 0, "The force on the tissue was too great");
+  add(0.42 * seconds, surgery::Severity::kMajor, 0, 1,
       "A clip was placed before the critical view of safety");
-  if (is_operation)
-    add(0.77 * seconds, cholecystectomy::Severity::kCritical, 1, 2, "The common bile duct was burnt");
+  if (is_operation) add(0.77 * seconds, surgery::Severity::kCritical, 1, 2, "The common bile duct was burnt");
   if (is_operation) {
     trace.phases = {{"Preparation", 0, 0.1 * seconds},
                     {"CalotTriangleDissection", 0.1 * seconds, 0.4 * seconds},

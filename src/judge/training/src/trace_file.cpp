@@ -96,7 +96,7 @@ ordered_json EventsJson(const AttemptTrace& trace) {
     if (event.force != 0.0) entry["force"] = event.force;
     if (event.position) entry["position"] = VectorJson(*event.position);
     if (event.is_error) {
-      entry["severity"] = cholecystectomy::NameOf(event.severity);
+      entry["severity"] = surgery::NameOf(event.severity);
       entry["is_rule"] = event.is_rule;
     }
     if (!event.text.empty()) entry["text"] = event.text;
@@ -177,15 +177,14 @@ std::vector<ToolSample> ReadHand(const JsonView& view, std::size_t ticks, std::s
   return hand;
 }
 
-cholecystectomy::Severity ReadSeverity(const JsonView& view) {
+surgery::Severity ReadSeverity(const JsonView& view) {
   const std::string text = view.Text("severity");
-  for (const cholecystectomy::Severity severity :
-       {cholecystectomy::Severity::kMinor, cholecystectomy::Severity::kMajor,
-        cholecystectomy::Severity::kCritical}) {
-    if (text == cholecystectomy::NameOf(severity)) return severity;
+  for (const surgery::Severity severity :
+       {surgery::Severity::kMinor, surgery::Severity::kMajor, surgery::Severity::kCritical}) {
+    if (text == surgery::NameOf(severity)) return severity;
   }
   view.Complain("severity must be minor, major or critical");
-  return cholecystectomy::Severity::kMinor;
+  return surgery::Severity::kMinor;
 }
 
 int ReadHandIndex(const JsonView& view) {

@@ -133,16 +133,16 @@ TEST(ActMetrics, CountsErrorsBySeverityHandAndPhase) {
   AttemptTrace trace = MakeTrace(10.0, Still);
   trace.is_operation = true;
   trace.phases = {{"Preparation", 0, 5}, {"ClippingCutting", 5, 10}};
-  const auto error = [&](double time, cholecystectomy::Severity severity, int hand) {
+  const auto error = [&](double time, surgery::Severity severity, int hand) {
     AttemptEvent event = EventAt(time, "some_error", hand);
     event.is_error = true;
     event.severity = severity;
     trace.events.push_back(event);
   };
-  error(1.0, cholecystectomy::Severity::kMinor, 0);
-  error(2.0, cholecystectomy::Severity::kMajor, 1);
-  error(5.0, cholecystectomy::Severity::kCritical, -1);
-  error(6.0, cholecystectomy::Severity::kMinor, 0);
+  error(1.0, surgery::Severity::kMinor, 0);
+  error(2.0, surgery::Severity::kMajor, 1);
+  error(5.0, surgery::Severity::kCritical, -1);
+  error(6.0, surgery::Severity::kMinor, 0);
   const AttemptMetrics m = Measure(trace);
   EXPECT_EQ(ValueOf(m, "errors", ""), 4);
   EXPECT_EQ(ValueOf(m, "errors_minor", ""), 2);

@@ -32,9 +32,9 @@ AttemptTrace MakeFullTrace() {
     trace.camera.push_back({{0.001 * static_cast<double>(i), 0, 0}, {0, 1, 0}, 0.1});
   trace.organ_names = {"liver", "cystic_duct"};
   trace.events.resize(2);
-  trace.events[0] = {0.05,  "grasp", 1, 1, 2.5, math::Vec3{1, 2, 3}, false, cholecystectomy::Severity::kMinor,
+  trace.events[0] = {0.05,  "grasp", 1, 1, 2.5, math::Vec3{1, 2, 3}, false, surgery::Severity::kMinor,
                      false, ""};
-  trace.events[1] = {0.06, "wire_touched",    -1, -1, 0.0, {}, true, cholecystectomy::Severity::kMajor,
+  trace.events[1] = {0.06, "wire_touched",    -1, -1, 0.0, {}, true, surgery::Severity::kMajor,
                      true, "The ring touched"};
   trace.facts = {{"current_into", 1, "bed_strand", 0.02, 0.05, 0.0}, {"rinse", 0, "", 0.05, 0.1, 2e-6}};
   trace.phases = {{"Preparation", 0, 0.05}, {"ClippingCutting", 0.05, 0.1}};

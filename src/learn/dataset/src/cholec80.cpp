@@ -27,8 +27,10 @@ class Cholec80Writer : public VideoWriter {
   void Look(const simulation::Simulation& simulation, const scene::Input& /*input*/) override {
     const simulation::Snapshot& now = simulation.GetSnapshot();
     for (; static_cast<double>(frames_) <= kFramesPerSecond * (now.time - begin_) + 1e-6; ++frames_)
-      phases_ +=
-          std::to_string(frames_) + "\t" + std::string(cholecystectomy::NameOf(now.operation.phase)) + "\n";
+      phases_ += std::to_string(frames_) + "\t" +
+                 std::string(cholecystectomy::NameOf(
+                     static_cast<cholecystectomy::Phase>(now.operation.procedure.phase))) +
+                 "\n";
   }
 
   base::Status Add(const Frame& frame, const simulation::Simulation& /*simulation*/) override {

@@ -86,7 +86,7 @@ class CholecT50Writer : public VideoWriter {
   }
 
   base::Status Add(const Frame& frame, const simulation::Simulation& simulation) override {
-    const int phase = static_cast<int>(simulation.GetSnapshot().operation.phase);
+    const int phase = simulation.GetSnapshot().operation.procedure.phase;
     auto instances = ordered_json::array();
     for (const Act& act : frame.acts) {
       const std::uint16_t tool = view::MakeLabel(act.tool, act.hand);

@@ -48,16 +48,17 @@ class EndoscapesWriter : public VideoWriter {
     // the published frames end where the first clip is set
     if (operation.clip_count > 0) return {};
     const std::string stem = std::to_string(seed_) + "_" + std::to_string(frame.number);
-    const auto& criteria = operation.critical_view.criteria;
+    const scene::ViewScore& view = operation.procedure.view;
     const std::uint64_t image_id = seed_ * kImageIds + frame.number;
-    annotations_->images.push_back({{"id", image_id},
-                                    {"file_name", stem + ".jpg"},
-                                    {"width", frame.colour.width},
-                                    {"height", frame.colour.height},
-                                    {"video_id", seed_},
-                                    {"frame_id", frame.index},
-                                    {"is_ds_keyframe", frame.number % kJudgedEvery == 0},
-                                    {"ds", {0.5 * criteria[2], 0.5 * criteria[1], 0.5 * criteria[0]}}});
+    annotations_->images.push_back(
+        {{"id", image_id},
+         {"file_name", stem + ".jpg"},
+         {"width", frame.colour.width},
+         {"height", frame.colour.height},
+         {"video_id", seed_},
+         {"frame_id", frame.index},
+         {"is_ds_keyframe", frame.number % kJudgedEvery == 0},
+         {"ds", {0.5 * view.Points(2), 0.5 * view.Points(1), 0.5 * view.Points(0)}}});
     std::vector<std::uint8_t> semantic;
     for (const std::uint16_t label : frame.geometry.labels)
       semantic.push_back(static_cast<std::uint8_t>(ToEndoscapes(view::ClassOf(label))));

@@ -19,6 +19,7 @@ using nlohmann::ordered_json;
 
 constexpr float kNormalUnit = 127;  // of a stored component of 1
 constexpr int kJoints = 5;
+constexpr std::size_t kCriteria = 3;  // of the critical view
 
 /// Homogeneous, row after row.
 std::array<double, 16> ToMatrix(const math::Pose& pose) {
@@ -172,11 +173,11 @@ class TrocarWriter : public VideoWriter {
     for (const math::Vec3& p : now.positions)
       for (const double coordinate : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(coordinate));
     if (!positions.empty()) Put("positions", {now.positions.size(), 3}, positions);
-    const auto& criteria = now.operation.critical_view.criteria;
-    Put<std::uint8_t>("phase", {}, {static_cast<std::uint8_t>(now.operation.phase)});
-    Put<std::uint8_t>("critical_view", {3},
-                      {static_cast<std::uint8_t>(criteria[0]), static_cast<std::uint8_t>(criteria[1]),
-                       static_cast<std::uint8_t>(criteria[2])});
+    const scene::ProcedureSnapshot& procedure = now.operation.procedure;
+    Put<std::uint8_t>("phase", {}, {procedure.phase});
+    std::vector<std::uint8_t> criteria = procedure.view.criteria;
+    criteria.resize(kCriteria);  // a scene without a procedure has none
+    Put<std::uint8_t>("critical_view", {kCriteria}, criteria);
     return status_;
   }
 

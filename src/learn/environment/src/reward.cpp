@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "trocar/scene/procedure.h"
 #include "trocar/simulation/attempt_end.h"
 
 namespace trocar::environment {
@@ -84,8 +85,8 @@ void StandInTask(const scene::Scene& scene, const Snapshot& now, Standing& stand
   standing.goals = static_cast<double>(goals) / static_cast<double>(task.goals.size());
   standing.steps = static_cast<double>(steps) / static_cast<double>(std::max<std::size_t>(all_steps, 1));
   for (std::size_t i = 0; i < task.errors.size(); ++i) {
-    auto& count = task.errors[i].severity == cholecystectomy::Severity::kCritical ? standing.critical_errors
-                                                                                  : standing.errors;
+    auto& count =
+        task.errors[i].severity == surgery::Severity::kCritical ? standing.critical_errors : standing.errors;
     count += now.task.errors[i];
   }
 }
@@ -105,9 +106,10 @@ Standing CalcStanding(const simulation::Simulation& simulation) {
       standing.critical_errors = operation.critical_errors;
       standing.errors = operation.errors - operation.critical_errors;
     }
-    standing.cleared = operation.facts.cleared_share;
-    standing.detached = operation.facts.detached_share;
-    standing.critical_view = operation.critical_view.Sum();
+    const scene::Procedure* procedure = scene::ProcedureOf(scene);
+    standing.cleared = scene::MeasureOf(procedure, operation.procedure, "cleared");
+    standing.detached = scene::MeasureOf(procedure, operation.procedure, "detached");
+    standing.critical_view = operation.procedure.view.Sum();
   }
   standing.blood = now.operation.flow.ledger.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left;
   return standing;

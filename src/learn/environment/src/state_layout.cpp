@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/scene/procedure.h"
 
 namespace trocar::environment {
 namespace {
@@ -81,15 +82,19 @@ StateLayout::StateLayout(const simulation::Simulation& simulation) {
     Add("cuts", 1, "-");
     Add("strands_intact", 1, "-");  // share
   }
+  if (const scene::Procedure* procedure = scene::ProcedureOf(scene)) {
+    for (const scene::MeasureRow& measure : procedure->measures) Add(std::string(measure.short_name), 1, "-");
+    if (!procedure->criteria.empty()) {
+      Add("critical_view", procedure->criteria.size(), "-");
+      Add("critical_view_seen", procedure->sights.size(), "-");
+    }
+    Add("phase", procedure->phases.size(), "-");
+  }
   if (scene.operation) {
-    Add("cleared", 1, "-");
-    Add("detached", 1, "-");
-    Add("structures_entering", 1, "-");
-    Add("critical_view", 3, "-");
-    Add("critical_view_seen", 2, "-");
-    Add("phase", cholecystectomy::kPhaseCount, "-");
-    Add("gallbladder_is_free", 1, "-");
-    Add("gallbladder_is_in_bag", 1, "-");
+    const scene::Procedure* procedure = scene.operation->procedure;
+    const std::string organ(procedure != nullptr ? procedure->organ_name : "organ");
+    Add(organ + "_is_free", 1, "-");
+    Add(organ + "_is_in_bag", 1, "-");
     Add("blood", 1, "mL");
     Add("bile", 1, "mL");
     Add("smoke", 1, "-");
@@ -148,15 +153,14 @@ void StateLayout::Write(const simulation::Simulation& simulation, double time_sh
     out.Put(strands == 0 ? 1.0 : static_cast<double>(intact) / static_cast<double>(strands));
   }
   if (scene.operation) {
-    out.Put(operation.facts.cleared_share);
-    out.Put(operation.facts.detached_share);
-    out.Put(operation.facts.structures_entering);
-    for (const int points : operation.critical_view.criteria) out.Put(points);
-    out.Put(operation.critical_view.is_seen_from_front);
-    out.Put(operation.critical_view.is_seen_from_behind);
-    for (int phase = 0; phase < cholecystectomy::kPhaseCount; ++phase)
-      out.Put(static_cast<int>(operation.phase) == phase);
-    out.Put(operation.is_gallbladder_free);
+    const scene::ProcedureSnapshot& procedure = operation.procedure;
+    for (const double measure : procedure.measures) out.Put(measure);
+    for (const std::uint8_t points : procedure.view.criteria) out.Put(points);
+    for (const std::uint8_t is_seen : procedure.view.sights) out.Put(is_seen);
+    const std::size_t phases =
+        scene.operation->procedure == nullptr ? 0 : scene.operation->procedure->phases.size();
+    for (std::size_t phase = 0; phase < phases; ++phase) out.Put(procedure.phase == phase);
+    out.Put(operation.is_organ_free);
     out.Put(operation.is_in_bag);
     const auto& fluids = operation.flow.ledger.fluids;
     out.Put(kMillilitre * fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left);

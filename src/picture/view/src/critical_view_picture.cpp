@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/cholecystectomy/triangle_sight.h"
+#include "trocar/cholecystectomy/operation_judge.h"
+#include "trocar/cholecystectomy/triangle_description.h"
 #include "trocar/collision/triangle_tree.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
@@ -166,6 +167,7 @@ base::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
   if (!fresh.ok()) return fresh.error();
   const auto model = simulation::DescribeModel(*scene);
   if (!model.ok()) return model.error();
+  const cholecystectomy::TriangleDescription triangle = cholecystectomy::DescribeTriangle(*scene, *model);
   auto context = render::OffscreenContext::Make();
   if (!context.ok()) return context.error();
   auto target = render::OffscreenTarget::Make(width, height);
@@ -179,11 +181,13 @@ base::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
 
   const auto draw = [&](const simulation::Simulation& simulation, int side) {
     const auto ducts = FindDucts(simulation);
-    Occluders occluders(simulation, model->sight);
+    Occluders occluders(simulation, triangle.sight);
     Snapshot shown = ClearField(simulation.GetSnapshot());
     const auto result = simulation.GetOperationResult();
+    const cholecystectomy::OperationDetail* const detail =
+        result ? cholecystectomy::FindDetail(result->procedure) : nullptr;
     const double azimuth =
-        result && std::isfinite(result->facts.view_azimuth) ? result->facts.view_azimuth : 0.0;
+        detail != nullptr && std::isfinite(detail->facts.view_azimuth) ? detail->facts.view_azimuth : 0.0;
     const Sight sight = FindSight(*ducts, occluders, shown.X_world_laparoscope,
                                   scene->laparoscope.field_of_view, azimuth, side);
     shown.X_world_laparoscope = sight.X_world_camera;
@@ -209,13 +213,12 @@ simulation::Snapshot ClearField(simulation::Snapshot snapshot) {
   return snapshot;
 }
 
-void CriticalViewMoments::AfterStep(const cholecystectomy::CriticalViewScore& score, double time,
+void CriticalViewMoments::AfterStep(const scene::ViewScore& score, double time,
                                     const std::function<void(std::vector<std::byte>&)>& save) {
   if (is_achieved_) return;
-  const std::array<bool, 2> is_seen = {score.is_seen_from_front, score.is_seen_from_behind};
   for (std::size_t side = 0; side < moments_.size(); ++side) {
     Moment& moment = moments_[side];
-    if (!is_seen[side]) {
+    if (!score.IsSeen(side)) {
       moment.state.clear();
     } else if (moment.state.empty()) {
       moment.time = time;

@@ -11,6 +11,8 @@
 #include "trocar/agent/surgeon.h"
 #include "trocar/base/state_archive.h"
 #include "trocar/base/statistics.h"
+#include "trocar/cholecystectomy/cholecystectomy.h"
+#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/files/find_scene.h"
 #include "trocar/files/state_file.h"
 #include "trocar/host/clock.h"
@@ -34,14 +36,14 @@ bool IsLaterThan(const Snapshot& now) {
 }
 template <Phase kPhase>
 bool IsIn(const Snapshot& now) {
-  return now.operation.phase == kPhase;
+  return now.operation.procedure.phase == static_cast<std::uint8_t>(kPhase);
 }
 bool HasCurrent(const Snapshot& now) {
   return now.operation.has_current[0] || now.operation.has_current[1];
 }
 bool BurnsInTriangle(const Snapshot& now) {
-  return HasCurrent(now) && now.operation.phase == Phase::kCalotTriangleDissection &&
-         now.operation.facts.cleared_share > 0.3;
+  return HasCurrent(now) && IsIn<Phase::kCalotTriangleDissection>(now) &&
+         now.operation.procedure.Measure(cholecystectomy::kClearedShare) > 0.3;
 }
 template <int kClips>
 bool HasClips(const Snapshot& now) {
@@ -53,13 +55,13 @@ bool HasCuts(const Snapshot& now) {
 }
 template <int kPercent>
 bool IsDetached(const Snapshot& now) {
-  return now.operation.facts.detached_share >= 0.01 * kPercent;
+  return now.operation.procedure.Measure(cholecystectomy::kDetachedShare) >= 0.01 * kPercent;
 }
 bool IsCriticalView(const Snapshot& now) {
-  return now.operation.critical_view.Sum() == 6;
+  return now.operation.procedure.view.AreCriteriaWhole();
 }
 bool IsFree(const Snapshot& now) {
-  return now.operation.is_gallbladder_free;
+  return now.operation.is_organ_free;
 }
 bool IsInBag(const Snapshot& now) {
   return now.operation.is_in_bag;

@@ -6,6 +6,7 @@
 #include "scene_reader.h"
 #include "trocar/files/operation_level_file.h"
 #include "trocar/files/scene_file.h"
+#include "trocar/procedures/find_procedure.h"
 
 namespace trocar::files {
 
@@ -16,7 +17,8 @@ base::Result<scene::Scene> FindScene(const std::string& name_or_path, const Task
   const auto path = FindTask(name_or_path);
   if (!path.ok()) {
     if (path.error().code != base::ErrorCode::kUnknownName) return path.error();
-    return base::Error{path.error().code, path.error().message + "; or the operation \"cholecystectomy\""};
+    return base::Error{path.error().code,
+                       path.error().message + "; or the operation \"" + procedures::kUsualProcedure + "\""};
   }
   return ReadTask(*path, choice);
 }

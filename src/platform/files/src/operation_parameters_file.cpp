@@ -80,13 +80,15 @@ void ReadFluids(const JsonView& root, scene::OperationParameters& made) {
 }
 
 void ReadSupplies(const JsonView& root, scene::OperationParameters& made) {
-  const JsonView group = OpenGroup(
-      root, "supplies", {"aorta", "artery_bed", "liver", "bowel", "gallbladder", "lumen_share", "source"});
+  const char* const organ =
+      roles::NameOf(roles::kOrganBeds[0].organ);  // the hollow one whose bile comes back
+  const JsonView group =
+      OpenGroup(root, "supplies", {"aorta", "artery_bed", "liver", "bowel", organ, "lumen_share", "source"});
   ReadJunction(group.Object("aorta"), made.supplies.aorta);
   ReadJunction(group.Object("artery_bed"), made.supplies.artery_bed);
   ReadJunction(group.Object("liver"), made.supplies.liver);
   ReadJunction(group.Object("bowel"), made.supplies.bowel);
-  ReadJunction(group.Object("gallbladder"), made.supplies.gallbladder);
+  ReadJunction(group.Object(organ), made.supplies.hollow_organ);
   made.supplies.lumen_share = group.Number("lumen_share", kLeastShare);
 }
 

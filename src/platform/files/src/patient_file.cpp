@@ -19,6 +19,7 @@
 #include "trocar/host/partial_path.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/patient/patient.h"
+#include "trocar/procedures/find_procedure.h"
 
 namespace trocar::files {
 namespace {
@@ -58,8 +59,8 @@ std::uint32_t IndexFrom(const JsonView& view) {
 template <class Role>
 Role RoleFrom(const JsonView& view, const std::string& name) {
   if (!view.Has("role")) return roles::ConventionalRole<Role>(name);
-  const auto role = roles::FindRole<Role>(view.Text("role"));
-  if (!role) view.Complain("role must be other, or one of " + roles::ListNames<Role>());
+  const auto role = procedures::FindRole<Role>(view.Text("role"));
+  if (!role) view.Complain("role must be other, or one of " + procedures::ListRoles<Role>());
   return role.value_or(Role::kOther);
 }
 
@@ -67,7 +68,7 @@ Role RoleFrom(const JsonView& view, const std::string& name) {
 template <class Thing>
 void StateRole(const Thing& thing, nlohmann::ordered_json& json) {
   using Role = decltype(thing.role);
-  if (thing.role != roles::ConventionalRole<Role>(thing.name)) json["role"] = roles::NameOf(thing.role);
+  if (thing.role != roles::ConventionalRole<Role>(thing.name)) json["role"] = procedures::NameOf(thing.role);
 }
 
 /// One top-level field a line, long lists of numbers on one line.

@@ -23,6 +23,7 @@
 #include "trocar/host/safe_file.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/patient/patient.h"
+#include "trocar/procedures/find_procedure.h"
 
 namespace trocar::files {
 namespace {
@@ -80,8 +81,13 @@ void ReadInstrument(const host::JsonView& root, const char* hand, const patient:
 void ReadOperation(const host::JsonView& root, const patient::Patient& patient, scene::Scene& scene) {
   if (!root.Has("operation")) return;
   const host::JsonView view = root.Object("operation");
-  view.AllowOnly({"fat_spacing_mm", "assistant", "gallstones", "parameters"});
+  view.AllowOnly({"procedure", "fat_spacing_mm", "assistant", "gallstones", "parameters"});
   scene::OperationSetup setup;
+  const std::string procedure = view.TextOr("procedure", procedures::kUsualProcedure);
+  setup.procedure = procedures::FindProcedure(procedure);
+  if (setup.procedure == nullptr)
+    view.Complain("there is no procedure \"" + procedure + "\"; known are " + procedures::ListNames(),
+                  base::ErrorCode::kUnknownName);
   setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, range::kFatSpacingMm);
   if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
     view.Complain("fat_spacing_mm must be 0, for none, or at least 1.5");

@@ -9,6 +9,7 @@
 #include "task_names.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/scene/event.h"
+#include "trocar/scene/procedure.h"
 
 namespace trocar::files {
 namespace {
@@ -209,10 +210,10 @@ class RulesReader {
     rule.name = view.Text("name");
     rule.about = view.Text("about");
     const std::string severity = view.TextOr("severity", "minor");
-    rule.severity = severity == "critical" ? cholecystectomy::Severity::kCritical
-                    : severity == "major"  ? cholecystectomy::Severity::kMajor
-                                           : cholecystectomy::Severity::kMinor;
-    if (cholecystectomy::NameOf(rule.severity) != severity)
+    rule.severity = severity == "critical" ? surgery::Severity::kCritical
+                    : severity == "major"  ? surgery::Severity::kMajor
+                                           : surgery::Severity::kMinor;
+    if (surgery::NameOf(rule.severity) != severity)
       view.Complain("severity is minor, major or critical", ErrorCode::kUnknownName);
     rule.penalty = view.NumberOr("penalty", 0.0, range::kPoints);
     rule.ends_task = view.BooleanOr("ends_task", false);
@@ -265,14 +266,14 @@ class RulesReader {
     return -1;
   }
 
-  static int ReadOperationError(const JsonView& view) {
+  int ReadOperationError(const JsonView& view) const {
     const std::string name = view.Text("error");
     std::string known;
-    for (std::size_t i = 0; i < cholecystectomy::kOperationErrorCount; ++i) {
-      const auto one = cholecystectomy::NameOf(static_cast<cholecystectomy::OperationError>(i));
-      if (one == name) return static_cast<int>(i);
-      known += (i == 0 ? "" : ", ") + std::string(one);
-    }
+    const scene::Procedure* procedure = scene::ProcedureOf(scene_);
+    if (procedure == nullptr) return -1;  // complained of where the rule was read
+    if (const auto row = scene::FindError(*procedure, name)) return row->row;
+    for (const surgery::ErrorRow& row : procedure->errors)
+      known += (known.empty() ? "" : ", ") + std::string(row.name);
     view.Complain("surgery knows no error \"" + name + "\"; known are " + known, ErrorCode::kUnknownName);
     return -1;
   }

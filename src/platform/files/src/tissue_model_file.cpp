@@ -8,6 +8,7 @@
 #include "field_ranges.h"
 #include "scene_objects.h"
 #include "trocar/patient/patient.h"
+#include "trocar/procedures/find_procedure.h"
 
 namespace trocar::files {
 namespace {
@@ -161,6 +162,7 @@ void ReadTissueModel(const JsonView& view, scene::Scene& scene) {
   scene.model = std::move(model);
   scene::OperationSetup operation;
   operation.fat_spacing = 0;
+  operation.procedure = procedures::FindProcedure(procedures::kTissueTask);
   scene.operation = operation;
 }
 

@@ -65,8 +65,9 @@ CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scen
     course_.has_finished = true;
     return;
   }
-  known_ = LearnPatient(*scene_, *model);
-  sight_ = std::move(model->sight);
+  cholecystectomy::TriangleDescription triangle = cholecystectomy::DescribeTriangle(*scene_, *model);
+  known_ = LearnPatient(*scene_, *model, triangle);
+  sight_ = std::move(triangle.sight);
   organs_ = OrganClearance(scene_->patient.organs, known_.surfaces, known_.rest);
   memory_.camera.field = Place::AtNode(known_.neck);
   memory_.camera.follows = IsWholeOperation(error_scenario);
@@ -136,7 +137,7 @@ void CholecystectomySurgeon::GoOn(const SurgeonView& view) {
 
 scene::Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   const SurgeonView view = See(seen);
-  memory_.has_view = memory_.has_view || seen.operation.critical_view.IsAchieved();
+  memory_.has_view = memory_.has_view || seen.operation.procedure.view.IsAchieved();
   if (memory_.stops) course_.acts.clear();
   if (course_.acts.empty()) {
     if (operates_ && memory_.bail_out.empty() && !seen.operation.is_completed)

@@ -7,6 +7,7 @@
 #include "cholecystectomy_steps.h"
 #include "planner_fields.h"
 #include "seen_fibres.h"
+#include "trocar/cholecystectomy/cholecystectomy.h"
 #include "turn_planner.h"
 
 namespace trocar::agent {
@@ -51,7 +52,7 @@ std::vector<std::uint32_t> FindCovering(const Planning& on) {
 }
 
 bool IsFatLeft(const Planning& on) {
-  return on.view.seen.operation.facts.cleared_share < kCleared;
+  return on.view.seen.operation.procedure.Measure(cholecystectomy::kClearedShare) < kCleared;
 }
 
 /// A gallbladder that is off its bed stands before the triangle: the assistant lets go of it, and the left hand swings it by the

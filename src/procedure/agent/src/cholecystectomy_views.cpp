@@ -8,6 +8,7 @@
 
 #include "cholecystectomy_steps.h"
 #include "seen_fibres.h"
+#include "trocar/cholecystectomy/cholecystectomy.h"
 #include "view_planner.h"
 
 namespace trocar::agent {
@@ -60,7 +61,7 @@ std::optional<TrocarJoints> FindTriangleView(const SurgeonView& view, int side, 
 }  // namespace
 
 bool IsViewShown(const Planning& on, const SurgeonAct&) {
-  return on.view.seen.operation.critical_view.IsAchieved();
+  return on.view.seen.operation.procedure.view.IsAchieved();
 }
 
 /// A second cystic artery is divided before: only two structures may be left.
@@ -89,29 +90,32 @@ void BailOutWithoutView(Planning& on, const SurgeonAct&) {
 }
 
 std::string ExplainMissingView(const SurgeonView& view, const WaysLeft& ways) {
-  const cholecystectomy::CriticalViewScore& score = view.seen.operation.critical_view;
-  const auto& facts = view.seen.operation.facts;
-  const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
+  const scene::ProcedureSnapshot& seen = view.seen.operation.procedure;
+  const scene::ViewScore& score = seen.view;
+  const auto percent = [&](cholecystectomy::Measure share) {
+    return std::to_string(std::lround(100 * seen.Measure(share))) + " %";
+  };
   std::string why;
   const auto add = [&](const std::string& text) { why += (why.empty() ? "" : "; ") + text; };
-  if (score.criteria[0] < 2)
-    add("beside what must stay no tool reaches the rest of the fat: " + percent(facts.cleared_share) +
-        " of the triangle's window is clear");
-  if (score.criteria[1] < 2) {
+  if (!score.IsWhole(cholecystectomy::kTriangle))
+    add("beside what must stay no tool reaches the rest of the fat: " +
+        percent(cholecystectomy::kClearedShare) + " of the triangle's window is clear");
+  if (!score.IsWhole(cholecystectomy::kPlate)) {
     add(std::string("the lower third does not come off the cystic plate") +
         (ways.has_begun_at_fundus ? ", from the fundus on neither" : "") + ": " +
-        percent(facts.detached_share) + " of the bed is free");
+        percent(cholecystectomy::kDetachedShare) + " of the bed is free");
   }
-  if (score.criteria[2] < 2)
-    add(std::to_string(facts.structures_entering) +
+  if (!score.IsWhole(cholecystectomy::kTwoStructures))
+    add(std::to_string(std::lround(seen.Measure(cholecystectomy::kStructuresEntering))) +
         " structures enter the gallbladder, and not each of them could be bared");
-  if (score.Sum() == 6) add("front and back of the triangle could not both be brought into the picture");
+  if (score.AreCriteriaWhole())
+    add("front and back of the triangle could not both be brought into the picture");
   return "no critical view: " + why;
 }
 
 void LookFromSide(Planning& on, const SurgeonAct& act) {
-  const auto& score = on.view.seen.operation.critical_view;
-  if (score.IsAchieved() || score.Sum() < 6) return;
+  const scene::ViewScore& score = on.view.seen.operation.procedure.view;
+  if (score.IsAchieved() || !score.AreCriteriaWhole()) return;
   const bool may_turn = act.count > 0 && on.view.Tool(kLeft).is_grasping;
   auto view = FindTriangleView(on.view, act.side, kAside);
   if (!view && !may_turn) view = FindTriangleView(on.view, act.side, kJustAside);

@@ -80,14 +80,15 @@ void LearnTubes(const patient::Patient& patient, const simulation::ModelDescript
 
 }  // namespace
 
-PatientKnowledge LearnPatient(const scene::Scene& scene, const simulation::ModelDescription& model) {
+PatientKnowledge LearnPatient(const scene::Scene& scene, const simulation::ModelDescription& model,
+                              const cholecystectomy::TriangleDescription& triangle) {
   const patient::Patient& patient = scene.patient;
   PatientKnowledge known;
   known.strands = model.strands;
   known.surfaces = model.surfaces;
   known.rest = model.rest;
-  known.window_strands = model.window_strands;
-  known.exposable = model.exposable;
+  known.window_strands = triangle.window_strands;
+  known.exposable = triangle.exposable;
   known.first_tube = patient.organs.size();
   known.gallbladder = scene::FindSurface(known.surfaces, OrganRole::kGallbladder);
   known.liver = scene::FindSurface(known.surfaces, OrganRole::kLiver);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hold_planner.h"
+#include "trocar/cholecystectomy/triangle_description.h"
 #include "trocar/math/vector.h"
 #include "trocar/scene/scene.h"
 #include "trocar/scene/tissue_layout.h"
@@ -50,7 +51,8 @@ struct PatientKnowledge {
   math::Vec3 DuctAtRest() const;
 };
 
-/// \pre IsCholecystectomy(scene), and `model` is its description (TROCAR_ASSERT)
-PatientKnowledge LearnPatient(const scene::Scene& scene, const simulation::ModelDescription& model);
+/// \pre IsCholecystectomy(scene), and `model` and `triangle` are its descriptions (TROCAR_ASSERT)
+PatientKnowledge LearnPatient(const scene::Scene& scene, const simulation::ModelDescription& model,
+                              const cholecystectomy::TriangleDescription& triangle);
 
 }  // namespace trocar::agent

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "seen_fibres.h"
+#include "trocar/cholecystectomy/cholecystectomy.h"
 
 #include <algorithm>
 #include <utility>
@@ -54,7 +55,7 @@ std::vector<std::uint32_t> FindCoveringStrands(const SurgeonView& view) {
 
 bool AreTubesBare(const SurgeonView& view) {
   const PatientKnowledge& known = view.known;
-  if (view.seen.operation.critical_view.criteria[2] == 2) return true;
+  if (view.seen.operation.procedure.view.IsWhole(cholecystectomy::kTwoStructures)) return true;
   std::vector<std::uint8_t> is_covered(known.rest.size(), 0);
   for (std::uint32_t i = 0; i < known.strands.size(); ++i) {
     if (Covers(known.strands[i].kind) && view.IsIntact(i))
@@ -71,11 +72,12 @@ bool AreTubesBare(const SurgeonView& view) {
 }
 
 bool IsTriangleClear(const SurgeonView& view) {
-  return view.seen.operation.facts.cleared_share >= kCleared && AreTubesBare(view);
+  return view.seen.operation.procedure.Measure(cholecystectomy::kClearedShare) >= kCleared &&
+         AreTubesBare(view);
 }
 
 bool IsLowerThirdFree(const SurgeonView& view) {
-  return view.seen.operation.critical_view.criteria[1] == 2;
+  return view.seen.operation.procedure.view.IsWhole(cholecystectomy::kPlate);
 }
 
 bool HangsFree(const SurgeonView& view) {

@@ -11,6 +11,7 @@
 #include "organ_clearance.h"
 #include "patient_knowledge.h"
 #include "trocar/agent/hand_motion.h"
+#include "trocar/cholecystectomy/triangle_sight.h"
 #include "trocar/collision/queries.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/model_description.h"

@@ -11,6 +11,8 @@
 #include "careless_cholecystectomy.h"
 #include "made_up_patient.h"
 
+#include "trocar/cholecystectomy/cholecystectomy.h"
+
 namespace trocar::agent {
 
 using instrument::kLeft;
@@ -124,7 +126,7 @@ TEST_F(Goals, TheLowerThirdIsFreedFromTheInfundibulumOnThenFromTheFundus) {
   EXPECT_THAT(Plan(Goal(Kind::kFreeLowerThird, 0)),
               ElementsAre(Kind::kAssist, Kind::kFundusFirst, Kind::kAssist));
   EXPECT_THAT(Plan(Goal(Kind::kFreeLowerThird, 0)), IsEmpty()) << "once";
-  seen.operation.critical_view.criteria[1] = 2;
+  seen.operation.procedure.view.criteria[cholecystectomy::kPlate] = 2;
   EXPECT_THAT(Plan(Goal(Kind::kFreeLowerThird, 4)), IsEmpty());
 }
 
@@ -156,7 +158,7 @@ TEST_F(Goals, TheBedIsFoldedBackRoundByRoundOrTheOperationEnds) {
 }
 
 TEST_F(Goals, WithoutTheViewTheTimeOutEndsTheOperationAndSaysWhatIsMissing) {
-  seen.operation.facts = {0.62, 0.11, 3};
+  seen.operation.procedure.measures = {0.62, 0.11, 3};
   memory.controls[kRight].coagulate = true;
   EXPECT_THAT(Plan(Goal(Kind::kTimeOut, 0)), IsEmpty());
   EXPECT_TRUE(memory.stops);
@@ -178,7 +180,7 @@ TEST_F(Goals, TheViewIsLookedForFromBothSidesAfterWhatIsMissing) {
   EXPECT_FALSE(plan.acts[0].is_on);
   (void)Plan(Goal(Kind::kShowCriticalView, kViewRounds - 1));
   EXPECT_TRUE(plan.acts[0].is_on) << "the second look is harder on the last fibres";
-  seen.operation.critical_view = {{2, 2, 2}, true, true};
+  seen.operation.procedure.view = {{2, 2, 2}, {1, 1}};
   EXPECT_THAT(Plan(Goal(Kind::kShowCriticalView, kViewRounds)), IsEmpty());
 }
 

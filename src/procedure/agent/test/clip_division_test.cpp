@@ -27,9 +27,9 @@ Snapshot Shown(const simulation::Simulation& simulation) {
     if (kind == Kind::kTriangle || kind == Kind::kPeritoneum || kind == Kind::kAdhesion)
       seen.operation.strand_is_intact[i] = 0;
   }
-  seen.operation.facts = {1.0, 0.5, 2};
-  seen.operation.critical_view.criteria = {2, 2, 2};
-  seen.operation.critical_view.is_seen_from_front = seen.operation.critical_view.is_seen_from_behind = true;
+  seen.operation.procedure.measures = {1.0, 0.5, 2};
+  seen.operation.procedure.view.criteria = {2, 2, 2};
+  seen.operation.procedure.view.sights = {1, 1};
   seen.instruments[0].is_grasping = true;
   seen.instruments[0].organ = scene::FindSurface(simulation.Surfaces(), roles::OrganRole::kGallbladder);
   return seen;

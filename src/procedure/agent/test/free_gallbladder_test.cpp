@@ -27,8 +27,8 @@ Snapshot Dissected(const simulation::Simulation& simulation, bool is_off_bed) {
     const bool is_fat = kind == Kind::kTriangle || kind == Kind::kPeritoneum || kind == Kind::kAdhesion;
     if (is_fat || (kind == Kind::kBed && is_off_bed)) seen.operation.strand_is_intact[i] = 0;
   }
-  seen.operation.facts = {1.0, 0.5, 2};
-  seen.operation.critical_view.criteria = {2, 2, 2};
+  seen.operation.procedure.measures = {1.0, 0.5, 2};
+  seen.operation.procedure.view.criteria = {2, 2, 2};
   seen.operation.assistant.is_holding = true;
   seen.instruments[0].is_grasping = true;
   seen.instruments[0].organ = scene::FindSurface(simulation.Surfaces(), roles::OrganRole::kGallbladder);

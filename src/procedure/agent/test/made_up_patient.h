@@ -13,6 +13,7 @@
 #include "patient_knowledge.h"
 #include "planner_hands.h"
 #include "surgeon_view.h"
+#include "trocar/cholecystectomy/cholecystectomy.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/snapshot.h"
@@ -35,6 +36,7 @@ struct MadeUpPatient {
 
   /// The gallbladder lies from the neck along x, 4 mm above the liver; the tubes leave the neck along -x, side by side.
   MadeUpPatient() {
+    scene::SizeSnapshot(cholecystectomy::Cholecystectomy(), seen.operation.procedure);
     const auto add = [&](const char* name, const math::Vec3& from, const math::Vec3& to) {
       scene::SurfaceInfo surface;
       surface.name = name;
@@ -98,7 +100,7 @@ struct MadeUpPatient {
   }
   void PartTriangle() {
     for (const std::uint32_t strand : known.window_strands) seen.operation.strand_is_intact[strand] = 0;
-    seen.operation.facts.cleared_share = 1.0;
+    seen.operation.procedure.measures[cholecystectomy::kClearedShare] = 1.0;
   }
   /// As many pieces as it had nodes.
   void DivideTube(std::uint32_t tube) {

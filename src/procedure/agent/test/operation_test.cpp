@@ -18,11 +18,12 @@
 #include "trocar/agent/surgeon.h"
 #include "trocar/agent/taking_over.h"
 #include "trocar/anatomy/generate_patient.h"
-#include "trocar/cholecystectomy/operation_end.h"
+#include "trocar/cholecystectomy/operation_judge.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/patient/patient.h"
+#include "trocar/procedures/operation_end.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -142,8 +143,8 @@ TEST(Operation, WhoRinsesTakesUpWaterAndBlood) {
   Simulation simulation = MakeOperation();
   const OperationResult result = Play("rinses", simulation, 45.0);
   const auto& blood = result.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
-  EXPECT_TRUE(std::ranges::any_of(result.errors.Entries(), [](const cholecystectomy::ErrorEntry& entry) {
-    return cholecystectomy::NameOf(entry.error) == "bleeding";
+  EXPECT_TRUE(std::ranges::any_of(result.procedure.errors.Entries(), [&](const surgery::ErrorEntry& entry) {
+    return result.procedure.errors.RowOf(entry).name == "bleeding";
   }));
   EXPECT_GT(result.fluids.rinse_aspirated, 10e-6);
   EXPECT_GT(blood.aspirated, 0.5 * blood.left) << "more than half of what has run out";
@@ -274,11 +275,12 @@ TEST(OperationWhole, AnExpertGoesFromTheFirstLookToTheBag) {
   EXPECT_GT(clips, 0u);
   const OperationResult result = *simulation.GetOperationResult();
   EXPECT_TRUE(result.is_completed);
-  EXPECT_TRUE(result.was_critical_view_achieved);
-  for (const cholecystectomy::ErrorEntry& error : result.errors.Entries())
-    EXPECT_NE(cholecystectomy::SeverityOf(error.error), cholecystectomy::Severity::kCritical)
-        << cholecystectomy::NameOf(error.error);
-  EXPECT_LT(result.injuries.strasberg, cholecystectomy::Strasberg::kD);
+  EXPECT_TRUE(result.procedure.was_view_achieved);
+  for (const surgery::ErrorEntry& error : result.procedure.errors.Entries())
+    EXPECT_NE(result.procedure.errors.RowOf(error).severity, surgery::Severity::kCritical)
+        << result.procedure.errors.RowOf(error).name;
+  EXPECT_LT(cholecystectomy::FindDetail(result.procedure)->injuries.strasberg,
+            cholecystectomy::Strasberg::kD);
 }
 
 /// Goes through the whole operation before it errs.
@@ -286,7 +288,7 @@ TEST(OperationWhole, WhoLeavesStonesIsCaught) {
   Simulation simulation = MakeOperation();
   const OperationResult result = Play("leaves_stones", simulation, 900.0);
   EXPECT_TRUE(result.is_completed);
-  EXPECT_EQ(result.errors.Count(cholecystectomy::OperationError::kStonesLeft), 1u);
+  EXPECT_EQ(result.procedure.errors.Count(cholecystectomy::OperationError::kStonesLeft), 1u);
   EXPECT_GT(result.stones.spilled, 0);
 }
 
@@ -338,15 +340,14 @@ TEST(OperationWhole, AnExpertOperatesOnGeneratedPatients) {
     while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < kMostSeconds)
       simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
     const OperationResult result = *simulation->GetOperationResult();
-    const std::size_t own = result.errors.Count(cholecystectomy::Severity::kCritical);
-    const bool is_good = result.is_completed && result.was_critical_view_achieved && own == 0;
+    const std::size_t own = result.procedure.errors.Count(surgery::Severity::kCritical);
+    const bool is_good = result.is_completed && result.procedure.was_view_achieved && own == 0;
     const std::string bail_out((*surgeon)->BailOutReason());
-    const cholecystectomy::OperationEnd end =
-        cholecystectomy::JudgeEnd(result.is_completed, !bail_out.empty(), result.errors, result.injuries);
+    const procedures::OperationEnd end = procedures::JudgeEnd(result, !bail_out.empty());
     std::printf("patient %d: %s, critical view %d, critical errors %zu, %.0f s %s\n", seed,
-                std::string(cholecystectomy::NameOf(end)).c_str(), result.was_critical_view_achieved, own,
+                std::string(procedures::NameOf(end)).c_str(), result.procedure.was_view_achieved, own,
                 simulation->GetSnapshot().time, bail_out.c_str());
-    unfinished += end == cholecystectomy::OperationEnd::kUnfinished ? 1 : 0;
+    unfinished += end == procedures::OperationEnd::kUnfinished ? 1 : 0;
     good += is_good ? 1 : 0;
     critical += own;
   }
@@ -367,8 +368,8 @@ TEST_P(CarelessSurgeon, IsCaught) {
   Simulation simulation = MakeOperation();
   const OperationResult result = Play(GetParam(), simulation);
   std::string found;
-  for (const cholecystectomy::ErrorEntry& error : result.errors.Entries())
-    found += std::string(cholecystectomy::NameOf(error.error)) + " ";
+  for (const surgery::ErrorEntry& error : result.procedure.errors.Entries())
+    found += std::string(result.procedure.errors.RowOf(error).name) + " ";
   EXPECT_NE(found.find(entry->error), std::string::npos) << "found only: " << found;
 }
 

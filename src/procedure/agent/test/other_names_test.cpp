@@ -11,6 +11,7 @@
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/anatomy/patient_lint.h"
+#include "trocar/cholecystectomy/operation_judge.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/patient/patient.h"
@@ -91,18 +92,21 @@ class OtherNames : public testing::Test {
   static std::size_t ExpectTheSame(const std::string& surgeon, double seconds) {
     const Played usual = Play(usual_, surgeon, seconds), renamed = Play(renamed_, surgeon, seconds);
     EXPECT_EQ(renamed.hash, usual.hash);
-    const auto others = renamed.result.errors.Entries(), errors = usual.result.errors.Entries();
+    const auto others = renamed.result.procedure.errors.Entries(),
+               errors = usual.result.procedure.errors.Entries();
     EXPECT_EQ(others.size(), errors.size());
     for (std::size_t i = 0; i < std::min(others.size(), errors.size()); ++i) {
       EXPECT_EQ(others[i].error, errors[i].error);
       EXPECT_EQ(others[i].time, errors[i].time);
     }
-    EXPECT_EQ(renamed.result.injuries.strasberg, usual.result.injuries.strasberg);
-    EXPECT_EQ(renamed.result.injuries.wrong_vessels, usual.result.injuries.wrong_vessels);
-    EXPECT_EQ(renamed.result.injuries.structures_entering, usual.result.injuries.structures_entering);
-    EXPECT_EQ(renamed.result.facts.skeletonised, usual.result.facts.skeletonised);
-    EXPECT_EQ(renamed.result.phase, usual.result.phase);
-    EXPECT_EQ(usual.result.injuries.structures_entering, 2) << "a cystic duct and a cystic artery";
+    const cholecystectomy::OperationDetail &other = *cholecystectomy::FindDetail(renamed.result.procedure),
+                                           &own = *cholecystectomy::FindDetail(usual.result.procedure);
+    EXPECT_EQ(other.injuries.strasberg, own.injuries.strasberg);
+    EXPECT_EQ(other.injuries.wrong_vessels, own.injuries.wrong_vessels);
+    EXPECT_EQ(other.injuries.structures_entering, own.injuries.structures_entering);
+    EXPECT_EQ(other.facts.skeletonised, own.facts.skeletonised);
+    EXPECT_EQ(renamed.result.procedure.now.phase, usual.result.procedure.now.phase);
+    EXPECT_EQ(own.injuries.structures_entering, 2) << "a cystic duct and a cystic artery";
     return errors.size();
   }
 

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "task_play.h"
-#include "trocar/cholecystectomy/pattern_cut_monitor.h"
 #include "trocar/geometry/surface_cut.h"
+#include "trocar/surgery/pattern_cut_monitor.h"
 
 namespace trocar::agent {
 
-using cholecystectomy::PatternCut;
 using math::Vec3;
 using scene::ModelSheet;
+using surgery::PatternCut;
 namespace {
 
 // --- its judge, against closed formulas
@@ -44,7 +44,7 @@ class Sheet : public testing::Test {
       (void)cutter_->Cut(edge(1.0 * i / kPieces), edge((i + 1.0) / kPieces), {}, front, *mesh_);
   }
   PatternCut Judge() const {
-    cholecystectomy::PatternCutMonitor monitor({setup_.centre, setup_.half, setup_.circle}, *mesh_);
+    surgery::PatternCutMonitor monitor({setup_.centre, setup_.half, setup_.circle}, *mesh_);
     monitor.Update(*mesh_);
     return monitor.Now();
   }

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "trocar/base/state_archive.h"
+#include "trocar/cholecystectomy/operation_judge.h"
 #include "trocar/instrument/state_fields.h"
 #include "trocar/math/state_fields.h"
 #include "trocar/simulation/simulation.h"
@@ -52,23 +53,24 @@ inline void AddSurgery(PublishedHash& hash, const simulation::OperationSnapshot&
   for (const auto& stone : seen.stones) hash.Add(stone.position, stone.radius, stone.place, stone.hand);
   hash.Add(seen.flow.ledger, seen.flow.p_world_pool, seen.smoke, seen.assistant.X_world_tool,
            seen.assistant.jaw, seen.assistant.is_holding);
-  hash.Add(seen.facts.cleared_share, seen.facts.detached_share, seen.facts.structures_entering,
-           seen.critical_view.criteria, seen.critical_view.is_seen_from_front,
-           seen.critical_view.is_seen_from_behind, seen.phase, seen.errors, seen.critical_errors,
-           seen.is_gallbladder_free, seen.is_in_bag, seen.is_completed);
+  hash.Add(seen.procedure.measures, seen.procedure.view.criteria, seen.procedure.view.sights,
+           seen.procedure.phase, seen.errors, seen.critical_errors, seen.is_organ_free, seen.is_in_bag,
+           seen.is_completed);
 }
 
 inline void AddResult(PublishedHash& hash, const simulation::OperationResult& result) {
-  for (const cholecystectomy::ErrorEntry& entry : result.errors.Entries())
-    hash.Add(entry.error, entry.time, entry.place, entry.hand);
-  for (std::size_t error = 0; error < cholecystectomy::kOperationErrorCount; ++error)
-    hash.Add(result.errors.Count(static_cast<cholecystectomy::OperationError>(error)));
-  const cholecystectomy::InjuryReport& injuries = result.injuries;
+  const surgery::ErrorLog& errors = result.procedure.errors;
+  for (const surgery::ErrorEntry& entry : errors.Entries())
+    hash.Add(entry.error.row, entry.time, entry.place, entry.hand);
+  for (std::size_t row = 0; row < errors.Table().size(); ++row)
+    hash.Add(errors.Count(surgery::ErrorId(static_cast<std::uint8_t>(row))));
+  const cholecystectomy::OperationDetail& detail = *cholecystectomy::FindDetail(result.procedure);
+  const cholecystectomy::InjuryReport& injuries = detail.injuries;
   hash.Add(injuries.strasberg, injuries.drains_no_bile, injuries.is_right_liver_without_blood,
            injuries.bile_rate, injuries.blood_rate, injuries.structures_entering, injuries.spilled_stones,
            injuries.wrong_vessels);
-  hash.Add(result.was_critical_view_achieved, result.bed_blood, result.facts.skeletonised,
-           result.facts.exposable, result.facts.is_triangle_in_view, result.facts.view_azimuth);
+  hash.Add(result.procedure.was_view_achieved, result.bed_blood, detail.facts.skeletonised,
+           detail.facts.exposable, detail.facts.is_triangle_in_view, detail.facts.view_azimuth);
 }
 
 /// Of the snapshot but its clock times, and of the operation's result.

@@ -19,7 +19,6 @@
 
 namespace trocar::agent {
 
-using cholecystectomy::PatternCut;
 using instrument::kRight;
 using math::Vec3;
 using scene::CalcScriptInput;
@@ -37,6 +36,7 @@ using simulation::Simulation;
 using simulation::TaskMonitor;
 using surgery::ClipSnapshot;
 using surgery::FactKind;
+using surgery::PatternCut;
 
 namespace {
 

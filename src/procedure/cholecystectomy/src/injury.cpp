@@ -24,12 +24,12 @@ bool IsMainDuct(VesselRole role) noexcept {
 }
 
 /// Class of a cut through, or a clip across, a main duct.
-Strasberg ClassOfDivision(const BiliaryAnatomy& anatomy, std::uint32_t vessel, double position,
+Strasberg ClassOfDivision(const scene::VesselAnatomy& anatomy, std::uint32_t vessel, double position,
                           double length) noexcept {
   const VesselRole role = anatomy.roles[vessel];
   if (role == VesselRole::kRightHepaticDuct || role == VesselRole::kLeftHepaticDuct) return Strasberg::kE4;
   const double along = anatomy.is_upstream_from[vessel] ? position : length - position;
-  const double below = anatomy.below_confluence[vessel] + along;
+  const double below = anatomy.below_source[vessel] + along;
   if (below <= kAtConfluence) return Strasberg::kE3;
   return below < kE2Length ? Strasberg::kE2 : Strasberg::kE1;
 }
@@ -37,8 +37,7 @@ Strasberg ClassOfDivision(const BiliaryAnatomy& anatomy, std::uint32_t vessel, d
 }  // namespace
 
 bool MayBeDivided(VesselRole role) noexcept {
-  return role == VesselRole::kCysticDuct || role == VesselRole::kCysticArtery ||
-         role == VesselRole::kSubvesicalDuct;
+  return std::find(kDividedVessels.begin(), kDividedVessels.end(), role) != kDividedVessels.end();
 }
 
 std::string_view StrasbergName(Strasberg injury) noexcept {
@@ -46,10 +45,10 @@ std::string_view StrasbergName(Strasberg injury) noexcept {
   return kNames[static_cast<std::size_t>(injury)];
 }
 
-InjuryReport JudgeInjuries(const BiliaryAnatomy& anatomy, const VesselActs& acts,
+InjuryReport JudgeInjuries(const scene::VesselAnatomy& anatomy, const VesselActs& acts,
                            surgery::FlowNetwork& network) {
   const auto vessels = network.Vessels();
-  TROCAR_ASSERT(anatomy.roles.size() == vessels.size() && anatomy.below_confluence.size() == vessels.size() &&
+  TROCAR_ASSERT(anatomy.roles.size() == vessels.size() && anatomy.below_source.size() == vessels.size() &&
                 anatomy.is_upstream_from.size() == vessels.size());
   InjuryReport report;
   const auto is_placed = [&](std::uint32_t vessel, double position) {
@@ -102,8 +101,8 @@ InjuryReport JudgeInjuries(const BiliaryAnatomy& anatomy, const VesselActs& acts
   if (anatomy.aorta && anatomy.right_liver)
     report.is_right_liver_without_blood = !network.AreConnected(acts, *anatomy.aorta, *anatomy.right_liver);
   const auto is_at_gallbladder = [&](std::uint32_t junction) {
-    return std::find(anatomy.gallbladder.begin(), anatomy.gallbladder.end(), junction) !=
-           anatomy.gallbladder.end();
+    return std::find(anatomy.hollow_organ.begin(), anatomy.hollow_organ.end(), junction) !=
+           anatomy.hollow_organ.end();
   };
   for (std::uint32_t v = 0; v < vessels.size(); ++v) {
     if (!is_at_gallbladder(vessels[v].from) && !is_at_gallbladder(vessels[v].to)) continue;

@@ -2,8 +2,12 @@
 #include "trocar/cholecystectomy/operation_judge.h"
 
 #include <algorithm>
+#include <any>
+#include <cstdint>
 #include <utility>
 
+#include "trocar/base/assert.h"
+#include "trocar/cholecystectomy/cholecystectomy.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::cholecystectomy {
@@ -17,8 +21,11 @@ constexpr int kClipsThatStay = 2;  // on the patient's side of a cut: the rule t
 }  // namespace
 
 OperationJudge::OperationJudge(JudgedAnatomy anatomy, DissectionMonitor dissection,
-                               const JudgementSettings& settings)
-    : anatomy_(std::move(anatomy)), settings_(settings), dissection_(std::move(dissection)) {}
+                               const surgery::JudgementSettings& settings)
+    : anatomy_(std::move(anatomy)),
+      settings_(settings),
+      dissection_(std::move(dissection)),
+      errors_(OperationErrors()) {}
 
 void OperationJudge::Report(OperationError error, const surgery::Fact& fact, double time) noexcept {
   errors_.Add({error, time, fact.position, fact.hand});
@@ -171,6 +178,45 @@ void OperationJudge::Update(const surgery::OperationObservation& now) noexcept {
   if (is_completed && !was_completed_ && now.spilled_stones > 0)
     errors_.Add({OperationError::kStonesLeft, now.time, now.p_pool, -1});
   was_completed_ = is_completed;
+}
+
+void OperationJudge::Publish(scene::ProcedureSnapshot& snapshot) const noexcept {
+  const DissectionFacts& facts = Facts();
+  const CriticalViewScore& score = View();
+  snapshot.phase = static_cast<std::uint8_t>(CurrentPhase());
+  TROCAR_ASSERT(snapshot.measures.size() == kMeasureCount && snapshot.view.sights.size() == kSightCount &&
+                snapshot.view.criteria.size() == score.criteria.size());
+  snapshot.measures[kClearedShare] = facts.cleared_share;
+  snapshot.measures[kDetachedShare] = facts.detached_share;
+  snapshot.measures[kStructuresEntering] = facts.structures_entering;
+  for (std::size_t i = 0; i < score.criteria.size(); ++i)
+    snapshot.view.criteria[i] = static_cast<std::uint8_t>(score.criteria[i]);
+  snapshot.view.sights[kFromFront] = score.is_seen_from_front ? 1 : 0;
+  snapshot.view.sights[kFromBehind] = score.is_seen_from_behind ? 1 : 0;
+}
+
+scene::ProcedureResult OperationJudge::CalcResult(const surgery::Vessels& vessels,
+                                                  const surgery::StoneCount& stones) const {
+  scene::ProcedureResult result;
+  result.errors = errors_;
+  scene::SizeSnapshot(Cholecystectomy(), result.now);
+  Publish(result.now);
+  result.was_view_achieved = was_achieved_;
+  result.missing = ExplainCriticalView(Facts(), View());
+  OperationDetail detail{Facts(), View(), {}};
+  surgery::FlowNetwork network = vessels.Map().network;
+  detail.injuries = JudgeInjuries(anatomy_.biliary, vessels.Acts(), network);
+  detail.injuries.spilled_stones = stones.spilled;
+  result.findings = {
+      {"strasberg", StrasbergName(detail.injuries.strasberg), detail.injuries.strasberg >= Strasberg::kB},
+      {"right_liver_without_blood", detail.injuries.is_right_liver_without_blood,
+       detail.injuries.is_right_liver_without_blood}};
+  result.detail = std::move(detail);
+  return result;
+}
+
+const OperationDetail* FindDetail(const scene::ProcedureResult& result) noexcept {
+  return std::any_cast<OperationDetail>(&result.detail);
 }
 
 void OperationJudge::VisitState(base::StateArchive& archive) {

@@ -10,11 +10,11 @@ constexpr double kTightClip = 0.999;  // closure of a clip that lets nothing thr
 
 }  // namespace
 
-VesselJudgement JudgePlace(const BiliaryAnatomy& anatomy, const surgery::Vessels& vessels,
+VesselJudgement JudgePlace(const scene::VesselAnatomy& anatomy, const surgery::Vessels& vessels,
                            const surgery::TubePlace& place) noexcept {
   const surgery::VesselMap& map = vessels.Map();
   const surgery::VesselPlace at = map.Find(place.tube, place.arc);
-  const auto& junctions = anatomy.gallbladder;
+  const auto& junctions = anatomy.hollow_organ;
   const bool is_gallbladder_at_from =
       std::find(junctions.begin(), junctions.end(), map.network.Vessels()[at.vessel].from) != junctions.end();
   const auto stays = [&](const surgery::VesselClip& clip) {

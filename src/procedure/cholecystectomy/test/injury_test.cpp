@@ -44,16 +44,16 @@ FlowNetwork MakeNetwork() {
       .value();
 }
 
-BiliaryAnatomy MakeAnatomy() {
-  BiliaryAnatomy anatomy;
+scene::VesselAnatomy MakeAnatomy() {
+  scene::VesselAnatomy anatomy;
   anatomy.roles = {VesselRole::kCommonHepaticDuct,  VesselRole::kCommonBileDuct,
                    VesselRole::kCysticDuct,         VesselRole::kRightHepaticArtery,
                    VesselRole::kRightHepaticArtery, VesselRole::kCysticArtery,
                    VesselRole::kAberrantRightDuct};
-  anatomy.below_confluence = {0, 0.030, 0, 0, 0, 0, 0};
+  anatomy.below_source = {0, 0.030, 0, 0, 0, 0, 0};
   anatomy.is_upstream_from = std::vector<bool>(7, true);
   anatomy.liver = 0, anatomy.bowel = 2, anatomy.aorta = 4, anatomy.right_liver = 6;
-  anatomy.gallbladder = {3, 7};
+  anatomy.hollow_organ = {3, 7};
   return anatomy;
 }
 
@@ -127,7 +127,7 @@ TEST(JudgeInjuries, NamesDivisionsOfTheMainDuctByTheirPlace) {
 
 TEST(JudgeInjuries, MeasuresFromTheConfluenceWhicheverWayTheVesselRuns) {
   FlowNetwork network = MakeNetwork();
-  BiliaryAnatomy anatomy = MakeAnatomy();
+  scene::VesselAnatomy anatomy = MakeAnatomy();
   anatomy.is_upstream_from[kHepatic] = false;
   VesselActs acts;
   acts.clips.push_back({kHepatic, 0.025, 1});  // now 5 mm below the confluence

@@ -3,10 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <set>
+#include <vector>
+
+#include "trocar/base/state_archive.h"
 
 namespace trocar::cholecystectomy {
 namespace {
+
+using surgery::ErrorLog;
+using surgery::Severity;
 
 TEST(OperationError, HasANameAndASentenceOfItsOwn) {
   std::set<std::string_view> names, sentences;
@@ -19,7 +26,7 @@ TEST(OperationError, HasANameAndASentenceOfItsOwn) {
 }
 
 TEST(ErrorLog, CountsWhatGoesOnOnce) {
-  ErrorLog log;
+  ErrorLog log(OperationErrors());
   for (int tick = 0; tick < 120; ++tick)
     log.Add({OperationError::kEnergyNearDuct, 10.0 + tick / 120.0, {0.01, 0, 0}, 1});
   EXPECT_EQ(log.Count(OperationError::kEnergyNearDuct), 1u);
@@ -38,11 +45,28 @@ TEST(ErrorLog, CountsWhatGoesOnOnce) {
 }
 
 TEST(ErrorLog, CountsBeyondItsRoom) {
-  ErrorLog log;
+  ErrorLog log(OperationErrors());
   for (std::size_t i = 0; i < ErrorLog::kCapacity + 5; ++i)
     log.Add({OperationError::kClipDropped, 10.0 * static_cast<double>(i + 1), {}, 0});
   EXPECT_EQ(log.Entries().size(), ErrorLog::kCapacity);
   EXPECT_EQ(log.Count(Severity::kMinor), ErrorLog::kCapacity + 5);
+}
+
+// A state that was saved with another table, or is made up, is refused.
+TEST(ErrorLog, RestoresNoRowThatItsTableHasNot) {
+  ErrorLog log(OperationErrors());
+  log.Add({OperationError::kBlindInsertion, 1.0, {}, 0});
+  std::vector<std::byte> bytes;
+  base::SaveState(log, bytes);
+  ErrorLog same(OperationErrors()), smaller(OperationErrors().first(3));
+  base::StateArchive archive = base::StateArchive::ForRestore(bytes);
+  archive.Field("state", same);
+  EXPECT_TRUE(archive.ok() && archive.IsAtEnd());
+  EXPECT_EQ(same.Count(OperationError::kBlindInsertion), 1u);
+  base::StateArchive other = base::StateArchive::ForRestore(bytes);
+  other.Field("state", smaller);
+  EXPECT_FALSE(other.ok());
+  EXPECT_EQ(smaller.Count(), 0u);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ class OperationJudgeTest : public testing::Test {
     anatomy_.targets.surfaces = {Target::kLiver, Target::kGallbladder, Target::kBloodVessel,
                                  Target::kCysticDuct};
     anatomy_.biliary.roles = {VesselRole::kCommonHepaticDuct, VesselRole::kCysticDuct};
-    anatomy_.biliary.gallbladder = {2};
+    anatomy_.biliary.hollow_organ = {2};
     anatomy_.main_ducts = {0, 1};
     anatomy_.organ_count = 2;
     anatomy_.has_critical_view = true;
@@ -59,7 +59,8 @@ class OperationJudgeTest : public testing::Test {
     OperationJudge judge(anatomy_, DissectionMonitor{});
     judge.SeeTools({1.0, 1.0 / 120, facts, {}, tissue_, *vessels_, {}, camera_, {}, 0, 0, {}});
     std::vector<OperationError> errors;
-    for (const ErrorEntry& entry : judge.NewErrors()) errors.push_back(entry.error);
+    for (const surgery::ErrorEntry& entry : judge.NewErrors())
+      errors.push_back(static_cast<OperationError>(entry.error.row));
     return errors;
   }
 

@@ -22,6 +22,7 @@
 #include "trocar/environment/pool.h"
 #include "trocar/files/task_file.h"
 #include "trocar/math/random.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
 #include "trocar/scene/task.h"
@@ -42,7 +43,7 @@ constexpr int kPictureSide = 84;      // pixels
 constexpr int kPoolActions = 300;     // of a thread, or of a process that has a core for itself
 constexpr int kManyPerThread = 4;     // environments, in the larger of two pools
 constexpr const char* kPoolTask = "peg_transfer";
-constexpr const char* kOperation = "cholecystectomy";
+constexpr const char* kOperation = procedures::kUsualProcedure;
 
 double ResidentBytes() {
   std::ifstream file("/proc/self/statm");

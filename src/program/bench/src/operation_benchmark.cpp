@@ -73,7 +73,9 @@ constexpr Part kParts[] = {
     {"bed", "expert",
      [](const Simulation& simulation) {
        const auto& operation = simulation.GetSnapshot().operation;
-       return operation.clip_count > 0 && operation.facts.structures_entering == 0 &&
+       const double entering = scene::MeasureOf(scene::ProcedureOf(simulation.GetScene()),
+                                                operation.procedure, "structures_entering");
+       return operation.clip_count > 0 && entering == 0.0 &&
               IsAnyToolOf(simulation, instrument::ToolKind::kHook);
      }},
     {"bleeding", "bleeds",

@@ -15,6 +15,7 @@
 #include "trocar/files/scene_file.h"
 #include "trocar/host/partial_path.h"
 #include "trocar/host/threads.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/record/recorder.h"
 #include "trocar/record/replay.h"
 #include "trocar/record/trace.h"
@@ -40,7 +41,7 @@ struct Played {
 };
 
 base::Result<Played> PlayExpert(int threads) {
-  auto scene = files::FindOperation("cholecystectomy", {}, 1);
+  auto scene = files::FindOperation(procedures::kUsualProcedure, {}, 1);
   if (!scene) return scene.error();
   const auto shared = std::make_shared<const scene::Scene>(std::move(**scene));
   Played played;
@@ -63,7 +64,7 @@ base::Result<Played> PlayExpert(int threads) {
 record::Description Describe() {
   record::Description description;
   description.kind = record::Description::Kind::kOperation;
-  description.name = "cholecystectomy";
+  description.name = procedures::kUsualProcedure;
   description.seed = 1;
   description.player = "a benchmark";
   return description;

@@ -10,6 +10,7 @@
 #include "trocar/bench/benchmark.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/host/threads.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/simulation/snapshot_codec.h"
@@ -32,7 +33,7 @@ struct Played {
 };
 
 base::Result<Played> Play(int threads) {
-  auto scene = files::FindOperation("cholecystectomy", {}, 1);
+  auto scene = files::FindOperation(procedures::kUsualProcedure, {}, 1);
   if (!scene) return scene.error();
   const auto shared = std::make_shared<const scene::Scene>(std::move(**scene));
   auto simulation = simulation::Simulation::Make(

@@ -9,6 +9,7 @@
 #include "trocar/centre/judged_attempt.h"
 #include "trocar/files/task_file.h"
 #include "trocar/host/translate.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/report/charts.h"
 #include "trocar/scene/scene.h"
 #include "trocar/store/attempts.h"
@@ -148,7 +149,7 @@ void AddTasks(HistoryPage& page) {
   if (const auto tasks = files::ListTasks(); tasks.ok()) {
     for (const files::TaskEntry& task : *tasks) page.tasks.push_back({task.key, host::Translate(task.name)});
   }
-  page.tasks.push_back({"cholecystectomy", TaskNameOf("cholecystectomy")});
+  page.tasks.push_back({procedures::kUsualProcedure, TaskNameOf(procedures::kUsualProcedure)});
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ void AddTiles(const JudgedAttempt& judged, ResultPage& page) {
     page.tiles.push_back({host::Translate("Score"), ScoreText(*r.score, r.facts.best_score.has_value()), ""});
   page.tiles.push_back({host::Translate("Time"), report::FormatClock(r.seconds), host::Translate("min:s")});
   const auto critical = std::count_if(r.errors.begin(), r.errors.end(), [](const report::ErrorRow& error) {
-    return error.severity == cholecystectomy::Severity::kCritical;
+    return error.severity == surgery::Severity::kCritical;
   });
   page.tiles.push_back({host::Translate("Errors"), std::to_string(r.errors.size()),
                         critical > 0 ? host::TranslateWith("{1} critical", {std::to_string(critical)}) : ""});
@@ -90,10 +90,10 @@ void AddErrors(const report::AttemptReport& from, ResultPage& page) {
     if (!error.where.empty()) row.what += " (" + host::TranslateComposed(error.where) + ")";
     if (error.hand >= 0)
       row.what += error.hand == 0 ? host::Translate(", left hand") : host::Translate(", right hand");
-    row.severity = host::Translate(cholecystectomy::NameOf(error.severity));
-    row.tone = error.severity == cholecystectomy::Severity::kMinor   ? Tone::kPlain
-               : error.severity == cholecystectomy::Severity::kMajor ? Tone::kCaution
-                                                                     : Tone::kBad;
+    row.severity = host::Translate(surgery::NameOf(error.severity));
+    row.tone = error.severity == surgery::Severity::kMinor   ? Tone::kPlain
+               : error.severity == surgery::Severity::kMajor ? Tone::kCaution
+                                                             : Tone::kBad;
     page.errors.push_back(std::move(row));
   }
 }

@@ -33,12 +33,12 @@ base::Error WrongEnding(const std::string& path, const std::string& endings) {
 }
 
 /// What the published score says of each criterion (0 to 2).
-std::string DescribeScore(const cholecystectomy::CriticalViewScore& score) {
+std::string DescribeScore(const scene::ViewScore& score) {
   const auto of = [](int points) { return TranslateWith("{1} of {2}", {std::to_string(points), "2"}); };
   return TranslateWith(
       "hepatocystic triangle cleared {1}, lower gallbladder off the liver {2}, two and only two structures "
       "{3}",
-      {of(score.criteria[0]), of(score.criteria[1]), of(score.criteria[2])});
+      {of(score.Points(0)), of(score.Points(1)), of(score.Points(2))});
 }
 
 /// A simulation as it was at a moment.
@@ -54,7 +54,7 @@ base::Result<simulation::Simulation> RestoreMoment(const scene::Scene& scene,
 /// Both pictures, or why there are none.
 base::Result<report::DoubletView> DrawDoublet(const scene::Scene& scene,
                                               const view::CriticalViewMoments& moments,
-                                              const cholecystectomy::CriticalViewScore& score) {
+                                              const scene::ViewScore& score) {
   report::DoubletView view;
   view.front_time = moments.Front().time;
   view.back_time = moments.Behind().time;
@@ -162,8 +162,8 @@ void ReportWatch::AfterStep(const simulation::Simulation& simulation,
                             const std::array<scene::HandControls, instrument::kHandCount>& controls) {
   const simulation::Snapshot& now = simulation.GetSnapshot();
   trace_->Add(now, controls);
-  if (!critical_view_.IsAchieved()) last_score_ = now.operation.critical_view;
-  critical_view_.AfterStep(now.operation.critical_view, now.time,
+  if (!critical_view_.IsAchieved()) last_score_ = now.operation.procedure.view;
+  critical_view_.AfterStep(now.operation.procedure.view, now.time,
                            [&](std::vector<std::byte>& state) { simulation.Save(state); });
 }
 

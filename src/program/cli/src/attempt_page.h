@@ -59,7 +59,7 @@ class ReportWatch {
   std::optional<record::TraceBuilder> trace_;
   const scene::Scene* scene_ = nullptr;
   view::CriticalViewMoments critical_view_;  // when it was first achieved
-  cholecystectomy::CriticalViewScore last_score_;
+  scene::ViewScore last_score_;
 };
 
 /// --report of a command that runs a simulation; does nothing where it was not asked for.

@@ -30,6 +30,7 @@
 #include "trocar/host/safe_file.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/version.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/scene/task.h"
 #include "trocar/session/input_sources.h"
 #include "trocar/simulation/attempt_end.h"
@@ -119,7 +120,7 @@ nlohmann::ordered_json TaskErrorJson(const scene::Scene& scene, const scene::Tas
   const auto& p = error.position;
   nlohmann::ordered_json json = {{"error", rule.name},
                                  {"about", rule.about},
-                                 {"severity", cholecystectomy::NameOf(rule.severity)},
+                                 {"severity", surgery::NameOf(rule.severity)},
                                  {"time_s", error.time},
                                  {"at_mm", {1e3 * p.x, 1e3 * p.y, 1e3 * p.z}}};
   if (error.object >= 0) json["object"] = scene.objects[static_cast<std::size_t>(error.object)].name;
@@ -133,8 +134,8 @@ void PrintForProgram(const scene::Scene& scene, const PlayReport& report) {
                                  {"critical_errors", nlohmann::ordered_json::array()},
                                  {"errors", nlohmann::ordered_json::array()}};
   for (const scene::TaskError& error : report.errors) {
-    const bool is_critical = scene.task->errors[static_cast<std::size_t>(error.rule)].severity ==
-                             cholecystectomy::Severity::kCritical;
+    const bool is_critical =
+        scene.task->errors[static_cast<std::size_t>(error.rule)].severity == surgery::Severity::kCritical;
     json[is_critical ? "critical_errors" : "errors"].push_back(TaskErrorJson(scene, error));
   }
   json.update({{"blood_ml", report.blood_ml},
@@ -176,7 +177,7 @@ void PrintTaskResult(const scene::Scene& scene, const PlayReport& report) {
     if (report.task.errors[e] == 0) continue;
     const scene::ErrorRule& rule = scene.task->errors[e];
     Say("  {1} x {2}: {3} ({4}, {5} points each)\n", report.task.errors[e], rule.name, Translate(rule.about),
-        Translate(cholecystectomy::NameOf(rule.severity)), ShownNumber(rule.penalty));
+        Translate(surgery::NameOf(rule.severity)), ShownNumber(rule.penalty));
   }
   Say("Tick p99 {1} ms, state hash {2}\n", ShownNumber(report.tick_p99_ms, 3), base::HashText(report.hash));
   Say("Training feedback, not certified assessment.\n");
@@ -210,14 +211,14 @@ base::Status PrintList() {
     for (const std::string& level : task.levels) levels += (levels.empty() ? "" : ", ") + level;
     PrintTask(task.key, levels, *scene);
   }
-  const auto operation = files::FindOperation("cholecystectomy", {}, 0);
+  const auto operation = files::FindOperation(procedures::kUsualProcedure, {}, 0);
   if (!operation) return operation.error();
   const auto operation_levels = files::ListOperationLevels();
   if (!operation_levels) return operation_levels.error();
   std::string levels;
   for (const scene::OperationLevel& level : *operation_levels)
     levels += (levels.empty() ? "" : ", ") + level.key;
-  if (*operation) PrintTask("cholecystectomy", levels, **operation);
+  if (*operation) PrintTask(procedures::kUsualProcedure, levels, **operation);
   PrintLine();
   std::vector<std::vector<std::string>> rows = {{"surgeon", "error", "about"}};
   for (const agent::SurgeonEntry& entry : agent::ListSurgeons())

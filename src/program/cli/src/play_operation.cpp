@@ -2,8 +2,10 @@
 #include "play_operation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "attempt_recording.h"
@@ -11,12 +13,12 @@
 #include "part_folder.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/base/statistics.h"
-#include "trocar/cholecystectomy/injury.h"
-#include "trocar/cholecystectomy/operation_end.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/json.h"
 #include "trocar/host/threads.h"
 #include "trocar/host/translate.h"
+#include "trocar/procedures/operation_end.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/session/input_sources.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/demo.h"
@@ -53,31 +55,41 @@ double Left(const OperationResult& result, surgery::Fluid fluid) {
   return kMillilitre * result.fluids.fluids[static_cast<std::size_t>(fluid)].left;
 }
 
-ordered_json OperationErrorJson(const cholecystectomy::ErrorEntry& entry) {
+ordered_json OperationErrorJson(const surgery::ErrorEntry& entry, const surgery::ErrorRow& row) {
   constexpr const char* kHands[] = {"left", "right"};
-  ordered_json json = {{"error", cholecystectomy::NameOf(entry.error)},
-                       {"severity", cholecystectomy::NameOf(cholecystectomy::SeverityOf(entry.error))},
+  ordered_json json = {{"error", row.name},
+                       {"severity", surgery::NameOf(row.severity)},
                        {"time_s", entry.time},
                        {"at_mm", {1e3 * entry.place.x, 1e3 * entry.place.y, 1e3 * entry.place.z}}};
   if (entry.hand >= 0 && entry.hand < instrument::kHandCount) json["hand"] = kHands[entry.hand];
   return json;
 }
 
-cholecystectomy::OperationEnd EndOf(const OperationResult& result, const std::string& bail_out) {
-  return cholecystectomy::JudgeEnd(result.is_completed, !bail_out.empty(), result.errors, result.injuries);
+procedures::OperationEnd EndOf(const OperationResult& result, const std::string& bail_out) {
+  return procedures::JudgeEnd(result, !bail_out.empty());
+}
+
+/// Of a class of injuries as it is shown; "" where the finding is a plain yes or no.
+std::string ShownClass(const scene::Finding& finding) {
+  const auto* text = std::get_if<std::string_view>(&finding.value);
+  return text == nullptr ? "" : Translate(*text);
 }
 
 /// \param bail_out  why it was ended early; "" where it was not
-ordered_json MakeJson(const OperationResult& result, const Run& run, const std::string& bail_out) {
+ordered_json MakeJson(const scene::Scene& scene, const OperationResult& result, const Run& run,
+                      const std::string& bail_out) {
+  const scene::Procedure* procedure = scene::ProcedureOf(scene);
+  const scene::ProcedureResult& judged = result.procedure;
   ordered_json json = {{"completed", result.is_completed},
-                       {"end", cholecystectomy::NameOf(EndOf(result, bail_out))},
+                       {"end", procedures::NameOf(EndOf(result, bail_out))},
                        {"bail_out", bail_out},
-                       {"critical_view", result.was_critical_view_achieved},
+                       {"critical_view", judged.was_view_achieved},
                        {"critical_errors", ordered_json::array()},
                        {"errors", ordered_json::array()}};
-  for (const cholecystectomy::ErrorEntry& entry : result.errors.Entries()) {
-    const bool is_critical = cholecystectomy::SeverityOf(entry.error) == cholecystectomy::Severity::kCritical;
-    json[is_critical ? "critical_errors" : "errors"].push_back(OperationErrorJson(entry));
+  for (const surgery::ErrorEntry& entry : judged.errors.Entries()) {
+    const surgery::ErrorRow& row = judged.errors.RowOf(entry);
+    const bool is_critical = row.severity == surgery::Severity::kCritical;
+    json[is_critical ? "critical_errors" : "errors"].push_back(OperationErrorJson(entry, row));
   }
   json.update({{"blood_ml", Left(result, surgery::Fluid::kBlood)},
                {"bile_ml", Left(result, surgery::Fluid::kBile)},
@@ -85,20 +97,33 @@ ordered_json MakeJson(const OperationResult& result, const Run& run, const std::
                {"cut_tick_max_ms", run.cut_tick_max_ms},
                {"hash", base::HashText(run.hash)},
                {"time_s", run.seconds},
-               {"phase", cholecystectomy::NameOf(result.phase)},
-               {"strasberg", Translate(cholecystectomy::StrasbergName(result.injuries.strasberg))},
-               {"right_liver_without_blood", result.injuries.is_right_liver_without_blood},
-               {"bed_blood_ml", kMillilitre * result.bed_blood},
+               {"phase", scene::PhaseName(procedure, judged.now.phase)}});
+  for (const scene::Finding& finding : judged.findings) {
+    ordered_json& value = json[std::string(finding.name)];
+    if (const bool* is_there = std::get_if<bool>(&finding.value)) {
+      value = *is_there;
+    } else {
+      value = ShownClass(finding);
+    }
+  }
+  json.update({{"bed_blood_ml", kMillilitre * result.bed_blood},
                {"stones",
                 {{"all", result.stones.all},
                  {"inside", result.stones.inside},
                  {"spilled_not_retrieved", result.stones.spilled},
                  {"in_bag", result.stones.in_bag},
                  {"aspirated", result.stones.aspirated},
-                 {"taken_out", result.stones.taken_out}}},
-               {"cleared_share", result.facts.cleared_share},
-               {"detached_share", result.facts.detached_share},
-               {"structures_entering", result.facts.structures_entering}});
+                 {"taken_out", result.stones.taken_out}}}});
+  for (std::size_t row = 0; procedure != nullptr && row < procedure->measures.size(); ++row) {
+    const scene::MeasureRow& measure = procedure->measures[row];
+    const double value = judged.now.Measure(row);
+    ordered_json& entry = json[std::string(measure.name)];
+    if (measure.is_share) {
+      entry = value;
+    } else {
+      entry = std::lround(value);
+    }
+  }
   return json;
 }
 
@@ -108,28 +133,29 @@ void PrintOperationResult(const scene::Scene& scene, const OperationResult& resu
       host::TranslateComposed(scene.name), ShownNumber(run.seconds, 4));
   if (!bail_out.empty()) {
     Say("Ended early: {1}.\n", Translate(bail_out));
-    Say(EndOf(result, bail_out) == cholecystectomy::OperationEnd::kConversion
+    Say(EndOf(result, bail_out) == procedures::OperationEnd::kConversion
             ? "Nothing that must stay was harmed: it counts as a conversion, not as a failure.\n"
             : "It came too late to count as a conversion: see the errors.\n");
   }
-  Say(result.was_critical_view_achieved ? "Critical view of safety: achieved\n"
-                                        : "Critical view of safety: not achieved\n");
-  if (!result.was_critical_view_achieved) {
-    for (const std::string& reason : cholecystectomy::ExplainCriticalView(result.facts, result.critical_view))
-      host::PrintLine("  " + host::TranslateComposed(reason));
+  const scene::ProcedureResult& judged = result.procedure;
+  Say(judged.was_view_achieved ? "Critical view of safety: achieved\n"
+                               : "Critical view of safety: not achieved\n");
+  if (!judged.was_view_achieved) {
+    for (const std::string& reason : judged.missing) host::PrintLine("  " + host::TranslateComposed(reason));
   }
-  for (std::size_t i = 0; i < cholecystectomy::kOperationErrorCount; ++i) {
-    const auto error = static_cast<cholecystectomy::OperationError>(i);
-    const std::size_t count = result.errors.Count(error);
+  for (std::size_t i = 0; i < judged.errors.Table().size(); ++i) {
+    const surgery::ErrorRow& row = judged.errors.Table()[i];
+    const std::size_t count = judged.errors.Count(surgery::ErrorId(static_cast<std::uint8_t>(i)));
     if (count == 0) continue;
-    host::PrintLine("  " + std::to_string(count) + " x " + ShownName(cholecystectomy::NameOf(error)) + " (" +
-                    Translate(cholecystectomy::NameOf(cholecystectomy::SeverityOf(error))) +
-                    "): " + Translate(cholecystectomy::ExplanationOf(error)));
+    host::PrintLine("  " + std::to_string(count) + " x " + ShownName(row.name) + " (" +
+                    Translate(surgery::NameOf(row.severity)) + "): " + Translate(row.explanation));
   }
+  const auto injury = std::find_if(judged.findings.begin(), judged.findings.end(),
+                                   [](const scene::Finding& finding) { return finding.name == "strasberg"; });
   Say("Blood {1} mL, bile {2} mL; injury by Strasberg: {3}\n",
       ShownNumber(Left(result, surgery::Fluid::kBlood), 3),
       ShownNumber(Left(result, surgery::Fluid::kBile), 3),
-      Translate(cholecystectomy::StrasbergName(result.injuries.strasberg)));
+      injury == judged.findings.end() ? "-" : ShownClass(*injury));
   const surgery::StoneCount& stones = result.stones;
   if (stones.inside < stones.all) {
     Say("Of {1} stones {2} came out of the gallbladder; spilled and not retrieved: {3}\n", stones.all,
@@ -141,18 +167,27 @@ void PrintOperationResult(const scene::Scene& scene, const OperationResult& resu
   Say("Training feedback, not certified assessment.\n");
 }
 
-std::string DescribeProgress(const Snapshot& now, std::string_view doing) {
-  return host::TranslateWith(
-      "{1} s, {2}: fat cleared {3} %, bed free {4} %, errors {5}",
-      {ShownNumber(now.time, 4), Translate(doing), ShownNumber(100 * now.operation.facts.cleared_share, 3),
-       ShownNumber(100 * now.operation.facts.detached_share, 3), std::to_string(now.operation.errors)});
+std::string DescribeProgress(const scene::Scene& scene, const Snapshot& now, std::string_view doing) {
+  const auto percent = [&](std::string_view measure) {
+    return ShownNumber(100 * scene::MeasureOf(scene::ProcedureOf(scene), now.operation.procedure, measure),
+                       3);
+  };
+  return host::TranslateWith("{1} s, {2}: fat cleared {3} %, bed free {4} %, errors {5}",
+                             {ShownNumber(now.time, 4), Translate(doing), percent("cleared_share"),
+                              percent("detached_share"), std::to_string(now.operation.errors)});
 }
 
-/// How far an operation is, roughly: by what it divides [-].
-double Share(const Snapshot& now) {
-  return now.operation.is_completed
-             ? 1.0
-             : 0.45 * now.operation.facts.cleared_share + 0.45 * now.operation.facts.detached_share;
+/// How far an operation is, roughly: by the mean of what its procedure measures as shares [-].
+double Share(const scene::Scene& scene, const Snapshot& now) {
+  if (now.operation.is_completed) return 1.0;
+  const scene::Procedure* procedure = scene::ProcedureOf(scene);
+  double sum = 0, count = 0;
+  for (std::size_t row = 0; procedure != nullptr && row < procedure->measures.size(); ++row) {
+    if (!procedure->measures[row].is_share) continue;
+    sum += now.operation.procedure.Measure(row);
+    ++count;
+  }
+  return count > 0 ? 0.9 * sum / count : 0.0;
 }
 
 }  // namespace
@@ -178,8 +213,8 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
   const auto see = [&](const Snapshot& now) {
     run.See(now);
     if (now.tick % 60 != 0) return;
-    progress.SetLabel(DescribeProgress(now, surgeon.Doing()));
-    progress.Show(Share(now));
+    progress.SetLabel(DescribeProgress(*scene, now, surgeon.Doing()));
+    progress.Show(Share(*scene, now));
   };
   if (play.output.empty()) {
     auto made = simulation::Simulation::Make(
@@ -227,7 +262,7 @@ base::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
   progress.Finish();
   const std::string bail_out(surgeon.BailOutReason());
   if (play.is_json) {
-    PrintJson(MakeJson(result, run, bail_out));
+    PrintJson(MakeJson(*scene, result, run, bail_out));
   } else {
     PrintOperationResult(*scene, result, run, bail_out);
   }

@@ -20,7 +20,6 @@
 #include "replay_video.h"
 #include "trocar/agent/taking_over.h"
 #include "trocar/base/state_hash.h"
-#include "trocar/cholecystectomy/critical_view.h"
 #include "trocar/files/state_file.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/printable.h"
@@ -29,6 +28,7 @@
 #include "trocar/record/outcome.h"
 #include "trocar/record/replay.h"
 #include "trocar/render/image.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/view/critical_view_picture.h"
 
 namespace trocar::cli {
@@ -113,7 +113,7 @@ view::CriticalViewMoments FindCriticalView(Replay& replay) {
   while (!replay.IsAtEnd() && !moments.IsAchieved()) {
     replay.Step();
     const simulation::Simulation& simulation = replay.GetSimulation();
-    moments.AfterStep(simulation.GetSnapshot().operation.critical_view, simulation.GetSnapshot().time,
+    moments.AfterStep(simulation.GetSnapshot().operation.procedure.view, simulation.GetSnapshot().time,
                       [&](std::vector<std::byte>& state) { simulation.Save(state); });
     if (replay.Tick() % 120 == 0) progress.Show(static_cast<double>(replay.Tick()) / last);
   }
@@ -155,7 +155,7 @@ base::Status DrawCriticalView(Replay& replay, const ReplayChoices& arguments) {
   if (auto status = write("front.png", doublet->front); !status.ok()) return status;
   if (auto status = write("back.png", doublet->back); !status.ok()) return status;
   const simulation::OperationResult result = *replay.GetSimulation().GetOperationResult();
-  const auto& score = result.critical_view;
+  const scene::ViewScore& score = result.procedure.now.view;
   if (arguments.is_json) {
     const auto picture = [](const char* name, double at, const view::CriticalViewPicture& p) {
       return ordered_json{
@@ -163,9 +163,9 @@ base::Status DrawCriticalView(Replay& replay, const ReplayChoices& arguments) {
     };
     const ordered_json json = {{"at_s", seconds},
                                {"achieved", score.IsAchieved()},
-                               {"triangle", score.criteria[0]},
-                               {"plate", score.criteria[1]},
-                               {"two_structures", score.criteria[2]},
+                               {"triangle", score.Points(0)},
+                               {"plate", score.Points(1)},
+                               {"two_structures", score.Points(2)},
                                {"front", picture("front.png", front_seconds, doublet->front)},
                                {"back", picture("back.png", back_seconds, doublet->back)}};
     PrintJson(json);
@@ -175,8 +175,8 @@ base::Status DrawCriticalView(Replay& replay, const ReplayChoices& arguments) {
       arguments.video.output, ShownNumber(front_seconds, 4), ShownNumber(back_seconds, 4),
       score.IsAchieved() ? Translate("achieved") : Translate("not achieved"));
   Say("Triangle cleared {1} of 2, lower third off the plate {2} of 2, two structures {3} of 2\n",
-      score.criteria[0], score.criteria[1], score.criteria[2]);
-  for (const std::string& reason : cholecystectomy::ExplainCriticalView(result.facts, score))
+      score.Points(0), score.Points(1), score.Points(2));
+  for (const std::string& reason : result.procedure.missing)
     host::PrintLine("  " + host::TranslateComposed(reason));
   return {};
 }
@@ -203,7 +203,8 @@ base::Status TakeOver(const Replay& replay, const ReplayChoices& arguments) {
     if (simulation.GetSnapshot().tick % 60 != 0) continue;
     progress.SetLabel(ShownNumber(simulation.GetSnapshot().time, 4) + " s, " +
                       Translate((*surgeon)->Doing()));
-    progress.Show(simulation.GetSnapshot().operation.facts.detached_share);
+    progress.Show(scene::MeasureOf(scene::ProcedureOf(simulation.GetScene()),
+                                   simulation.GetSnapshot().operation.procedure, "detached_share"));
   }
   progress.Finish();
   if (const auto finished = recording->Finish(simulation); !finished.ok()) return finished.error();

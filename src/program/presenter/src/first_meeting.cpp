@@ -13,6 +13,7 @@
 #include "trocar/presenter/read_outs.h"
 #include "trocar/presenter/simulator_presenter.h"
 #include "trocar/report/attempt_report.h"
+#include "trocar/scene/procedure.h"
 
 namespace trocar::presenter {
 namespace {
@@ -31,7 +32,8 @@ std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapsh
   if (!scene.operation) return text;
   if (std::isfinite(end.TimeLimit()))
     text = FormatTime(end.Elapsed(snapshot)) + " / " + FormatTime(end.TimeLimit());
-  text += kBetween + report::PhaseName(std::string(cholecystectomy::NameOf(snapshot.operation.phase)));
+  text += kBetween + report::PhaseName(std::string(
+                         scene::PhaseName(scene.operation->procedure, snapshot.operation.procedure.phase)));
   for (const instrument::Hand hand : {instrument::kLeft, instrument::kRight})
     text += kBetween + ToolLabel(scene, snapshot, hand);
   return text;

@@ -74,7 +74,8 @@ void OperationEnd::Begin(const scene::Scene& scene, Milestone from, Milestone un
   from_ = from;
   until_ = until;
   begin_ = last_ = now.time;
-  watch_ = {};
+  procedure_ = scene::ProcedureOf(scene);
+  watch_ = assessment::MilestoneWatch(procedure_);
   watch_.Begin(from);
   const bool is_whole = from == Milestone::kStart && until == Milestone::kCompleted;
   time_limit_ = std::numeric_limits<double>::infinity();
@@ -86,7 +87,7 @@ OperationEnd::Reason OperationEnd::See(const simulation::Snapshot& now) noexcept
   if (now.time < last_) {
     // begun anew
     begin_ = now.time;
-    watch_ = {};
+    watch_ = assessment::MilestoneWatch(procedure_);
     watch_.Begin(from_);
   }
   last_ = now.time;

@@ -8,6 +8,7 @@
 
 #include "trocar/host/translate.h"
 #include "trocar/patient/patient.h"
+#include "trocar/scene/procedure.h"
 
 namespace trocar::presenter {
 namespace {
@@ -33,7 +34,7 @@ std::string Print(const char* format, Values... values) {
 }  // namespace
 
 ForceThresholds FindForceThresholds(roles::OrganRole organ) noexcept {
-  return organ == roles::OrganRole::kGallbladder ? ForceThresholds{8.0, 12.0} : ForceThresholds{3.0, 6.0};
+  return roles::IsHollow(organ) ? ForceThresholds{8.0, 12.0} : ForceThresholds{3.0, 6.0};
 }
 
 ForceLevel JudgeForce(double force, const ForceThresholds& thresholds) noexcept {
@@ -235,8 +236,9 @@ std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) 
     case surgery::FactKind::kStoneRetrieved:
       return host::TranslateWith("{1}: retrieved a stone", {hand});
     case surgery::FactKind::kVerdict:
-      return host::Translate(
-          cholecystectomy::ExplanationOf(static_cast<cholecystectomy::OperationError>(event.error)));
+      if (const surgery::ErrorRow* error = scene::FindError(scene::ProcedureOf(scene), event.error))
+        return host::Translate(error->explanation);
+      break;
     default:
       break;  // what goes on tick by tick is no event
   }

@@ -80,7 +80,7 @@ TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& 
   for (const scene::TaskError& error : errors) {
     const scene::ErrorRule& rule = task.errors[static_cast<std::size_t>(error.rule)];
     TaskResult::ErrorRow row{
-        error.time, rule.name,    rule.about,    std::string(cholecystectomy::NameOf(rule.severity)),
+        error.time, rule.name,    rule.about,    std::string(surgery::NameOf(rule.severity)),
         "",         rule.penalty, error.position};
     if (error.object >= 0) row.by = scene.objects[static_cast<std::size_t>(error.object)].name;
     if (error.hand >= 0)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "trocar/presenter/scene_choice.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::presenter {
@@ -17,6 +18,7 @@ using Reason = OperationEnd::Reason;
 scene::Scene MakeScene(double limit, double part_limit) {
   scene::Scene scene;
   scene.operation.emplace();
+  scene.operation->procedure = procedures::FindProcedure(procedures::kUsualProcedure);
   scene.operation->level.time_limit = limit;
   scene.operation->level.part_time_limit = part_limit;
   return scene;
@@ -25,7 +27,7 @@ scene::Scene MakeScene(double limit, double part_limit) {
 simulation::Snapshot MakeMoment(double time, int entering = 3) {
   simulation::Snapshot now;
   now.time = time;
-  now.operation.facts.structures_entering = entering;
+  now.operation.procedure.measures = {0, 0, static_cast<double>(entering)};
   return now;
 }
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "trocar/procedures/find_procedure.h"
+
 namespace trocar::presenter {
 namespace {
 
@@ -159,9 +161,9 @@ TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
   EXPECT_TRUE(IsWarning({surgery::FactKind::kStoneSpilled, 1, instrument::kRight, -1, 0.0}));
   EXPECT_EQ(text(surgery::FactKind::kClipSlipped), "A clip slipped off the tissue");
   EXPECT_NE(text(surgery::FactKind::kUsedOutside).find("push it in"), std::string::npos);
-  const auto error = cholecystectomy::OperationError::kClipCrossed;
-  EXPECT_EQ(text(surgery::FactKind::kVerdict, static_cast<int>(error)),
-            cholecystectomy::ExplanationOf(error));
+  const scene::Procedure& procedure = *procedures::FindProcedure(procedures::kUsualProcedure);
+  scene.operation.emplace().procedure = &procedure;
+  EXPECT_EQ(text(surgery::FactKind::kVerdict, 3), procedure.errors[3].explanation);
   EXPECT_TRUE(IsWarning({surgery::FactKind::kVerdict, 1, instrument::kRight, -1, 0.0}));
   EXPECT_FALSE(IsWarning({surgery::FactKind::kClipClosed, 1, instrument::kRight, -1, 0.0}));
 }

@@ -22,7 +22,7 @@ scene::Scene MakeScene() {
   task.errors.resize(1);
   task.errors[0].name = "dropped";
   task.errors[0].about = "A ring \"fell\" & rolled";
-  task.errors[0].severity = cholecystectomy::Severity::kMajor;
+  task.errors[0].severity = surgery::Severity::kMajor;
   task.errors[0].penalty = 12.5;
   task.reference_points = 200;
   task.best_score = 85;

@@ -7,6 +7,7 @@
 #include "trocar/agent/surgeon.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/files/find_scene.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/simulation/attempt_end.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/study/study.h"
@@ -56,9 +57,9 @@ bool HasCome(Until moment, const simulation::Snapshot& now) {
     case Until::kEnd:
       break;
     case Until::kCriticalView:
-      return now.operation.critical_view.IsAchieved();
+      return now.operation.procedure.view.IsAchieved();
     case Until::kFree:
-      return now.operation.is_gallbladder_free;
+      return now.operation.is_organ_free;
   }
   return false;
 }
@@ -98,6 +99,7 @@ base::Result<RunResult> PlayRun(const StudyPlan& plan, const Run& run) {
   }
 
   const simulation::OperationSnapshot& operation = now.operation;
+  const scene::Procedure* procedure = scene::ProcedureOf(*scene);
   const auto& blood = operation.flow.ledger.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
   std::uint64_t task_errors = 0;
   for (const std::uint32_t count : now.task.errors) task_errors += count;
@@ -117,9 +119,9 @@ base::Result<RunResult> PlayRun(const StudyPlan& plan, const Run& run) {
                     {"impulse_right_ns", sums.impulse[1]},
                     {"pinch_damages", static_cast<double>(sums.pinched)},
                     {"tears", static_cast<double>(sums.torn)},
-                    {"critical_view", static_cast<double>(operation.critical_view.Sum())},
-                    {"detached_share", operation.facts.detached_share},
-                    {"cleared_share", operation.facts.cleared_share},
+                    {"critical_view", static_cast<double>(operation.procedure.view.Sum())},
+                    {"detached_share", scene::MeasureOf(procedure, operation.procedure, "detached_share")},
+                    {"cleared_share", scene::MeasureOf(procedure, operation.procedure, "cleared_share")},
                     {"blood_pooled_ml", blood.pooled / kMillilitre},
                     {"solver_iterations_per_tick",
                      sums.iterations / static_cast<double>(std::max<std::uint64_t>(1, sums.ticks))},

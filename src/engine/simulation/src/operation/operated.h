@@ -61,7 +61,7 @@ struct WallDamage {
 
 /// How far an organ is on its way out.
 struct Retrieval {
-  bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
+  bool is_organ_free = false, is_in_bag = false, is_completed = false;
   std::int32_t bag_hand = -1;
 };
 
@@ -80,8 +80,8 @@ struct OperatedParts {
 
 /// Anatomy that is asked for again and again; constant.
 struct OperatedAnatomy {
-  std::int32_t liver = -1, gallbladder = -1;             ///< among the surfaces
-  std::vector<std::uint32_t> main_ducts, main_arteries;  ///< nodes of those that must stay
+  /// That is taken out, and in whose bed it lies: Procedure::organ and host, among the surfaces, or -1.
+  std::int32_t organ = -1, host = -1;
   math::Vec3 p_pool;                                     ///< where blood and bile gather [m]
   double deepest = 0;                                    ///< z below which nothing falls [m]
   std::uint32_t assistant_node = 0;                      ///< of what the assistant takes

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "operation/gallbladder_anatomy.h"
+#include "operation/operated_anatomy.h"
 #include "trocar/instrument/state_fields.h"
 #include "trocar/math/state_fields.h"
+#include "trocar/patient/pathology.h"
 #include "trocar/patient/patient.h"
-#include "trocar/scene/pathology.h"
-#include "trocar/scene/patient_vessels.h"
+#include "trocar/scene/entering_tubes.h"
 
 namespace trocar::simulation {
 
@@ -17,7 +17,6 @@ using instrument::kHandCount;
 using instrument::kLeft;
 using instrument::kRight;
 using math::Vec3;
-using scene::CalcPathology;
 using scene::PatientTissue;
 using scene::StrandInfo;
 using scene::SurfaceInfo;
@@ -26,12 +25,12 @@ namespace {
 
 /// A tool that is exchanged is out of the way at this depth [m], for this long [s].
 constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
-/// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
+/// Where blood and bile gather, seen from the neck of the organ: to the right and behind, in Morison's pouch [m].
 constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
 constexpr double kBelowAll = -0.03;  // under the lowest organ: what falls beside everything stops there [m]
 
-cholecystectomy::PatternCutMonitor MakePatternCutMonitor(const scene::ModelSheet& sheet,
-                                                         const geometry::EditableMesh& mesh) {
+surgery::PatternCutMonitor MakePatternCutMonitor(const scene::ModelSheet& sheet,
+                                                 const geometry::EditableMesh& mesh) {
   return {{sheet.centre, sheet.half, sheet.circle}, mesh};
 }
 
@@ -51,16 +50,17 @@ base::Result<std::unique_ptr<Operation>> Operation::Make(const scene::Scene& sce
 
 base::Status Operation::MakeAll() {
   const PatientTissue& tissue = *made_;
-  anatomy_.liver = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
-  anatomy_.gallbladder = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
+  const OperatedOrgans organs = FindOperatedOrgans(*scene_, tissue.surfaces);
+  anatomy_.organ = organs.organ;
+  anatomy_.host = organs.host;
   if (const auto status = MakeOrgans(); !status.ok()) return status;
   if (const auto status = MakeTubes(); !status.ok()) return status;
   FindBandStrands();
   parts_.heat =
       surgery::Electrosurgery(tissue.definition, tissue.heat_mass, scene_->operation->parameters.heat);
-  attachment_ = MakeAttachment(scene_->patient, tissue.surfaces, strands_);
+  attachment_ = MakeAttachment(*scene_, tissue.surfaces, strands_);
   MakeAssistant();
-  const patient::Landmark* neck = scene_->patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
+  const patient::Landmark* neck = FindNeck(*scene_);
   anatomy_.p_pool = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
   anatomy_.deepest = kBelowAll;
   for (const Vec3& p : tissue.definition.rest) anatomy_.deepest = std::min(anatomy_.deepest, p.z + kBelowAll);
@@ -80,7 +80,7 @@ base::Status Operation::MakeOrgans() {
   for (std::size_t i = 0; i < patient.organs.size(); ++i) {
     surgery::CuttableOrganSettings settings;
     settings.wall = made_->walls[i];
-    settings.cut.has_walls = static_cast<std::int32_t>(i) != anatomy_.gallbladder && !scene_->model;
+    settings.cut.has_walls = static_cast<std::int32_t>(i) != anatomy_.organ && !scene_->model;
     settings.first_node = made_->surfaces[i].first_node;
     settings.first_spare = made_->first_spare[i];
     settings.spare_count = kSpare.by_organ;
@@ -94,26 +94,17 @@ base::Status Operation::MakeOrgans() {
   return {};
 }
 
-/// Ducts and vessels, which of them must stay, and where they enter the gallbladder.
+/// Ducts and vessels, and where they enter the organ that is taken out.
 base::Status Operation::MakeTubes() {
   const patient::Patient& patient = scene_->patient;
   const scene::OperationParameters& parameters = scene_->operation->parameters;
   auto vessels = scene::MakePatientVessels(patient, parameters.supplies, parameters.fluids);
   if (!vessels.ok()) return vessels.error();
-  biliary_ = std::move(vessels->anatomy);
+  vessel_anatomy_ = std::move(vessels->anatomy);
   parts_.vessels = MakeVessels(std::move(vessels->map), patient, *made_, kSpare.tubes, parameters.vessels);
   parts_.vessels->ReserveFor(parts_.change);
   parts_.change.Clear();
-  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
-    const SurfaceInfo& surface = made_->surfaces[patient.organs.size() + t];
-    for (std::uint32_t k = 0; k < surface.node_count; ++k) {
-      const surgery::VesselPlace place = parts_.vessels->Map().Find(t, parts_.vessels->Map().arcs[t][k]);
-      if (cholecystectomy::MayBeDivided(biliary_.roles[place.vessel])) continue;
-      const bool is_duct = patient.tubes[t].kind == patient::TubeKind::kDuct;
-      (is_duct ? anatomy_.main_ducts : anatomy_.main_arteries).push_back(surface.first_node + k);
-    }
-  }
-  for (surgery::EnteringTube& tube : FindEnteringTubes(patient, made_->surfaces, strands_)) {
+  for (surgery::EnteringTube& tube : scene::FindEnteringTubes(made_->surfaces, strands_, anatomy_.organ)) {
     const SurfaceInfo& surface = made_->surfaces[patient.organs.size() + tube.tube];
     const double radius = surface.radii[tube.nodes.front() - surface.first_node];
     TubeEnd end{tube.nodes.front(), std::move(tube.end_strands), M_PI * radius * radius};
@@ -139,7 +130,7 @@ void Operation::MakeAssistant() {
   const Vec3& target = setup.p_world_target;
   assistant_.emplace(setup, target);
   // the landmark moves with the organ: the nearest vertex at rest carries it
-  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(std::max(0, anatomy_.gallbladder))];
+  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(std::max(0, anatomy_.organ))];
   const auto& rest = made_->definition.rest;
   anatomy_.assistant_node = surface.first_node;
   for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
@@ -149,17 +140,17 @@ void Operation::MakeAssistant() {
   }
 }
 
-/// What bleeds where the gallbladder comes off the liver.
+/// What bleeds where the organ comes off its bed.
 void Operation::MakeOoze() {
-  std::vector<surgery::LiverFibre> fibres;
+  std::vector<surgery::BedFibre> fibres;
   for (std::uint32_t i = 0; i < strands_.size(); ++i) {
     const StrandInfo& strand = strands_[i];
     const bool is_bed = strand.kind == StrandInfo::Kind::kBed;
     if (!is_bed && strand.kind != StrandInfo::Kind::kAdhesion) continue;
-    const bool is_b = IsOf(strand.b, anatomy_.liver);
-    if (is_b || IsOf(strand.a, anatomy_.liver)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
+    const bool is_b = IsOf(strand.b, anatomy_.host);
+    if (is_b || IsOf(strand.a, anatomy_.host)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
   }
-  ooze_ = surgery::BedOoze(fibres, CalcPathology(scene_->patient).bed_bleeding,
+  ooze_ = surgery::BedOoze(fibres, patient::CalcPathology(scene_->patient).bed_bleeding,
                            scene_->operation->parameters.bed);
 }
 
@@ -289,6 +280,8 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.topology.triangles.assign(triangles, {});
   snapshot.topology.triangle_count.assign(parts_.organs.size(), 0);
   snapshot.topology.version = std::numeric_limits<std::uint32_t>::max();
+  if (scene_->operation->procedure != nullptr)
+    scene::SizeSnapshot(*scene_->operation->procedure, snapshot.procedure);
 }
 
 void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept {
@@ -340,45 +333,29 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
     snapshot.assistant.jaw = assistant_->Joints().jaw;
     snapshot.assistant.is_holding = assistant_->Held().IsHolding();
   }
-  snapshot.is_gallbladder_free = parts_.retrieval.is_gallbladder_free;
+  snapshot.is_organ_free = parts_.retrieval.is_organ_free;
   snapshot.is_in_bag = parts_.retrieval.is_in_bag;
   snapshot.is_completed = parts_.retrieval.is_completed;
 }
 
-void Operation::AddTo(OperationResult& result) const {
-  surgery::FlowNetwork network = parts_.vessels->Map().network;
-  result.injuries = cholecystectomy::JudgeInjuries(biliary_, parts_.vessels->Acts(), network);
+OperationResult Operation::CalcResult(const scene::ProcedureJudge* judge) const {
+  OperationResult result;
+  result.stones = parts_.stones.Count();
+  if (judge != nullptr) result.procedure = judge->CalcResult(*parts_.vessels, result.stones);
   result.fluids = parts_.fluids;
   result.bed_blood = ooze_.Lost();
-  result.stones = parts_.stones.Count();
-  result.injuries.spilled_stones = result.stones.spilled;
-  result.is_gallbladder_free = parts_.retrieval.is_gallbladder_free;
+  result.is_organ_free = parts_.retrieval.is_organ_free;
   result.is_in_bag = parts_.retrieval.is_in_bag;
   result.is_completed = parts_.retrieval.is_completed;
+  return result;
 }
 
 // --- what a judge sees
 
-cholecystectomy::OperationJudge Operation::MakeJudge() const {
-  const PatientTissue& tissue = *made_;
-  const cholecystectomy::JudgementSettings& settings = scene_->operation->parameters.judgement;
-  cholecystectomy::DissectedAnatomy dissected =
-      MakeDissectedAnatomy(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest);
-  dissected.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest,
-                                          anatomy_.main_ducts, anatomy_.main_arteries, settings);
-  dissected.exposable = CalcExposable(dissected.entering, tissue.definition.rest, anatomy_.main_ducts,
-                                      anatomy_.main_arteries, settings);
-  dissected.sight = MakeTriangleSight(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest,
-                                      dissected.exposable, settings);
-  cholecystectomy::JudgedAnatomy anatomy;
-  anatomy.targets = MakeTargetTable(tissue.surfaces, strands_);
-  anatomy.biliary = biliary_;
-  anatomy.main_ducts = anatomy_.main_ducts;
-  anatomy.organ_count = parts_.organs.size();
-  anatomy.has_critical_view = anatomy_.gallbladder >= 0;
-  anatomy.may_cut_organs = scene_->model.has_value();
-  return {std::move(anatomy),
-          cholecystectomy::DissectionMonitor(std::move(dissected), tissue.definition.rest), settings};
+std::unique_ptr<scene::ProcedureJudge> Operation::MakeJudge() const {
+  const scene::Procedure* procedure = scene_->operation->procedure;
+  if (procedure == nullptr) return nullptr;
+  return procedure->make_judge({*scene_, *made_, parts_.vessels->Map(), vessel_anatomy_});
 }
 
 surgery::OperationObservation Operation::Observe(const HandsNow& hands, const OperatedTissue& tissue,
@@ -392,7 +369,7 @@ surgery::OperationObservation Operation::Observe(const HandsNow& hands, const Op
       *parts_.vessels,
       tissue.organs,
       camera,
-      {parts_.retrieval.is_gallbladder_free, parts_.retrieval.is_in_bag, parts_.retrieval.is_completed},
+      {parts_.retrieval.is_organ_free, parts_.retrieval.is_in_bag, parts_.retrieval.is_completed},
       parts_.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
       parts_.stones.Count().spilled,
       anatomy_.p_pool};
@@ -408,21 +385,10 @@ surgery::OperationObservation Operation::Observe(const HandsNow& hands, const Op
   return now;
 }
 
-void Publish(const cholecystectomy::OperationJudge& judge, OperationSnapshot& snapshot) noexcept {
-  const cholecystectomy::DissectionFacts& facts = judge.Facts();
-  snapshot.facts = {facts.cleared_share, facts.detached_share, facts.structures_entering};
-  snapshot.critical_view = judge.View();
-  snapshot.phase = judge.CurrentPhase();
+void Publish(const scene::ProcedureJudge& judge, OperationSnapshot& snapshot) noexcept {
+  judge.Publish(snapshot.procedure);
   snapshot.errors = judge.Errors().Count();
-  snapshot.critical_errors = judge.Errors().Count(cholecystectomy::Severity::kCritical);
-}
-
-void AddTo(const cholecystectomy::OperationJudge& judge, OperationResult& result) {
-  result.errors = judge.Errors();
-  result.facts = judge.Facts();
-  result.critical_view = judge.View();
-  result.was_critical_view_achieved = judge.WasViewAchieved();
-  result.phase = judge.CurrentPhase();
+  snapshot.critical_errors = judge.Errors().Count(surgery::Severity::kCritical);
 }
 
 // --- state
@@ -470,7 +436,7 @@ void Operation::VisitState(base::StateArchive& archive) {
   archive.Field("topology_version", topology_version_);
   archive.Field("is_in_bag", parts_.retrieval.is_in_bag);
   archive.Field("is_completed", parts_.retrieval.is_completed);
-  archive.Field("is_gallbladder_free", parts_.retrieval.is_gallbladder_free);
+  archive.Field("is_organ_free", parts_.retrieval.is_organ_free);
   archive.Field("bag_hand", parts_.retrieval.bag_hand);
   if (!archive.IsRestoring() || !archive.ok()) return;
   for (std::size_t hand = 0; hand < active_.size(); ++hand) {

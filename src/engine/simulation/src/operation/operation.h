@@ -12,19 +12,20 @@
 #include "operation/assistant.h"
 #include "operation/operated.h"
 #include "operation/tools/tool_use.h"
-#include "trocar/cholecystectomy/operation_judge.h"
-#include "trocar/cholecystectomy/pattern_cut_monitor.h"
 #include "trocar/instrument/camera.h"
 #include "trocar/scene/patient_tissue.h"
+#include "trocar/scene/patient_vessels.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/simulation/operation_result.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/surgery/bed_ooze.h"
 #include "trocar/surgery/cuttable_organ.h"
 #include "trocar/surgery/electrosurgery.h"
 #include "trocar/surgery/fact.h"
-#include "trocar/surgery/gallbladder_attachment.h"
 #include "trocar/surgery/gallstone_spill.h"
 #include "trocar/surgery/observation.h"
+#include "trocar/surgery/organ_attachment.h"
+#include "trocar/surgery/pattern_cut_monitor.h"
 #include "trocar/surgery/vessels.h"
 
 namespace trocar::simulation {
@@ -81,8 +82,8 @@ class Operation {
   /// \param camera  through which the trainee looks
   surgery::OperationObservation Observe(const HandsNow& hands, const OperatedTissue& tissue,
                                         const instrument::Camera& camera) const noexcept;
-  /// A judge who knows this operation's anatomy.
-  cholecystectomy::OperationJudge MakeJudge() const;
+  /// The procedure's judge, who knows this operation's anatomy; null where the scene names no procedure.
+  std::unique_ptr<scene::ProcedureJudge> MakeJudge() const;
 
   const surgery::CuttableOrgan& Organ(std::size_t i) const { return parts_.organs[i]; }
   /// Ducts and vessels as they are now, for contacts.
@@ -92,8 +93,9 @@ class Operation {
 
   void Size(OperationSnapshot& snapshot) const;
   void Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept;
-  /// Adds the operation's part of the result: injuries, fluids, stones, and how far the retrieval is.
-  void AddTo(OperationResult& result) const;
+  /// How it stands: what the judge says of it, fluids, stones, and how far the retrieval is.
+  /// \param judge  null: nobody judges
+  OperationResult CalcResult(const scene::ProcedureJudge* judge) const;
 
   /// Meshes and lines with their cuts. Before VisitState.
   void VisitTopology(base::StateArchive& archive);
@@ -124,7 +126,7 @@ class Operation {
   double WidestTool(int hand) const noexcept;
   ToolUse UseOf(int hand, const HandsNow& hands, OperatedTissue& tissue) noexcept;
   void OpenTubeEnds(const OperatedTissue& tissue) noexcept;
-  void KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept;
+  void KeepLeaked(tissue::OrganVolume& organ) const noexcept;
   void SpillStones(double leaked, const OperatedTissue& tissue) noexcept;
   void SlipClips(const HandsNow& hands, const OperatedTissue& tissue) noexcept;
   void EmitRetrieved(int hand, int count) noexcept;
@@ -144,8 +146,8 @@ class Operation {
   std::vector<scene::StrandInfo> strands_;
   std::shared_ptr<const scene::PatientTissue> made_;
   OperatedAnatomy anatomy_;
-  cholecystectomy::BiliaryAnatomy biliary_;  // of the vessels
-  /// Where a duct or artery enters the gallbladder.
+  scene::VesselAnatomy vessel_anatomy_;
+  /// Where a duct or artery enters the organ that is taken out.
   struct TubeEnd {
     std::uint32_t node = 0;              // of the tube
     std::vector<std::uint32_t> strands;  // that tie it
@@ -155,8 +157,8 @@ class Operation {
   std::vector<TubeEnd> tube_ends_;
 
   OperatedParts parts_;
-  std::vector<cholecystectomy::PatternCutMonitor> sheets_;  // (ModelSetup::sheets), which are the organs
-  surgery::GallbladderAttachment attachment_;
+  std::vector<surgery::PatternCutMonitor> sheets_;  // (ModelSetup::sheets), which are the organs
+  surgery::OrganAttachment attachment_;
   std::optional<Assistant> assistant_;
   surgery::BedOoze ooze_;
   std::vector<surgery::LooseStone*> loose_clips_;  // scratch
@@ -168,8 +170,7 @@ class Operation {
   surgery::FactList* facts_ = nullptr;  // outlives the tick
 };
 
-/// Adds the judge's part: errors, facts of the dissection, critical view and phase.
-void Publish(const cholecystectomy::OperationJudge& judge, OperationSnapshot& snapshot) noexcept;
-void AddTo(const cholecystectomy::OperationJudge& judge, OperationResult& result);
+/// Adds the judge's part: errors, phase, measures and view.
+void Publish(const scene::ProcedureJudge& judge, OperationSnapshot& snapshot) noexcept;
 
 }  // namespace trocar::simulation

@@ -86,14 +86,14 @@ void Operation::Heat(const HandsNow& hands, OperatedTissue& tissue) noexcept {
     surgery::Fact fact = FactOf(FactKind::kOrganBurnt, hand);
     fact.position = tissue.state.position[node];
     surgery::TubePlace place;
-    if (IsOf(node, anatomy_.gallbladder)) {
-      tissue.conservation.Perforate(static_cast<std::size_t>(anatomy_.gallbladder), Electrode().burnt_hole,
+    if (IsOf(node, anatomy_.organ)) {
+      tissue.conservation.Perforate(static_cast<std::size_t>(anatomy_.organ), Electrode().burnt_hole,
                                     tissue.conserved);
       parts_.wall.holes.Add(node, Electrode().burnt_rim);
-      fact.surface = anatomy_.gallbladder;
+      fact.surface = anatomy_.organ;
       Add(fact);
-    } else if (IsOf(node, anatomy_.liver)) {
-      fact.surface = anatomy_.liver;
+    } else if (IsOf(node, anatomy_.host)) {
+      fact.surface = anatomy_.host;
       Add(fact);
     } else if (parts_.vessels->MakeHole(node, Electrode().burnt_hole, place)) {
       AddOfTube(FactKind::kTubeBurnt, hand, place, fact.position);
@@ -102,7 +102,7 @@ void Operation::Heat(const HandsNow& hands, OperatedTissue& tissue) noexcept {
   OpenTubeEnds(tissue);
 }
 
-/// A duct or artery that was burnt or torn off the gallbladder is open there, as one that was cut.
+/// A duct or artery that was burnt or torn off the organ is open there, as one that was cut.
 void Operation::OpenTubeEnds(const OperatedTissue& tissue) noexcept {
   if (parts_.retrieval.is_in_bag) return;
   for (TubeEnd& end : tube_ends_) {

@@ -18,49 +18,48 @@ constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m
 }  // namespace
 
 void Operation::Flow(const HandsNow& hands, OperatedTissue& tissue) noexcept {
-  tissue::OrganVolume* const gallbladder =
-      anatomy_.gallbladder >= 0 ? &tissue.conserved.organs[static_cast<std::size_t>(anatomy_.gallbladder)]
-                                : nullptr;
-  if (gallbladder != nullptr) {
-    KeepLeaked(*gallbladder);
-    const double now = gallbladder->leaked - parts_.wall.leaked_seen;
+  tissue::OrganVolume* const organ =
+      anatomy_.organ >= 0 ? &tissue.conserved.organs[static_cast<std::size_t>(anatomy_.organ)] : nullptr;
+  if (organ != nullptr) {
+    KeepLeaked(*organ);
+    const double now = organ->leaked - parts_.wall.leaked_seen;
     if (now > 0.0) parts_.fluids.Leak(surgery::Fluid::kBile, now);
     SpillStones(now, tissue);
   }
-  parts_.vessels->Flow(hands.seconds, anatomy_.gallbladder, tissue.conserved, parts_.fluids);
+  parts_.vessels->Flow(hands.seconds, anatomy_.organ, tissue.conserved, parts_.fluids);
   SlipClips(hands, tissue);
   parts_.fluids.Leak(surgery::Fluid::kBlood,
                      ooze_.Update(tissue.state, parts_.heat, made_->definition.rest.size(), hands.seconds));
-  if (gallbladder != nullptr) parts_.wall.leaked_seen = gallbladder->leaked;
+  if (organ != nullptr) parts_.wall.leaked_seen = organ->leaked;
   parts_.smoke = std::clamp(parts_.smoke * (1.0 - Suction().smoke_fade * hands.seconds), 0.0, 1.0);
-  parts_.retrieval.is_gallbladder_free = attachment_.IsFree(tissue.state, *parts_.vessels);
+  parts_.retrieval.is_organ_free = attachment_.IsFree(tissue.state, *parts_.vessels);
 }
 
 /// A bad tick takes the organ back to the last good solve, and with it the bile that ran out after that solve. It is in the
 /// ledger already: it stays out, or it would be counted again when it runs out again.
-void Operation::KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept {
-  const double back = parts_.wall.leaked_seen - gallbladder.leaked;
+void Operation::KeepLeaked(tissue::OrganVolume& organ) const noexcept {
+  const double back = parts_.wall.leaked_seen - organ.leaked;
   if (!(back > 0.0)) return;
-  gallbladder.target -= back;
-  gallbladder.leaked = parts_.wall.leaked_seen;
+  organ.target -= back;
+  organ.leaked = parts_.wall.leaked_seen;
 }
 
 void Operation::SpillStones(double leaked, const OperatedTissue& tissue) noexcept {
-  if (anatomy_.gallbladder < 0) return;
+  if (anatomy_.organ < 0) return;
   for (const std::uint32_t i : tissue.torn_springs) {
     const tissue::Spring& spring = tissue.definition.springs[i];
     for (const std::uint32_t node : {spring.a, spring.b}) {
-      if (IsOf(node, anatomy_.gallbladder)) parts_.wall.holes.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
+      if (IsOf(node, anatomy_.organ)) parts_.wall.holes.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
     }
   }
   if (!(leaked > 0.0) || parts_.retrieval.is_in_bag || !parts_.stones.HasInside()) return;
-  const auto organ = static_cast<std::size_t>(anatomy_.gallbladder);
+  const auto organ = static_cast<std::size_t>(anatomy_.organ);
   const surgery::WallHole hole =
       parts_.wall.holes.FindLargest(tissue.organs[organ], tissue.state.position, parts_.organs[organ].Mesh());
   if (!(hole.rim > 0.0)) return;
   const int spilled = parts_.stones.Spill(leaked, leaked + tissue.conserved.organs[organ].target, hole);
   surgery::Fact fact = FactOf(FactKind::kStoneSpilled, -1);
-  fact.surface = anatomy_.gallbladder;
+  fact.surface = anatomy_.organ;
   for (int i = 0; i < spilled; ++i) Add(fact);
 }
 

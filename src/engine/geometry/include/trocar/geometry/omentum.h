@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file omentum.h  The apron of fat that lies over the bowel, under the gallbladder: what is seen behind everything, and
+/// \file omentum.h  The apron of fat that lies over the bowel, under the organs that are operated on: what is seen behind everything, and
 /// what a stone that fell lies on.
 ///
 /// Generated; it belongs to no patient.
@@ -18,7 +18,7 @@ struct Ball {
 
 /// Height field of fat lobules that passes under every ball.
 ///
-/// \param above  parts that must stay visible above it: gallbladder, ducts, vessels; world frame
+/// \param above  parts that must stay visible above it: organs, ducts, vessels; world frame
 /// \return  open sheet that faces +z; the same bits for the same argument
 TriangleMesh MakeOmentum(std::span<const Ball> above);
 

@@ -147,6 +147,14 @@ const Thing* FindSecondOfRole(const std::vector<Thing>& things) {
   return nullptr;
 }
 
+/// An organ that lies in the bed of another; indices of Patient::organs, -1 where the patient has none.
+struct PatientBed {
+  int organ = -1, host = -1;
+
+  bool IsWhole() const { return organ >= 0 && host >= 0; }
+  friend bool operator==(const PatientBed&, const PatientBed&) = default;
+};
+
 /// World frame: metres, x to the patient's left, y cranial, z anterior; origin at the umbilicus on the
 /// insufflated wall.
 struct Patient {
@@ -164,6 +172,11 @@ struct Patient {
 
   /// Index of the organ of that role, or -1.
   int OrganOf(roles::OrganRole role) const;
+  /// Organs in their beds: those that anatomy knows (roles::kOrganBeds), then what else is attached to another organ. Of the known
+  /// ones one organ may be missing.
+  std::vector<PatientBed> ListBeds() const;
+  /// Index of the first hollow organ, or -1.
+  int HollowOrgan() const;
   /// Index of the first duct or artery of that role, or -1.
   int TubeOf(roles::TubeRole role) const;
   /// The role of the organ at that index; kOther beyond the organs, where tubes are.

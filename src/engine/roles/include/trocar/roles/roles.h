@@ -133,10 +133,19 @@ struct RoleNames<TissueRole> {
                                            "gallbladder_bed", "duct",  "artery"};
 };
 
-/// "gallbladder", "cystic_duct"
+/// A procedure may bring roles of its own along, for organs, tubes and landmarks that are none of the above: numbers from here on, with
+/// names that it registers (scene::Procedure). Of tubes those from kFirstOwnArtery on are arteries.
+inline constexpr std::uint8_t kFirstOwnRole = 64, kFirstOwnArtery = 128;
+template <class Role>
+constexpr bool IsOwn(Role role) noexcept {
+  return static_cast<std::uint8_t>(role) >= kFirstOwnRole;
+}
+
+/// "gallbladder", "cystic_duct"; of a procedure's own role "other": procedures::NameOf knows it.
 template <class Role>
 constexpr const char* NameOf(Role role) noexcept {
-  return RoleNames<Role>::kNames[static_cast<std::size_t>(role)];
+  const auto i = static_cast<std::size_t>(role);
+  return RoleNames<Role>::kNames[i < std::size(RoleNames<Role>::kNames) ? i : 0];
 }
 
 /// The role of that name; nothing where there is none.
@@ -182,8 +191,22 @@ std::string ListNames() {
 
 /// A duct rather than an artery.
 constexpr bool IsDuct(TubeRole role) noexcept {
+  if (IsOwn(role)) return static_cast<std::uint8_t>(role) < kFirstOwnArtery;
   return role != TubeRole::kCysticArtery && role != TubeRole::kRightHepaticArtery;
 }
+/// An organ with a cavity, which leaks where its wall is opened. A procedure's own is what it takes out.
+constexpr bool IsHollow(OrganRole role) noexcept {
+  return role != OrganRole::kOther && role != OrganRole::kLiver;
+}
+
+/// A hollow organ that lies in the bed of another, from which it can be taken off, in every patient that has both.
+struct OrganBed {
+  OrganRole organ, host;
+};
+inline constexpr OrganBed kOrganBeds[] = {{OrganRole::kGallbladder, OrganRole::kLiver}};
+inline constexpr RegionRole kBedRegion = RegionRole::kGallbladderBed;  ///< of the organ: what lies in the bed
+inline constexpr TissueRole kBedTissue = TissueRole::kGallbladderBed;  ///< of the fibres between them
+
 /// Whether a region's vertices never move.
 constexpr bool IsFixed(RegionRole role) noexcept {
   return role == RegionRole::kDiaphragmaticFace || role == RegionRole::kFalciform ||

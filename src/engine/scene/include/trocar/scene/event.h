@@ -18,7 +18,7 @@ struct Event {
   std::int32_t organ;        ///< index into Simulation::Surfaces(), or -1
   double force;              ///< the fact's amount [N], 0 where it means nothing
   std::int32_t object = -1;  ///< Scene::objects that is meant, or -1
-  std::int32_t error = -1;   ///< of a verdict: cholecystectomy::OperationError, or -1
+  std::int32_t error = -1;   ///< of a verdict: row of Procedure::errors, or -1
   math::Vec3 p_rest;         ///< of a clip or a cut: where on its vessel at rest, world frame [m]
 };
 

@@ -3,7 +3,6 @@
 /// where on something is an error: the tables of an operation.
 #pragma once
 
-#include "trocar/cholecystectomy/operation_judge.h"
 #include "trocar/surgery/flow_network.h"
 #include "trocar/surgery/surgery_settings.h"
 
@@ -13,10 +12,10 @@ namespace trocar::scene {
 /// Source: decision 0026 for the aorta; the others are general knowledge, tunables.
 struct VesselSupplies {
   surgery::FlowJunction aorta{12e3, 1.25e-10}, artery_bed{1e3, 5e-12};
-  surgery::FlowJunction liver{2.5e3, 8e-12};  ///< secretes against 2.5 kPa, 0.6 mL/min
-  surgery::FlowJunction bowel{1.3e3, 5e-11};  ///< the sphincter opens at 1.3 kPa
-  surgery::FlowJunction gallbladder{1.3e3, 1e-10};
-  double lumen_share = 0.7;  ///< of a tube's outer radius that is open inside [-]
+  surgery::FlowJunction liver{2.5e3, 8e-12};         ///< secretes against 2.5 kPa, 0.6 mL/min
+  surgery::FlowJunction bowel{1.3e3, 5e-11};         ///< the sphincter opens at 1.3 kPa
+  surgery::FlowJunction hollow_organ{1.3e3, 1e-10};  ///< of bile that comes back from one
+  double lumen_share = 0.7;                          ///< of a tube's outer radius that is open inside [-]
 
   friend bool operator==(const VesselSupplies&, const VesselSupplies&) = default;
 };
@@ -62,7 +61,7 @@ struct OperationParameters {
   surgery::ElectrosurgerySettings heat;
   ElectrodeParameters electrode;
   SuctionParameters suction;
-  cholecystectomy::JudgementSettings judgement;
+  surgery::JudgementSettings judgement;
 
   friend bool operator==(const OperationParameters&, const OperationParameters&) = default;
 };

@@ -23,6 +23,8 @@
 
 namespace trocar::scene {
 
+struct Procedure;
+
 /// Straight or angled telescope in its port.
 struct LaparoscopeSetup {
   math::Vec3 p_world_port;          ///< [m]
@@ -64,6 +66,8 @@ struct AssistantSetup {
 
 /// Setup that makes a scene an operation: tissue to be dissected, and tools that do more than push and hold.
 struct OperationSetup {
+  /// What is performed, and who judges it (scene/procedure.h); null: nobody does, and no organ is taken out. Of static storage.
+  const Procedure* procedure = nullptr;
   double fat_spacing = 0.0022;  ///< of the lobules in the hepatocystic triangle [m]; 0: none
   std::optional<AssistantSetup> assistant;
   /// Of a patient whose parameters say nothing of stones.
@@ -98,7 +102,7 @@ struct ModelSetup {
 
 /// How stiff one organ is; see tissue/material.h for the formulas.
 struct OrganMaterial {
-  std::string organ;              ///< its name, or what tissue it is: "liver", "gallbladder_bed", "duct"
+  std::string organ;              ///< its name, or what tissue it is: "liver", "duct"
   double young_modulus = 0;       ///< of the wall or capsule [Pa]
   double wall_thickness = 0;      ///< [m]
   double foundation_modulus = 0;  ///< of what lies behind the surface [Pa]

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "trocar/base/fields.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::scene {
@@ -68,6 +69,9 @@ void VisitFields(T& value, Visitor& visitor) {
   namespace detail = fields_detail;
   if constexpr (std::is_arithmetic_v<Plain> || std::is_enum_v<Plain> || std::is_same_v<Plain, std::string>) {
     visitor.Value(value);
+  } else if constexpr (std::is_same_v<Plain, const Procedure*>) {
+    std::string fingerprint(value == nullptr ? std::string_view() : value->fingerprint);
+    if (!fingerprint.empty()) visitor.Value(fingerprint);
   } else if constexpr (base::kIsList<Plain>) {
     visitor.Length(value);
     for (auto& element : value) VisitFields(element, visitor);

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "trocar/base/state_archive.h"
-#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/instrument/hand.h"
 #include "trocar/math/vector.h"
+#include "trocar/surgery/error_log.h"
 
 namespace trocar::scene {
 
@@ -87,7 +87,7 @@ struct Condition {
   double near = 0, far = 0;            ///< [m]
   bool while_held = false;             ///< counts only while a hand holds `object`
   int event = -1;                      ///< surgery::FactKind
-  int error = -1;                      ///< cholecystectomy::OperationError
+  int error = -1;                      ///< row of Procedure::errors
   int band = -1;                       ///< ModelSetup::bands
   int sheet = -1;                      ///< ModelSetup::sheets
 };
@@ -104,7 +104,7 @@ struct Goal {
 struct ErrorRule {
   std::string name;   ///< key: "wire_touched"
   std::string about;  ///< for the trainee: "The ring touched the wire"
-  cholecystectomy::Severity severity = cholecystectomy::Severity::kMinor;
+  surgery::Severity severity = surgery::Severity::kMinor;
   std::vector<Condition> when;  ///< any of these
   double penalty = 0;           ///< points, each time
   bool ends_task = false;

@@ -16,8 +16,8 @@ namespace trocar::scene {
 
 /// A surface that can be drawn: an organ, or the skin of a duct or vessel around its centre-line nodes.
 struct SurfaceInfo {
-  std::string name;  ///< for the screen and for files
-  std::string look;  ///< "liver", "gallbladder", "duct", "artery": see render/material.h
+  std::string name;                              ///< for the screen and for files
+  std::string look;                              ///< "liver", "duct", "artery": see render/material.h
   std::uint32_t first_node = 0, node_count = 0;  ///< rows of Snapshot::positions
   std::vector<geometry::Triangle> triangles;     ///< organs: indices from 0 at first_node; tubes: empty
   std::vector<double> radii;                     ///< (node_count) tubes only [m]
@@ -26,6 +26,7 @@ struct SurfaceInfo {
   /// Tubes only: the surface that its first and its last node join, -1 where it leaves the scene.
   std::array<std::int32_t, 2> ends{-1, -1};
 
+  bool IsTube() const noexcept { return triangles.empty(); }
   bool Joins(std::int32_t surface) const noexcept {
     return surface >= 0 && (ends[0] == surface || ends[1] == surface);
   }

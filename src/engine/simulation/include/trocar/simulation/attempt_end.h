@@ -10,7 +10,7 @@ namespace trocar::simulation {
 /// A task ends by its own goals, also one in which there is an organ to operate on; only where there is no task, the operation's end
 /// is the attempt's.
 /// \param phase  kNone: there is no task
-/// \param is_operation_completed  the gallbladder has left the abdomen in its bag
+/// \param is_operation_completed  what is taken out has left the abdomen in its bag
 constexpr bool HasCompleted(scene::TaskPhase phase, bool is_operation_completed) noexcept {
   return phase == scene::TaskPhase::kNone ? is_operation_completed : phase == scene::TaskPhase::kCompleted;
 }

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "trocar/base/result.h"
-#include "trocar/cholecystectomy/injury.h"
-#include "trocar/cholecystectomy/triangle_sight.h"
+#include "trocar/roles/roles.h"
 #include "trocar/scene/scene.h"
 #include "trocar/scene/tissue_layout.h"
 
@@ -19,13 +18,7 @@ struct ModelDescription {
   std::vector<scene::StrandInfo> strands;    ///< as Simulation::Strands()
   std::vector<math::Vec3> rest;              ///< (nodes) at rest, world frame [m]
   /// (tubes)(nodes of it) what the duct or artery is to the surgeon there; empty where they make no network
-  std::vector<std::vector<cholecystectomy::VesselRole>> tube_roles;
-  /// Of an operation: strands of fat and peritoneum over the window of the hepatocystic triangle.
-  std::vector<std::uint32_t> window_strands;
-  cholecystectomy::TriangleSight sight;  ///< of an operation: of the triangle
-  /// (tubes) Of an operation: what may be asked to lie bare of each that enters the gallbladder, from there on, along it at
-  /// rest [m]; 0 for the others.
-  std::vector<double> exposable;
+  std::vector<std::vector<roles::TubeRole>> tube_roles;
 };
 
 /// Compiles the scene's tissue as the simulation does, and keeps what is constant.

@@ -9,14 +9,13 @@
 #include <span>
 #include <vector>
 
-#include "trocar/cholecystectomy/critical_view.h"
-#include "trocar/cholecystectomy/pattern_cut_monitor.h"
-#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/math/pose.h"
 #include "trocar/scene/input.h"
+#include "trocar/scene/procedure_snapshot.h"
 #include "trocar/scene/tissue_layout.h"
 #include "trocar/surgery/flow_network.h"
+#include "trocar/surgery/pattern_cut_monitor.h"
 #include "trocar/surgery/surgery_snapshot.h"
 
 namespace trocar::simulation {
@@ -73,21 +72,15 @@ struct OperationSnapshot {
   std::size_t clip_count = 0;
   std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
   std::size_t tube_cut_count = 0;
-  std::vector<std::uint8_t> band_is_whole;          ///< (ModelSetup::bands)
-  std::vector<cholecystectomy::PatternCut> sheets;  ///< (ModelSetup::sheets)
-  std::vector<surgery::StoneSnapshot> stones;       ///< the patient's gallstones
+  std::vector<std::uint8_t> band_is_whole;     ///< (ModelSetup::bands)
+  std::vector<surgery::PatternCut> sheets;     ///< (ModelSetup::sheets)
+  std::vector<surgery::StoneSnapshot> stones;  ///< the patient's gallstones
   FlowSnapshot flow;
   double smoke = 0;  ///< in the view, 0 none to 1 thick [-]
   AssistantSnapshot assistant;
-  /// How the dissection stands.
-  struct Facts {
-    double cleared_share = 0, detached_share = 0;
-    int structures_entering = 0;
-  } facts;
-  cholecystectomy::CriticalViewScore critical_view;
-  cholecystectomy::Phase phase = cholecystectomy::Phase::kPreparation;
-  std::size_t errors = 0, critical_errors = 0;  ///< so far
-  bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
+  scene::ProcedureSnapshot procedure;                                   ///< empty where nobody judges
+  std::size_t errors = 0, critical_errors = 0;                          ///< so far
+  bool is_organ_free = false, is_in_bag = false, is_completed = false;  ///< of what is taken out
   /// Pedals of a suction-irrigator in this tick. No part of the state: up after it was restored, until the next tick.
   std::array<bool, instrument::kHandCount> is_rinsing{}, is_aspirating{};
 };

@@ -23,6 +23,7 @@ struct SnapshotLayout {
   Snapshot shape;                                           ///< its lists have the lengths
   std::uint64_t model = 0;                                  ///< Simulation::ModelFingerprint
   std::size_t surfaces = 0, neighbours = 0, rules = 0;      ///< Surfaces(), Patient::neighbours, Task::errors
+  std::size_t phases = 0, procedure_errors = 0;             ///< Procedure::phases, Procedure::errors
   std::array<std::size_t, instrument::kHandCount> tools{};  ///< of each tray; one where there is none
   std::vector<std::size_t> goal_steps;                      ///< (Task::goals) of each
 };

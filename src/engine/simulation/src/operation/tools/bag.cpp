@@ -16,7 +16,7 @@ constexpr double kBagGrip = 1e4;  // nothing slips out of a closed bag [N]
 void HoldOrgan(ToolUse& use, const scene::SurfaceInfo& surface) noexcept {
   surgery::Grasp& held = use.tissue.grasps[static_cast<std::size_t>(use.hand)];
   held = {};
-  held.surface = use.anatomy.gallbladder;
+  held.surface = use.anatomy.organ;
   held.pinch = held.damage_pinch = kBagGrip;
   const auto capacity = static_cast<std::uint32_t>(surgery::Grasp::kCapacity);
   const std::uint32_t step = std::max(1U, surface.node_count / capacity);
@@ -33,10 +33,10 @@ void HoldOrgan(ToolUse& use, const scene::SurfaceInfo& surface) noexcept {
 
 void UseBag(ToolUse& use, surgery::Grasp* assistant) noexcept {
   OperatedParts& parts = use.parts;
-  const std::int32_t organ = use.anatomy.gallbladder;
+  const std::int32_t organ = use.anatomy.organ;
   use.facts.Add(use.MakeFact(surgery::FactKind::kBagOpen));
   if (!parts.retrieval.is_in_bag) AddRetrieved(use, parts.stones.CatchInBag(use.X_device));
-  if (parts.retrieval.is_in_bag || organ < 0 || !parts.retrieval.is_gallbladder_free) return;
+  if (parts.retrieval.is_in_bag || organ < 0 || !parts.retrieval.is_organ_free) return;
   const scene::SurfaceInfo& surface = use.made.surfaces[static_cast<std::size_t>(organ)];
   Vec3 centre;
   for (std::uint32_t i = 0; i < surface.node_count; ++i)

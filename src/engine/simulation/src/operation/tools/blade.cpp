@@ -60,7 +60,7 @@ void CutOrgans(const surgery::BladeMove& move, ToolUse& use, std::span<geometry:
     surgery::Fact fact = use.MakeFact(FactKind::kOrganCut);
     fact.surface = static_cast<std::int32_t>(i);
     use.facts.Add(fact);
-    if (fact.surface == use.anatomy.gallbladder) OpenHollow(i, use, is_sealed);
+    if (fact.surface == use.anatomy.organ) OpenHollow(i, use, is_sealed);
   }
 }
 

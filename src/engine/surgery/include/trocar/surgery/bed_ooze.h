@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file bed_ooze.h  Blood that seeps out of the liver where the gallbladder was torn or cut off it without heat.
+/// \file bed_ooze.h  Blood that seeps out of a bed where the organ in it was torn or cut off without heat.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@
 
 namespace trocar::surgery {
 
-/// A fibre between the liver and the gallbladder.
-struct LiverFibre {
+/// A fibre between an organ and the one in whose bed it lies, or that has grown to it.
+struct BedFibre {
   std::uint32_t strand = 0;
-  std::uint32_t node = 0;  ///< on the liver
+  std::uint32_t node = 0;  ///< on the host of the bed
   bool is_bed = true;      ///< else an adhesion
 };
 
-/// Each fibre of bed and adhesions leaves, where it held on the liver, a place that bleeds a little: less and less as it
+/// Each fibre of bed and adhesions leaves, where it held on the host, a place that bleeds a little: less and less as it
 /// clots, and no more once heat has blanched it. What heat parts does not bleed.
 class BedOoze {
  public:
   BedOoze() = default;
   /// \param bleeding  factor of the patient's disease [-], >= 0
-  BedOoze(std::span<const LiverFibre> fibres, double bleeding, const BedOozeSettings& settings = {});
+  BedOoze(std::span<const BedFibre> fibres, double bleeding, const BedOozeSettings& settings = {});
 
   /// One tick.
   /// \return the blood that ran out [m^3]

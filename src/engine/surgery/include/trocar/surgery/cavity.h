@@ -44,8 +44,8 @@ struct Cavity {
   std::array<CavityClearance, kCavityParts> FindClearances(const math::Vec3& p) const noexcept;
 };
 
-/// Front wall through the ports (least squares of its height; its curvatures are those of the standard four ports of a
-/// cholecystectomy: epigastric, midclavicular and lateral lie 5, 15 and 45 mm behind the umbilicus); diaphragm through
+/// Front wall through the ports (least squares of its height; its curvatures are those of the standard four ports of the
+/// upper abdomen: epigastric, midclavicular and lateral lie 5, 15 and 45 mm behind the umbilicus); diaphragm through
 /// the upper half of the liver's diaphragmatic face (least squares of its height); floor behind the hindmost point.
 ///
 /// \param ports      of tools and laparoscope [m]; empty: no front wall

@@ -34,7 +34,7 @@ enum class FactKind : std::int32_t {
   kNoClipsLeft,      ///< a clip applier was closed that is empty
   kUsedOutside,      ///< a pedal was pressed, or blades or clips closed, while the tool is out of its trocar
   kClipSlipped,      ///< a clip slipped off the end of a duct or vessel
-  kStoneSpilled,     ///< a stone left the gallbladder through a hole
+  kStoneSpilled,     ///< a stone left its organ through a hole
   kStoneTaken,       ///< a spilled stone was grasped
   kStoneRetrieved,   ///< it was sucked up, put into the bag, or taken out
   kVerdict,          ///< in the ring of events alone: a judge's, no fact

@@ -113,7 +113,7 @@ class FlowNetwork {
 
   std::span<const FlowVessel> Vessels() const { return vessels_; }
   std::span<const FlowJunction> Junctions() const { return junctions_; }
-  /// Pressure of a junction's supply, for organs whose pressure changes, such as a gallbladder that is squeezed.
+  /// Pressure of a junction's supply, for organs whose pressure changes, such as a hollow one that is squeezed.
   /// \pre finite (TROCAR_ASSERT)
   void SetPressure(std::size_t junction, double pressure) noexcept;
 

@@ -25,11 +25,11 @@ struct GallstoneSettings {
   double median_diameter = 0.008;  ///< [m], > 0
 };
 
-/// Draws the stones' diameters. Stones of one gallbladder have grown together and are much alike: lognormal about the
+/// Draws the stones' diameters. Stones of one organ have grown together and are much alike: lognormal about the
 /// median, the logarithm's deviation 0.25 (general knowledge, a tunable). Together they fill at most half of the
-/// gallbladder: those that do not fit are left out.
+/// organ: those that do not fit are left out.
 ///
-/// \param capacity  volume of the gallbladder [m^3]
+/// \param capacity  volume of the organ [m^3]
 /// \return diameters [m], in the order in which the bile brings them to a hole
 std::vector<double> DrawGallstones(const GallstoneSettings& settings, double capacity, std::uint64_t seed);
 
@@ -61,7 +61,7 @@ struct StoneGround {
   double deepest = -1;  ///< z below which nothing falls [m]
 };
 
-/// A stone outside of the gallbladder.
+/// A stone outside of its organ.
 struct LooseStone {
   static constexpr std::int32_t kOnNothing = -1, kOnBed = -2, kOnFloor = -3;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file organ_contact.h  Organ against organ: a gallbladder that has come off its bed rests on the liver, and a duct that
+/// \file organ_contact.h  Organ against organ: an organ that has come off its bed rests on the one that it lay on, and a duct that
 /// is pressed on either does not go through it.
 ///
 /// Each vertex of one organ, or node of a tube with its radius, is kept out of the other organ by two one-sided springs,

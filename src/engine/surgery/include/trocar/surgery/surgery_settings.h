@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file surgery_settings.h  The tables of vessels, clips, stones, of the bed's oozing and of electrosurgery.
+/// \file surgery_settings.h  The tables of vessels, clips, stones, of the bed's oozing, of electrosurgery and of what counts as an error.
 #pragma once
 
 #include "trocar/surgery/clip_hold.h"
@@ -39,7 +39,7 @@ struct VesselSettings {
   /// Heat seals vessels up to this radius inside [m]: a millimetre across is held to be safe, more is not.
   double most_sealed_radius = 0.0009;
   double least_filling =
-      0.1;  ///< of a gallbladder whose bile cannot run out any more, as a share of what there was [-]
+      0.1;  ///< of a hollow organ whose bile cannot run out any more, as a share of what there was [-]
 
   friend bool operator==(const VesselSettings&, const VesselSettings&) = default;
 };
@@ -65,6 +65,19 @@ struct ElectrosurgerySettings {
   double quarter_power = 0.0004;
 
   friend bool operator==(const ElectrosurgerySettings&, const ElectrosurgerySettings&) = default;
+};
+
+/// From where on something counts as an error of an operation. Source: domain facts, section 1.4, for the blood and the duct; the others are tunables.
+struct JudgementSettings {
+  double much_blood = 50e-6;   ///< [m^3]
+  double near_duct = 0.005;    ///< of current to a duct that must stay [m]
+  double kept_fat = 0.005;     ///< beside the middle line of such a duct, which need not be exposed [m]
+  double kept_sheath = 0.003;  ///< about the middle line of an artery that must stay; it may stay covered [m]
+  double idle_seconds = 0.25;  ///< of current into nothing that no eye would note [s]
+  double tip_in = 0.08;        ///< a tool this deep has been pushed in [m]
+  double blind_seconds = 1.5;  ///< for which it may be outside the picture then [s]
+
+  friend bool operator==(const JudgementSettings&, const JudgementSettings&) = default;
 };
 
 }  // namespace trocar::surgery

@@ -46,10 +46,10 @@ struct OozeSnapshot {
 
 /// Where a gallstone is.
 enum class StonePlace : std::uint8_t {
-  kInside,   ///< of the gallbladder
+  kInside,   ///< of the hollow organ
   kSpilled,  ///< in the abdomen
   kHeld,     ///< between the jaws of `hand`
-  kInBag,    ///< of its own; what is in the gallbladder goes with that
+  kInBag,    ///< of its own; what is in the organ goes with that
   kAspirated,
   kTakenOut  ///< through a trocar
 };
@@ -64,9 +64,9 @@ struct StoneSnapshot {
 /// Numbers of the patient's gallstones by where they are.
 struct StoneCount {
   int all = 0;
-  int inside = 0;   ///< of the gallbladder
+  int inside = 0;   ///< of the hollow organ
   int spilled = 0;  ///< in the abdomen, those between jaws among them
-  int in_bag = 0;   ///< of its own, beside the gallbladder
+  int in_bag = 0;   ///< of its own, beside the organ
   int aspirated = 0;
   int taken_out = 0;  ///< through a trocar
 };

@@ -22,8 +22,8 @@ struct VesselMap {
   std::vector<std::vector<double>> arcs;  ///< (tubes)(points) length from the tube's first point [m]
   /// (tubes) the vessels along each, in the order of their points
   std::vector<std::vector<std::uint32_t>> vessels_of_tube;
-  std::vector<std::vector<double>> starts;       ///< (tubes)(vessels of it) arc at which each begins [m]
-  std::vector<std::uint32_t> gallbladder_ducts;  ///< junctions through which bile comes from the gallbladder
+  std::vector<std::vector<double>> starts;  ///< (tubes)(vessels of it) arc at which each begins [m]
+  std::vector<std::uint32_t> organ_ducts;   ///< junctions through which bile comes from a hollow organ
 
   /// \param arc  from the tube's first point [m]; outside is taken at the end
   VesselPlace Find(std::size_t tube, double arc) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file wall_holes.h  Where the gallbladder's wall is open, and how wide.
+/// \file wall_holes.h  Where a hollow organ's wall is open, and how wide.
 #pragma once
 
 #include <array>

@@ -219,8 +219,8 @@ SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& set
                             Conservation& conservation, TissueLoad& load, TissueState& tissue,
                             ConservationState& state) noexcept;
 
-/// Fills an organ until it stands under `pressure` in equilibrium, and seals that volume: a tense
-/// gallbladder.
+/// Fills an organ until it stands under `pressure` in equilibrium, and seals that volume: a tense hollow
+/// organ.
 ///
 /// \param pressure  [Pa], within +-20 kPa
 /// \return relative difference between the last two volumes; small when the filling came to rest

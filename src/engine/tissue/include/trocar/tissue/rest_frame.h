@@ -51,7 +51,7 @@ math::Pose FitRigidMotion(const MotionMoments& moments, const math::Quaternion& 
 
 /// Region of nodes that anatomy holds in place.
 inline constexpr std::uint32_t kPinnedRegion = std::numeric_limits<std::uint32_t>::max();
-/// Most free regions that are told apart; a patient has one gallbladder and few pieces of it.
+/// Most free regions that are told apart; of a patient one organ comes free, and few pieces of it.
 inline constexpr std::uint32_t kMaxFreeRegions = 16;
 
 /// Pieces of tissue that no anatomy holds: connected components through springs and binding strands without
@@ -66,7 +66,7 @@ void VisitState(base::StateArchive& archive, FreeRegions& regions);
 
 /// Finds the free regions. Regions are numbered by their lowest node.
 ///
-/// \param strand_binds  (strands) 1 when a strand shares its place (the gallbladder bed), 0 when it is a
+/// \param strand_binds  (strands) 1 when a strand shares its place (the bed of an organ), 0 when it is a
 /// joint
 ///                      that lets what hangs on it turn (the end of a duct); empty: all bind
 /// \param spring_factor  TissueState::spring_factor, 0 for a spring that does not hold; empty: all hold

@@ -71,7 +71,7 @@ struct MetricRow {
 
 struct ErrorRow {
   double time = 0;  ///< [s]
-  cholecystectomy::Severity severity = cholecystectomy::Severity::kMinor;
+  surgery::Severity severity = surgery::Severity::kMinor;
   int hand = -1;      ///< instrument::Hand, or -1
   std::string what;   ///< a sentence
   std::string where;  ///< organ; may be empty

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/instrument/hand.h"
 #include "trocar/math/vector.h"
+#include "trocar/surgery/error_log.h"
 
 namespace trocar::training {
 
@@ -57,7 +57,7 @@ struct AttemptEvent {
   double force = 0;  ///< [N], 0 where it means nothing
   std::optional<math::Vec3> position;  ///< world frame [m]
   bool is_error = false;
-  cholecystectomy::Severity severity = cholecystectomy::Severity::kMinor;  ///< of an error
+  surgery::Severity severity = surgery::Severity::kMinor;  ///< of an error
   bool is_rule =
       false;         ///< of an error: a rule of the task was broken, otherwise the operation's judge found it
   std::string text;  ///< for the trainee, a sentence; may be empty
@@ -128,7 +128,7 @@ struct AttemptTrace {
   std::vector<FluidSample> fluids;  ///< about once a second, the first and the last tick among them
   std::vector<GoalRecord> goals;    ///< of the task, in its order
   int stones_lost = 0;              ///< spilled gallstones that were left behind
-  int stones_spilled = 0;           ///< that left the gallbladder through a hole
+  int stones_spilled = 0;           ///< that left their organ through a hole
   std::optional<double> critical_view_time;  ///< when the critical view of safety was first achieved [s]
   bool is_operation = false;  ///< a patient is operated on: errors, phases and fluids are judged
   AttemptOutcome outcome;

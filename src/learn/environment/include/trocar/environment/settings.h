@@ -36,7 +36,7 @@ enum class Feature : std::uint8_t {
   kPath,           ///< of both tips [m]
   kTime,           ///< that passed [s]
   kCleared,        ///< share of the hepatocystic triangle that was cleared [-]
-  kDetached,       ///< share of the gallbladder's bed that was detached [-]
+  kDetached,       ///< share of the organ's bed that was detached [-]
   kCriticalView,   ///< points of the critical view's six that were gained or lost [-]
   kBlood,          ///< that was lost [mL]
   kCount
@@ -52,7 +52,7 @@ using Features = std::array<double, kFeatureCount>;
 Features DefaultWeights() noexcept;
 
 struct EnvironmentSettings {
-  std::string task = "peg_transfer";  ///< key of a delivered task, "cholecystectomy", or a file of either
+  std::string task = "peg_transfer";  ///< key of a delivered task or operation, or a file of either
   std::string level = "normal";       ///< of a task or an operation
   std::filesystem::path patient;      ///< in place of the scene's, unless it is empty
   std::uint64_t seed = 1;  ///< of the task's random layout; an episode's seed chooses among `layouts`

@@ -28,7 +28,7 @@ struct BackgroundPart {
 /// The abdomen from inside, front to back as a laparoscope at the umbilicus sees it, the wall last.
 ///
 /// \param inside  points that the wall encloses [m]: the organs
-/// \param above   what must stay visible above omentum and bowel: gallbladder, ducts, vessels
+/// \param above   what must stay visible above omentum and bowel: organs, ducts, vessels
 /// \param without  what is left out because the patient brings its own
 /// \return  the same bits for the same arguments
 std::vector<BackgroundPart> MakeAbdomen(std::span<const math::Vec3> inside, std::span<const Obstacle> above,

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "trocar/base/result.h"
-#include "trocar/cholecystectomy/critical_view.h"
 #include "trocar/render/image.h"
 #include "trocar/simulation/simulation.h"
 
@@ -61,7 +60,7 @@ class CriticalViewMoments {
 
   /// After each tick, until the view is achieved; later ones change nothing.
   /// \param save  called where the state is to be kept: Simulation::Save
-  void AfterStep(const cholecystectomy::CriticalViewScore& score, double time,
+  void AfterStep(const scene::ViewScore& score, double time,
                  const std::function<void(std::vector<std::byte>&)>& save);
   bool IsAchieved() const { return is_achieved_; }
   /// Of the achieved view; the later of the two is the verdict's.

@@ -12,7 +12,7 @@
 #include "trocar/cholecystectomy/triangle_sight.h"
 #include "trocar/cholecystectomy/triangle_window.h"
 #include "trocar/instrument/camera.h"
-#include "trocar/surgery/gallbladder_attachment.h"
+#include "trocar/surgery/organ_attachment.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/rest_frame.h"
 

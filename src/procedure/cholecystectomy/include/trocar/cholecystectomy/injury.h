@@ -5,12 +5,13 @@
 /// from what still hangs together.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "trocar/roles/roles.h"
+#include "trocar/scene/patient_vessels.h"
 #include "trocar/surgery/flow_network.h"
 
 namespace trocar::cholecystectomy {
@@ -18,6 +19,8 @@ namespace trocar::cholecystectomy {
 /// Role of a duct or artery to the surgeon.
 using VesselRole = roles::TubeRole;
 /// Cystic duct, cystic artery and small ducts of the bed; every other duct and artery must stay.
+inline constexpr std::array kDividedVessels = {VesselRole::kCysticDuct, VesselRole::kCysticArtery,
+                                               VesselRole::kSubvesicalDuct};
 bool MayBeDivided(VesselRole role) noexcept;
 
 enum class Strasberg : std::uint8_t {
@@ -35,20 +38,6 @@ enum class Strasberg : std::uint8_t {
 /// "A" to "E5", "none"
 std::string_view StrasbergName(Strasberg injury) noexcept;
 
-/// The network with the meaning of its parts.
-struct BiliaryAnatomy {
-  std::vector<VesselRole> roles;  ///< of each vessel of the network
-  /// From the confluence of the hepatic ducts along the flow of bile to the vessel's upper end [m]; of main ducts.
-  std::vector<double> below_confluence;
-  std::vector<bool> is_upstream_from;  ///< whether the vessel's `from` end is the upstream one
-  std::optional<std::uint32_t> liver;  ///< junction where bile comes from
-  std::optional<std::uint32_t> bowel;  ///< junction where it goes
-  std::vector<std::uint32_t>
-      gallbladder;                     ///< junctions at the gallbladder: of its ducts, and of its arteries
-  std::optional<std::uint32_t> aorta;  ///< junction where blood comes from
-  std::optional<std::uint32_t> right_liver;  ///< junction that the right hepatic artery supplies
-};
-
 struct InjuryReport {
   Strasberg strasberg = Strasberg::kNone;     ///< the worst
   bool drains_no_bile = false;                ///< no way from the liver to the bowel: jaundice
@@ -65,8 +54,8 @@ struct InjuryReport {
 };
 
 /// \param network  with the pressures that hold at the end; solved anew
-/// \pre roles, below_confluence and is_upstream_from are as many as vessels (TROCAR_ASSERT)
-InjuryReport JudgeInjuries(const BiliaryAnatomy& anatomy, const surgery::VesselActs& acts,
+/// \pre roles, below_source and is_upstream_from are as many as vessels (TROCAR_ASSERT)
+InjuryReport JudgeInjuries(const scene::VesselAnatomy& anatomy, const surgery::VesselActs& acts,
                            surgery::FlowNetwork& network);
 
 }  // namespace trocar::cholecystectomy

@@ -11,58 +11,57 @@
 #include "trocar/cholecystectomy/critical_view.h"
 #include "trocar/cholecystectomy/dissection_monitor.h"
 #include "trocar/cholecystectomy/hand_acts.h"
+#include "trocar/cholecystectomy/injury.h"
 #include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cholecystectomy/triplet.h"
 #include "trocar/cholecystectomy/vessel_judgement.h"
 #include "trocar/instrument/hand.h"
+#include "trocar/scene/procedure.h"
 #include "trocar/surgery/observation.h"
 
 namespace trocar::cholecystectomy {
 
-/// From where on something counts as an error. Source: domain facts, section 1.4, for the blood and the duct; the others are tunables.
-struct JudgementSettings {
-  double much_blood = 50e-6;   ///< [m^3]
-  double near_duct = 0.005;    ///< of current to a duct that must stay [m]
-  double kept_fat = 0.005;     ///< beside the middle line of such a duct, which need not be exposed [m]
-  double kept_sheath = 0.003;  ///< about the middle line of an artery that must stay; it may stay covered [m]
-  double idle_seconds = 0.25;  ///< of current into nothing that no eye would note [s]
-  double tip_in = 0.08;        ///< a tool this deep has been pushed in [m]
-  double blind_seconds = 1.5;  ///< for which it may be outside the picture then [s]
-
-  friend bool operator==(const JudgementSettings&, const JudgementSettings&) = default;
-};
-
 /// The patient as a judge has to know it; constant.
 struct JudgedAnatomy {
   TargetTable targets;
-  BiliaryAnatomy biliary;  ///< of the ducts and arteries, which follow the organs among the surfaces
+  scene::VesselAnatomy biliary;  ///< of the ducts and arteries, which follow the organs among the surfaces
   std::vector<std::uint32_t> main_ducts;  ///< nodes of ducts that must stay
   std::size_t organ_count = 0;
   bool has_critical_view = false;  ///< there is one to be had before anything is clipped
   bool may_cut_organs = false;     ///< of a training task: its sheets are there to be cut
 };
 
-class OperationJudge {
+/// What is found of a cholecystectomy beside what every procedure says: scene::ProcedureResult::detail.
+struct OperationDetail {
+  DissectionFacts facts;
+  CriticalViewScore critical_view;
+  InjuryReport injuries;
+};
+/// Null of another procedure.
+const OperationDetail* FindDetail(const scene::ProcedureResult& result) noexcept;
+
+class OperationJudge final : public scene::ProcedureJudge {
  public:
-  OperationJudge(JudgedAnatomy anatomy, DissectionMonitor dissection, const JudgementSettings& settings = {});
+  OperationJudge(JudgedAnatomy anatomy, DissectionMonitor dissection,
+                 const surgery::JudgementSettings& settings = {});
 
-  /// First in a tick, once tools and heat have done their part: judges the facts so far by the tissue in which they came about.
-  /// \note Real-time safe.
-  void SeeTools(const surgery::OperationObservation& now) noexcept;
-  /// Then at its end: the facts since, hands, dissection, view and phase.
-  /// \note Real-time safe.
-  void Update(const surgery::OperationObservation& now) noexcept;
+  void SeeTools(const surgery::OperationObservation& now) noexcept override;
+  void Update(const surgery::OperationObservation& now) noexcept override;
+  std::span<const surgery::ErrorEntry> NewErrors() const noexcept override {
+    return errors_.Entries().subspan(errors_before_);
+  }
+  const surgery::ErrorLog& Errors() const noexcept override { return errors_; }
+  void Publish(scene::ProcedureSnapshot& snapshot) const noexcept override;
+  /// `detail` is an OperationDetail.
+  scene::ProcedureResult CalcResult(const surgery::Vessels& vessels,
+                                    const surgery::StoneCount& stones) const override;
+  void VisitState(base::StateArchive& archive) override;
 
-  /// Errors of the last tick.
-  std::span<const ErrorEntry> NewErrors() const { return errors_.Entries().subspan(errors_before_); }
-
-  const ErrorLog& Errors() const { return errors_; }
   const DissectionFacts& Facts() const { return dissection_.Facts(); }
   const CriticalViewScore& View() const { return view_.Score(); }
   /// At some time before.
   bool WasViewAchieved() const { return was_achieved_; }
   Phase CurrentPhase() const { return phases_.Current(); }
-  void VisitState(base::StateArchive& archive);
 
  private:
   struct HandState {
@@ -76,10 +75,10 @@ class OperationJudge {
   void JudgePhase(const surgery::OperationObservation& now) noexcept;
   void Report(OperationError error, const surgery::Fact& fact, double time) noexcept;
 
-  JudgedAnatomy anatomy_;       // constant
-  JudgementSettings settings_;  // constant
+  JudgedAnatomy anatomy_;                // constant
+  surgery::JudgementSettings settings_;  // constant
   DissectionMonitor dissection_;
-  ErrorLog errors_;
+  surgery::ErrorLog errors_;
   CriticalView view_;
   PhaseRecogniser phases_;
   std::array<HandState, instrument::kHandCount> hands_;

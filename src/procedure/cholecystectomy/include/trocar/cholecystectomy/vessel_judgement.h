@@ -19,7 +19,7 @@ struct VesselJudgement {
 /// The side that stays is the one that joins another tube, or comes from the liver.
 /// \param anatomy  of the same vessels
 /// \note Real-time safe.
-VesselJudgement JudgePlace(const BiliaryAnatomy& anatomy, const surgery::Vessels& vessels,
+VesselJudgement JudgePlace(const scene::VesselAnatomy& anatomy, const surgery::Vessels& vessels,
                            const surgery::TubePlace& place) noexcept;
 
 }  // namespace trocar::cholecystectomy

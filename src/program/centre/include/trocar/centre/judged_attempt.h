@@ -47,7 +47,7 @@ base::Result<store::Attempt> DescribeRecording(const std::filesystem::path& path
 /// The step for which an attempt of the store was made.
 StepName FindStepName(const store::Attempt& attempt);
 
-/// "Peg transfer" of "peg_transfer", "Cholecystectomy" of "cholecystectomy"; the key's words where no task has it.
+/// "Peg transfer" of "peg_transfer"; the key's words where no task has it.
 std::string TaskNameOf(const std::string& key);
 
 }  // namespace trocar::centre

@@ -38,7 +38,7 @@ NextStep FindNextStep(const scene::Task& task, const simulation::Snapshot& snaps
 std::vector<view::Trail> MakeGuides(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
                                     const simulation::Snapshot& snapshot);
 
-/// "open", "closed", "holds ring 1", "holds the gallbladder"; empty for a tool without jaws that holds nothing.
+/// "open", "closed", "holds ring 1", "holds the liver"; empty for a tool without jaws that holds nothing.
 std::string DescribeJaws(const scene::Scene& scene, const simulation::Snapshot& snapshot,
                          instrument::Hand hand);
 

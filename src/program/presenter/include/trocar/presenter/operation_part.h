@@ -10,12 +10,13 @@
 #include "trocar/assessment/milestone.h"
 #include "trocar/centre/course_page.h"
 #include "trocar/presenter/options.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::presenter {
 
 /// The operation that is delivered.
-inline constexpr const char* kOperationTask = "cholecystectomy";
+inline constexpr const char* kOperationTask = procedures::kUsualProcedure;
 
 /// A part is a step of the delivered course of that operation, on any patient and at any level.
 struct OperationPart {
@@ -54,6 +55,7 @@ class OperationEnd {
   double Elapsed(const simulation::Snapshot& now) const noexcept { return now.time - begin_; }
 
  private:
+  const scene::Procedure* procedure_ = nullptr;
   assessment::MilestoneWatch watch_;
   assessment::Milestone from_ = assessment::Milestone::kStart, until_ = assessment::Milestone::kCompleted;
   double begin_ = 0, last_ = 0, time_limit_ = 0;  // [s]

@@ -25,7 +25,7 @@ struct ForceThresholds {
 /// Right end of the force bars [N].
 inline constexpr double kForceBarEnd = 15.0;
 
-/// Gallbladder: 8 and 12 N (traction, tear). Liver and everything else: 3 and 6 N (push, capsule tear).
+/// A hollow organ: 8 and 12 N (traction, tear). Liver and everything else: 3 and 6 N (push, capsule tear).
 ForceThresholds FindForceThresholds(roles::OrganRole organ) noexcept;
 /// A force that is not finite is a danger.
 ForceLevel JudgeForce(double force, const ForceThresholds& thresholds) noexcept;
@@ -41,7 +41,7 @@ std::string FormatCount(std::uint64_t count);
 /// "3.2e-05"
 std::string FormatResidual(double residual);
 
-/// "gallbladder", "cystic duct": an organ's name with spaces; "tissue" where the index names none.
+/// "liver", "cystic duct": an organ's name with spaces; "tissue" where the index names none.
 std::string OrganLabel(const patient::Patient& patient, std::int32_t organ);
 /// "ring 1": the name of a scene's loose thing with spaces. \param object  index into Scene::objects
 std::string ObjectLabel(const scene::Scene& scene, std::int32_t object);
@@ -56,16 +56,16 @@ std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& sna
 std::string FormatMillilitres(double volume);
 /// Volume of a fluid that has left the vessels and organs, and of it what still lies there: "12.0 mL, 3.5 mL in the abdomen".
 std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid);
-/// Gallstones outside of the gallbladder: "none spilled", "3 in the abdomen, 2 retrieved".
+/// Gallstones outside of their organ: "none spilled", "3 in the abdomen, 2 retrieved".
 std::string DescribeStones(std::span<const surgery::StoneSnapshot> stones);
 /// "waits", "retracts the fundus", ...
 std::string DescribeAssistant(scene::AssistantCommand command, bool is_holding);
 
-/// "holds the gallbladder", "touches the liver", "free"
+/// "holds the cystic duct", "touches the liver", "free"
 std::string DescribeContact(const simulation::InstrumentSnapshot& instrument,
                             const patient::Patient& patient);
 
-/// "Left grasper: grasped the gallbladder, 2.1 N", "Tissue: last good state restored".
+/// "Left grasper: grasped the liver, 2.1 N", "Tissue: last good state restored".
 std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene);
 /// True for what should be seen at once: slips, missed grasps, restored states.
 bool IsWarning(const scene::Event& event) noexcept;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trocar/base/result.h"
+#include "trocar/procedures/find_procedure.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::study {
@@ -35,12 +36,12 @@ struct ParameterValues {
 enum class Until : std::uint8_t {
   kEnd,           ///< none: it goes on to its end
   kCriticalView,  ///< "critical_view": achieved, and seen from both sides
-  kFree           ///< "free": the gallbladder hangs on nothing
+  kFree           ///< "free": what is taken out hangs on nothing
 };
 
 struct StudyPlan {
   std::string name, about;
-  std::string task = "cholecystectomy", level = "normal";
+  std::string task = procedures::kUsualProcedure, level = "normal";
   std::vector<std::string> surgeons{"expert"};
   std::vector<std::filesystem::path> patients{""};  ///< folders; "" is the scene's own
   std::vector<std::string> patient_prints{""};      ///< (patients) fingerprint of what each folder holds

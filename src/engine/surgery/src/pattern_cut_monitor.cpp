@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/cholecystectomy/pattern_cut_monitor.h"
+#include "trocar/surgery/pattern_cut_monitor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "trocar/math/elementary.h"
 #include "trocar/math/state_fields.h"
 
-namespace trocar::cholecystectomy {
+namespace trocar::surgery {
 namespace {
 
 using geometry::EditableMesh;
@@ -89,4 +89,4 @@ void PatternCutMonitor::VisitState(base::StateArchive& archive) {
   archive.Field("p_farthest", now_.p_farthest);
 }
 
-}  // namespace trocar::cholecystectomy
+}  // namespace trocar::surgery

@@ -6,12 +6,16 @@
 
 #include "operation_harness.h"
 #include "trocar/anatomy/generate_patient.h"
+#include "trocar/cholecystectomy/cholecystectomy.h"
+#include "trocar/cholecystectomy/critical_view.h"
+#include "trocar/cholecystectomy/injury.h"
+#include "trocar/cholecystectomy/triangle_description.h"
 #include "trocar/files/patient_file.h"
 #include "trocar/files/scene_file.h"
 #include "trocar/simulation/model_description.h"
 #include "trocar_test/temporary_folder.h"
 
-namespace trocar::simulation {
+namespace trocar::cholecystectomy {
 
 using math::Vec3;
 using scene::Scene;
@@ -20,14 +24,14 @@ using scene::StrandInfo;
 namespace {
 
 using Kind = StrandInfo::Kind;
-using cholecystectomy::TriangleSight;
 
-class TriangleOfPatient : public OperationHarness {
+class TriangleOfPatient : public simulation::OperationHarness {
  protected:
   void SetUp() override {
-    auto made = DescribeModel(*OperationScene());
+    auto made = simulation::DescribeModel(*simulation::OperationScene());
     ASSERT_TRUE(made.ok()) << made.error().Text();
     model_description_ = std::move(*made);
+    triangle_ = DescribeTriangle(*simulation::OperationScene(), model_description_);
     MakeOperation();
   }
 
@@ -40,11 +44,11 @@ class TriangleOfPatient : public OperationHarness {
     const StrandInfo& info = operation_->Strands()[strand];
     const Vec3 middle = 0.5 * (state_.position[info.a] + state_.position[info.b]);
     double least = 1;
-    const std::size_t organs = OperationScene()->patient.organs.size();
+    const std::size_t organs = simulation::OperationScene()->patient.organs.size();
     for (std::size_t t = 0; t < model_description_.tube_roles.size(); ++t) {
       const auto& roles = model_description_.tube_roles[t];
       for (std::uint32_t k = 0; k < roles.size(); ++k) {
-        if (cholecystectomy::MayBeDivided(roles[k])) continue;
+        if (MayBeDivided(roles[k])) continue;
         const std::uint32_t node = model_description_.surfaces[organs + t].first_node + k;
         least = std::min(least, math::Distance(state_.position[node], middle));
       }
@@ -54,11 +58,11 @@ class TriangleOfPatient : public OperationHarness {
   void Divide(std::uint32_t strand) { state_.strand_is_intact[strand] = 0; }
   /// Fat on the last of what enters the gallbladder, as far as it is exposable.
   void DivideAboutEntries() {
-    for (std::size_t t = 0; t < model_description_.exposable.size(); ++t) {
-      const double exposable = model_description_.exposable[t];
+    for (std::size_t t = 0; t < triangle_.exposable.size(); ++t) {
+      const double exposable = triangle_.exposable[t];
       if (exposable == 0.0) continue;
       const scene::SurfaceInfo& tube =
-          model_description_.surfaces[OperationScene()->patient.organs.size() + t];
+          model_description_.surfaces[simulation::OperationScene()->patient.organs.size() + t];
       const std::int32_t gallbladder =
           scene::FindSurface(model_description_.surfaces, roles::OrganRole::kGallbladder);
       const std::uint32_t end = tube.first_node + (tube.ends[0] == gallbladder ? 0 : tube.node_count - 1);
@@ -71,7 +75,7 @@ class TriangleOfPatient : public OperationHarness {
   }
   /// Lenses about the cystic duct, 60 mm from it, from which fat hides nothing of what has to be seen.
   int CountOpenViews() {
-    TriangleSight& sight = model_description_.sight;
+    TriangleSight& sight = triangle_.sight;
     sight.Update(state_.strand_is_intact, [](std::uint32_t) { return false; });
     const auto points = sight.FindPoints(state_.position);
     const Vec3 along = math::Normalized(points[1] - points[0]);
@@ -87,7 +91,8 @@ class TriangleOfPatient : public OperationHarness {
   }
   static constexpr int kLenses = 36;
 
-  ModelDescription model_description_;
+  simulation::ModelDescription model_description_;
+  TriangleDescription triangle_;
 };
 
 // The old rule left out whatever lay within 10 mm of a main duct or artery, which is nearly the whole triangle.
@@ -96,19 +101,19 @@ TEST_F(TriangleOfPatient, IsNotClearWhileALumpLiesOverItNearAMainDuct) {
     if (IsFat(i) && DistanceToMain(i) >= 0.010) Divide(i);
   }
   Judge();
-  const OperationResult result = Result();
-  EXPECT_LT(result.facts.cleared_share, 0.4);
-  EXPECT_EQ(result.critical_view.criteria[0], 0);
-  const auto reasons = cholecystectomy::ExplainCriticalView(result.facts, result.critical_view);
+  const scene::ProcedureResult result = Result().procedure;
+  EXPECT_LT(result.now.Measure(kClearedShare), 0.4);
+  EXPECT_EQ(result.now.view.Points(kTriangle), 0);
+  const auto& reasons = result.missing;
   ASSERT_FALSE(reasons.empty());
   EXPECT_NE(reasons[0].find("hepatocystic triangle is not clear"), std::string::npos);
 }
 
 TEST_F(TriangleOfPatient, IsClearWhenNothingCoversItThoughTheMainDuctsKeepTheirFat) {
-  for (const std::uint32_t strand : model_description_.window_strands) Divide(strand);
+  for (const std::uint32_t strand : triangle_.window_strands) Divide(strand);
   Judge();
-  EXPECT_EQ(Result().facts.cleared_share, 1.0);
-  EXPECT_EQ(Result().critical_view.criteria[0], 2);
+  EXPECT_EQ(Result().procedure.now.Measure(kClearedShare), 1.0);
+  EXPECT_EQ(Result().procedure.now.view.Points(kTriangle), 2);
   std::size_t kept = 0;
   for (std::uint32_t i = 0; i < operation_->Strands().size(); ++i)
     kept += IsFat(i) && state_.strand_is_intact[i] != 0 ? 1 : 0;
@@ -117,19 +122,21 @@ TEST_F(TriangleOfPatient, IsClearWhenNothingCoversItThoughTheMainDuctsKeepTheirF
 
 /// What may be asked to lie bare of the tube in that role [m].
 double ExposableOf(const Scene& scene, roles::TubeRole role) {
-  const auto model = DescribeModel(scene);
+  const auto model = simulation::DescribeModel(scene);
   EXPECT_TRUE(model.ok());
+  if (!model.ok()) return 0;
+  const TriangleDescription triangle = DescribeTriangle(scene, *model);
   double found = 0;
-  for (std::size_t t = 0; model.ok() && t < scene.patient.tubes.size(); ++t) {
-    if (scene.patient.tubes[t].role == role) found = std::max(found, model->exposable[t]);
+  for (std::size_t t = 0; t < scene.patient.tubes.size(); ++t) {
+    if (scene.patient.tubes[t].role == role) found = std::max(found, triangle.exposable[t]);
   }
   return found;
 }
 
 // The cystic duct of generated patient 4 is 11 mm long.
 TEST(ExposableOfTubes, EndsWhereMainDuctsKeepWhatLiesBesideThem) {
-  const Scene& whole = *OperationScene();
-  const double usual = cholecystectomy::CriticalViewSettings{}.skeletonised;
+  const Scene& whole = *simulation::OperationScene();
+  const double usual = CriticalViewSettings{}.skeletonised;
   EXPECT_GT(ExposableOf(whole, roles::TubeRole::kCysticDuct), usual);
   EXPECT_GT(ExposableOf(whole, roles::TubeRole::kCysticArtery), usual);
   EXPECT_EQ(ExposableOf(whole, roles::TubeRole::kCommonHepaticDuct), 0.0) << "it enters no gallbladder";
@@ -152,17 +159,18 @@ TEST(ExposableOfTubes, EndsWhereMainDuctsKeepWhatLiesBesideThem) {
 // Where the main duct keeps more, a view is asked for less of the cystic duct: for nothing beyond what is exposable.
 TEST(SightOfTriangle, AsksForNoPlaceOfTheDuctThatKeepsItsFat) {
   const auto farthest_asked = [](const Scene& scene) {
-    auto model = DescribeModel(scene);
+    const auto model = simulation::DescribeModel(scene);
     EXPECT_TRUE(model.ok());
+    TriangleDescription triangle = DescribeTriangle(scene, *model);
     const std::int32_t gallbladder = scene::FindSurface(model->surfaces, roles::OrganRole::kGallbladder);
     const auto& duct = model->surfaces[static_cast<std::size_t>(
         scene::FindSurface(model->surfaces, roles::TubeRole::kCysticDuct))];
     const std::uint32_t end =
         duct.ends[0] == gallbladder ? duct.first_node : duct.first_node + duct.node_count - 1;
-    const auto points = model->sight.FindPoints(model->rest);
+    const auto points = triangle.sight.FindPoints(model->rest);
     return std::max(math::Distance(points[0], model->rest[end]), math::Distance(points[1], model->rest[end]));
   };
-  const Scene& whole = *OperationScene();
+  const Scene& whole = *simulation::OperationScene();
   Scene wide = whole;
   wide.operation->parameters.judgement.kept_fat = 0.020;
   const double exposable = ExposableOf(wide, roles::TubeRole::kCysticDuct);
@@ -173,7 +181,7 @@ TEST(SightOfTriangle, AsksForNoPlaceOfTheDuctThatKeepsItsFat) {
 // The fat that is drawn is the fat that hides: none of the triangle is seen before it is cleared.
 TEST_F(TriangleOfPatient, IsHiddenByItsFatFromAllSidesAndSeenOnceItAndTheEntriesAreCleared) {
   EXPECT_EQ(CountOpenViews(), 0);
-  for (const std::uint32_t strand : model_description_.window_strands) Divide(strand);
+  for (const std::uint32_t strand : triangle_.window_strands) Divide(strand);
   const int of_window = CountOpenViews();
   EXPECT_LE(of_window, kLenses / 10) << "fat lies where duct and artery enter";
   DivideAboutEntries();
@@ -181,4 +189,4 @@ TEST_F(TriangleOfPatient, IsHiddenByItsFatFromAllSidesAndSeenOnceItAndTheEntries
 }
 
 }  // namespace
-}  // namespace trocar::simulation
+}  // namespace trocar::cholecystectomy

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file gallbladder_attachment.h  Attachment of the gallbladder: bed, adhesions, and the tubes that enter it.
+/// \file organ_attachment.h  Attachment of an organ that is taken off: its bed, adhesions, and the tubes that enter it.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace trocar::surgery {
 
-/// A duct or artery that ends in the gallbladder.
+/// A duct or artery that ends in the organ.
 struct EnteringTube {
   std::uint32_t tube = 0;
-  std::vector<std::uint32_t> nodes;        ///< of its line, from the gallbladder on
-  std::vector<std::uint32_t> end_strands;  ///< that tie it to the gallbladder
+  std::vector<std::uint32_t> nodes;        ///< of its line, from the organ on
+  std::vector<std::uint32_t> end_strands;  ///< that tie it to the organ
 };
 
 /// Constant.
-class GallbladderAttachment {
+class OrganAttachment {
  public:
-  GallbladderAttachment() = default;
+  OrganAttachment() = default;
   /// \param strands  of bed and adhesions
-  GallbladderAttachment(std::vector<std::uint32_t> strands, std::vector<EnteringTube> entering)
+  OrganAttachment(std::vector<std::uint32_t> strands, std::vector<EnteringTube> entering)
       : strands_(std::move(strands)), entering_(std::move(entering)) {}
 
   /// Neither bed nor adhesion holds it, and no tube that enters it is whole.

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file operation_end.h  How an operation ended: finished, ended early for safety, or neither.
-/// Source: domain facts, section 1.2: where the critical view cannot be had, stopping, asking for help and converting
+/// Source: domain facts, section 1.2: where the view that has to be reached cannot be had, stopping, asking for help and converting
 /// are the right answers, not failures.
 #pragma once
 
 #include <string_view>
 
-#include "trocar/cholecystectomy/injury.h"
-#include "trocar/cholecystectomy/operation_error.h"
+#include "trocar/simulation/operation_result.h"
 
-namespace trocar::cholecystectomy {
+namespace trocar::procedures {
 
 enum class OperationEnd {
-  kCompleted,   ///< the gallbladder has left the abdomen in its bag
+  kCompleted,   ///< what was to be taken out has left the abdomen in its bag
   kConversion,  ///< a bail-out: said to be one, and nothing that must stay was harmed
   kUnfinished   ///< neither; also a bail-out that came after the harm was done
 };
@@ -20,7 +19,6 @@ enum class OperationEnd {
 std::string_view NameOf(OperationEnd end) noexcept;
 
 /// \param has_bailed_out  the operator ended it and said why
-OperationEnd JudgeEnd(bool is_completed, bool has_bailed_out, const ErrorLog& errors,
-                      const InjuryReport& injuries) noexcept;
+OperationEnd JudgeEnd(const simulation::OperationResult& result, bool has_bailed_out) noexcept;
 
-}  // namespace trocar::cholecystectomy
+}  // namespace trocar::procedures

@@ -8,7 +8,7 @@
 #include "trocar/base/state_archive.h"
 #include "trocar/geometry/editable_mesh.h"
 
-namespace trocar::cholecystectomy {
+namespace trocar::surgery {
 
 /// A level sheet that is held at its border, with a circle drawn round its middle.
 struct PatternSheet {
@@ -49,4 +49,4 @@ class PatternCutMonitor {
   PatternCut now_;
 };
 
-}  // namespace trocar::cholecystectomy
+}  // namespace trocar::surgery
