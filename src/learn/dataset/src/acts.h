@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file acts.h  Acts of each hand in the terms of CholecT50, from the facts of a tick and what its jaws hold.
+/// \file acts.h  Acts of each hand in the terms of CholecT50, from the facts of a tick and what its jaws hold. Which fact is which act
+/// stands in cholecystectomy/hand_acts.h, where the phases have it from too.
 #pragma once
 
 #include <array>

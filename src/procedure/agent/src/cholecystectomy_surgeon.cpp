@@ -162,6 +162,11 @@ scene::Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   return input;
 }
 
+std::optional<cholecystectomy::Phase> CholecystectomySurgeon::OwnPhase() const {
+  if (!memory_.camera.follows || course_.acts.empty()) return std::nullopt;
+  return FindPlannedPhase(course_.acts, scene_->instruments);
+}
+
 // The order is that of states that have been saved.
 void CholecystectomySurgeon::VisitState(base::StateArchive& archive) {
   archive.Field("hands", memory_.hands);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "trocar/base/state_archive.h"
 #include "trocar/cholecystectomy/critical_view.h"
@@ -78,6 +79,7 @@ class OperationJudge {
 
   JudgedAnatomy anatomy_;       // constant
   JudgementSettings settings_;  // constant
+  std::vector<std::uint8_t> is_upper_bed_;  // (strands) constant
   DissectionMonitor dissection_;
   ErrorLog errors_;
   CriticalView view_;
