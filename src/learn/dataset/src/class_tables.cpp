@@ -197,6 +197,11 @@ int ToEndoscapes(LabelClass label) noexcept {
   }
 }
 
+std::array<double, 3> EndoscapesCriteria(const cholecystectomy::CriticalViewScore& score) noexcept {
+  const auto& [triangle, plate, structures] = score.criteria;
+  return {0.5 * structures, 0.5 * triangle, 0.5 * plate};
+}
+
 std::span<const cholecystectomy::Triplet> CholecT50Triplets() noexcept {
   return kTriplets;
 }
