@@ -335,9 +335,9 @@ Section MakeHands(const AttemptReport& report) {
   const bool has_mark = std::any_of(report.metrics.begin(), report.metrics.end(),
                                     [](const MetricRow& row) { return row.separates == false; });
   if (has_mark)
-    section.blocks.emplace_back(Paragraph{
-        host::Translate("† This measure does not tell scripted novices from scripted experts."),
-        Tone::kMuted});
+    section.blocks.emplace_back(
+        Paragraph{host::Translate("† This measure does not tell scripted novices from scripted experts."),
+                  Tone::kMuted});
   return section;
 }
 

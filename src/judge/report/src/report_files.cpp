@@ -102,7 +102,8 @@ std::vector<FieldMeaning> FixedFields() {
       {"metrics[].value", "in the measure's SI unit", "see the measure", own},
       {"metrics[].expert_mean", "mean of the expert set, in the same unit", "see the measure", own},
       {"metrics[].expert_deviation", "standard deviation of the expert set", "see the measure", own},
-      {"metrics[].separates_levels", "whether the measure tells scripted novices from scripted experts", "", own},
+      {"metrics[].separates_levels", "whether the measure tells scripted novices from scripted experts", "",
+       own},
       {"metrics[].evidence", "the most that has been shown of the measure, see docs/evidence.md", "", own},
   };
 }

@@ -147,7 +147,8 @@ std::string FormatMetricDefinitionsPage() {
       "another implementation](metrics-check.md).\n\n" +
       document.at("about").get<std::string>() +
       "\n\nValues in files are in SI units; the unit in parentheses is what people are shown.\n\n## "
-      "All metrics\n\n| id | name | what it is | unit | of, and for each | better | source | evidence | called "
+      "All metrics\n\n| id | name | what it is | unit | of, and for each | better | source | evidence | "
+      "called "
       "elsewhere |\n"
       "|---|---|---|---|---|---|---|---|---|\n";
   for (const MetricDefinition& d : MetricDefinitions()) {

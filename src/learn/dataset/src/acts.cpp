@@ -51,8 +51,7 @@ std::optional<Triplet> FindCurrent(std::span<const surgery::Fact> facts, std::si
 ActWatch::ActWatch(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
                    std::span<const scene::StrandInfo> strands)
     : scene_(&scene) {
-  for (const scene::SurfaceInfo& surface : surfaces)
-    targets_.surfaces.push_back(TargetOf(surface));
+  for (const scene::SurfaceInfo& surface : surfaces) targets_.surfaces.push_back(TargetOf(surface));
   for (const scene::StrandInfo& strand : strands)
     targets_.strands.push_back(cholecystectomy::TargetOf(strand.kind));
 }

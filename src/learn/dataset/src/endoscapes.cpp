@@ -101,7 +101,8 @@ class EndoscapesWriter : public VideoWriter {
 
  private:
   /// Of all_metadata.csv.
-  void AddRow(std::uint64_t number, const std::string& stem, const std::array<double, 3>& ds, bool is_judged) {
+  void AddRow(std::uint64_t number, const std::string& stem, const std::array<double, 3>& ds,
+              bool is_judged) {
     const auto list = ordered_json(ds);
     std::string& rows = annotations_->rows;
     rows += std::to_string(seed_) + "," + std::to_string(number) + ",\"" + host::FormatJson(list) + "\"";
@@ -178,9 +179,11 @@ class EndoscapesSet : public LayoutSet {
     return {
         "cystic_plate does not occur: the bed is part of the liver's surface and has no label of its own.",
         "calot_triangle is the fat that fills the hepatocystic triangle, as much of it as is left.",
-        "The three criteria are computed (docs/operation.md) for every frame, 0, 0.5 or 1 each, not the mean of "
+        "The three criteria are computed (docs/operation.md) for every frame, 0, 0.5 or 1 each, not the mean "
+        "of "
         "three raters: the columns of annotators are empty.",
-        "Every frame has boxes and masks and is a key frame of detection; is_ds_keyframe is true every 5 s, and "
+        "Every frame has boxes and masks and is a key frame of detection; is_ds_keyframe is true every 5 s, "
+        "and "
         "train_seg, val_seg and test_seg hold a frame of each video every 30 s.",
         "The subsets 12_5 and 25 and the folder all are left out.",
         "Segmentations are run lengths, not polygons. Videos go to train, val and test by their seeds: seed "

@@ -92,8 +92,9 @@ base::Status LinkFile(const std::filesystem::path& file, const std::filesystem::
   if (!failure) std::filesystem::create_hard_link(file, name, failure);
   if (failure) std::filesystem::copy_file(file, name, failure);
   if (!failure) return {};
-  return base::Error{base::ErrorCode::kFileUnwritable,
-                     name.string() + ": " + failure.message() + "; check the folder, its rights and the space left"};
+  return base::Error{
+      base::ErrorCode::kFileUnwritable,
+      name.string() + ": " + failure.message() + "; check the folder, its rights and the space left"};
 }
 
 base::Status WriteJpeg(const std::filesystem::path& path, const render::Image& image) {

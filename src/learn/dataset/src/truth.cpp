@@ -18,7 +18,8 @@ static_assert(std::size(kHands) == instrument::kHandCount);
 
 constexpr std::string_view kHead =
     "frame,number,time_s,phase,own_phase,doing,triangle_cleared,plate_detached,structures_entering,"
-    "criterion_structures,criterion_triangle,criterion_plate,clips,left_tool,left_holds,left_force_N,left_act,"
+    "criterion_structures,criterion_triangle,criterion_plate,clips,left_tool,left_holds,left_force_N,left_"
+    "act,"
     "right_tool,right_holds,right_force_N,right_act,facts\n";
 
 const instrument::Tool& ToolOf(const scene::Scene& scene, const simulation::Snapshot& now, std::size_t hand) {

@@ -19,10 +19,10 @@ namespace trocar::agent {
 /// One goal of an operation. When it is reached in the plan, its condition is looked at; while that does not hold, a round is
 /// attempted, after which the goal is next again, with one round less.
 struct OperationGoal {
-  SurgeonAct::Kind kind = SurgeonAct::Kind::kWait;  ///< by which the plan names it
+  SurgeonAct::Kind kind = SurgeonAct::Kind::kWait;                      ///< by which the plan names it
   cholecystectomy::Phase phase = cholecystectomy::Phase::kPreparation;  ///< to which its work belongs
-  const char* doing = "";                           ///< what a person is told meanwhile
-  int rounds = 0;                                   ///< at most
+  const char* doing = "";                                               ///< what a person is told meanwhile
+  int rounds = 0;                                                       ///< at most
   bool (*is_reached)(const Planning&, const SurgeonAct&) = nullptr;
   /// \param again  the next round, which it may change
   void (*attempt)(Planning&, const SurgeonAct&, SurgeonAct& again) = nullptr;

@@ -108,7 +108,10 @@ std::optional<Triplet> TripletOf(const surgery::Fact& fact, const TargetTable& t
 
 Triplet TripletOfHold(ToolKind tool, Target held, double pull, bool is_bag_open) noexcept {
   const bool is_packed = is_bag_open && held == Target::kGallbladder;
-  return {InstrumentOf(tool), is_packed ? Verb::kPack : pull > kRetraction ? Verb::kRetract : Verb::kGrasp,
+  return {InstrumentOf(tool),
+          is_packed            ? Verb::kPack
+          : pull > kRetraction ? Verb::kRetract
+                               : Verb::kGrasp,
           held};
 }
 

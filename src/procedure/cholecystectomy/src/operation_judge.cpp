@@ -13,7 +13,7 @@ using surgery::FactKind;
 namespace {
 
 constexpr double kMiddleOfBed = 0.5;  // from the infundibulum; the critical view asks for a third [-]
-constexpr int kClipsThatStay = 2;  // on the patient's side of a cut: the rule that is taught
+constexpr int kClipsThatStay = 2;     // on the patient's side of a cut: the rule that is taught
 
 }  // namespace
 

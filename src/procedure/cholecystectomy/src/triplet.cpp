@@ -122,7 +122,8 @@ void PhaseRecogniser::Update(std::span<const SeenAct> acts, const OperationFacts
   if (facts.is_bag_leaving && spoken[static_cast<std::size_t>(Phase::kCleaningCoagulation)] == 0.0) {
     // who cleans meanwhile does not stop with the last drop
     const bool has_packed = current_ != Phase::kCleaningCoagulation;
-    spoken[static_cast<std::size_t>(Phase::kGallbladderRetraction)] = has_packed ? 3 * kBeginSeconds : seconds;
+    spoken[static_cast<std::size_t>(Phase::kGallbladderRetraction)] =
+        has_packed ? 3 * kBeginSeconds : seconds;
   }
   for (std::size_t phase = 0; phase < spoken.size(); ++phase) evidence_[phase] += spoken[phase];
   const auto best =

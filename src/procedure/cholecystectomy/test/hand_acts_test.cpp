@@ -42,7 +42,8 @@ TEST(TripletOf, NamesInstrumentVerbAndTarget) {
   current.tool = ToolKind::kDissector;
   EXPECT_EQ(name(current), "bipolar,coagulate,cystic_plate");
   EXPECT_EQ(name(MakeFact(FactKind::kClipClosed, ToolKind::kClipApplier, 2)), "clipper,clip,cystic_duct");
-  EXPECT_EQ(name(MakeFact(FactKind::kRinse, ToolKind::kSuctionIrrigator, -1)), "irrigator,irrigate,abdominal_wall_cavity");
+  EXPECT_EQ(name(MakeFact(FactKind::kRinse, ToolKind::kSuctionIrrigator, -1)),
+            "irrigator,irrigate,abdominal_wall_cavity");
   EXPECT_EQ(name(MakeFact(FactKind::kAspirate, ToolKind::kSuctionIrrigator, -1)), "irrigator,aspirate,fluid");
   EXPECT_EQ(name(MakeFact(FactKind::kBagOpen, ToolKind::kBag, -1)), "specimen_bag,pack,gallbladder");
   for (const FactKind kind :

@@ -67,7 +67,8 @@ base::Result<TracedFile> ReadKinematicsFile(const MetricsArguments& arguments) {
   if (!text.ok()) return text.error();
   auto trace = training::ParseKinematics(*text, *format, arguments.file);
   if (!trace.ok()) return trace.error();
-  return TracedFile{std::move(*trace), {{"kinematics", arguments.kinematics}, {"file", arguments.file}}, true};
+  return TracedFile{
+      std::move(*trace), {{"kinematics", arguments.kinematics}, {"file", arguments.file}}, true};
 }
 
 base::Result<TracedFile> TraceAttempt(const MetricsArguments& arguments) {
@@ -134,8 +135,7 @@ base::Status ListDefinitions(const MetricsArguments& arguments) {
   for (const training::MetricDefinition& d : training::MetricDefinitions()) {
     rows.push_back({d.id, Translate(d.name), d.shown_unit,
                     d.better == training::BetterWhen::kNeither ? "" : Translate(NameOf(d.better)),
-                    Translate(NameOf(d.evidence)),
-                    Translate(d.about)});
+                    Translate(NameOf(d.evidence)), Translate(d.about)});
   }
   return PutOut(host::FormatShownTable(rows), arguments.output);
 }
@@ -183,7 +183,8 @@ void AddMetricsCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("FILE");
   command
       ->add_option("--kinematics", arguments->kinematics,
-                   "The file is of people on a surgical robot, as a public data set writes it: jigsaws or compass; then what "
+                   "The file is of people on a surgical robot, as a public data set writes it: jigsaws or "
+                   "compass; then what "
                    "follows from the tips alone is measured")
       ->type_name("DATASET");
   auto* list = command->add_flag("--list", arguments->is_list,

@@ -19,12 +19,12 @@ std::string_view NameOf(BetterWhen better) noexcept;
 
 /// The most that has been shown of a number or a feature. docs/evidence.md says what each is of.
 enum class Evidence : std::uint8_t {
-  kAnalytic,       ///< it equals a closed formula
-  kMeasured,       ///< it was compared with the truth that a test knows
-  kEmulated,       ///< only with a device or a person that a program plays
-  kScripted,       ///< scripted people of known skill were told apart, or not
-  kRealPeople,     ///< people were
-  kUnvalidated     ///< nothing
+  kAnalytic,    ///< it equals a closed formula
+  kMeasured,    ///< it was compared with the truth that a test knows
+  kEmulated,    ///< only with a device or a person that a program plays
+  kScripted,    ///< scripted people of known skill were told apart, or not
+  kRealPeople,  ///< people were
+  kUnvalidated  ///< nothing
 };
 inline constexpr std::size_t kEvidenceCount = 6;
 /// "analytic", "measured against truth", "emulated", "scripted people only", "real people", "unvalidated"

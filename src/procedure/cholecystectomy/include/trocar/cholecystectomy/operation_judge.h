@@ -77,8 +77,8 @@ class OperationJudge {
   void JudgePhase(const surgery::OperationObservation& now) noexcept;
   void Report(OperationError error, const surgery::Fact& fact, double time) noexcept;
 
-  JudgedAnatomy anatomy_;       // constant
-  JudgementSettings settings_;  // constant
+  JudgedAnatomy anatomy_;                   // constant
+  JudgementSettings settings_;              // constant
   std::vector<std::uint8_t> is_upper_bed_;  // (strands) constant
   DissectionMonitor dissection_;
   ErrorLog errors_;

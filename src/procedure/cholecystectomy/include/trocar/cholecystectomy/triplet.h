@@ -99,7 +99,8 @@ struct OperationFacts {
   bool is_bag_leaving = false;  ///< the bag is drawn into a port
   bool has_divided = false;     ///< a clip was closed, or a structure that enters the gallbladder was cut
   int structures_entering = 0;  ///< the gallbladder, and not cut
-  bool is_upper_bed = false;    ///< in this tick the bed is dissected beyond its middle, seen from the infundibulum
+  bool is_upper_bed =
+      false;  ///< in this tick the bed is dissected beyond its middle, seen from the infundibulum
 };
 
 /// Says in which phase an operation is, from what is done. docs/operation.md has the definitions.
