@@ -136,7 +136,7 @@ void PhaseRecogniser::Update(std::span<const SeenAct> acts, const OperationFacts
     evidence_[best] = kBeginSeconds;
   }
   // no phase becomes so sure of itself that the next one waits for minutes
-  for (double& evidence : evidence_) evidence = std::min(evidence, 2 * kBeginSeconds);
+  for (double& evidence : evidence_) evidence = std::min(evidence, kBeginSeconds);
   seconds_[static_cast<std::size_t>(current_)] += seconds;
 }
 
