@@ -143,7 +143,7 @@ void OperationJudge::JudgePhase(const surgery::OperationObservation& now) noexce
   HandActs acts;
   const auto& [is_free, is_in_bag, is_leaving] = now.retrieval;
   const auto entering = static_cast<std::size_t>(dissection_.Facts().structures_entering);
-  OperationFacts facts{is_free, is_in_bag, is_leaving};
+  WorkflowFacts facts{is_free, is_in_bag, is_leaving};
   facts.structures_entering = dissection_.Facts().structures_entering;
   facts.has_divided = !now.vessels.Acts().clips.empty() || entering < dissection_.EnteringAtStart();
   bool is_bag_open = false;

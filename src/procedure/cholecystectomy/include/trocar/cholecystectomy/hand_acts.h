@@ -47,6 +47,12 @@ inline constexpr double kRetraction = 0.3;  ///< [N]
 bool IsMoment(surgery::FactKind kind) noexcept;
 inline constexpr double kMoment = 1.0;  ///< [s]
 
+/// Act of one hand in a tick, as evidence of a phase.
+struct SeenAct {
+  Triplet triplet;
+  double seconds = 0;  ///< for which it counts, > 0
+};
+
 /// Different acts of one tick, of all hands, in the order of the facts. Fixed capacity.
 class HandActs {
  public:

@@ -15,6 +15,7 @@
 #include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cholecystectomy/triplet.h"
 #include "trocar/cholecystectomy/vessel_judgement.h"
+#include "trocar/cholecystectomy/workflow_recogniser.h"
 #include "trocar/instrument/hand.h"
 #include "trocar/surgery/observation.h"
 
@@ -83,7 +84,7 @@ class OperationJudge {
   DissectionMonitor dissection_;
   ErrorLog errors_;
   CriticalView view_;
-  PhaseRecogniser phases_;
+  WorkflowRecogniser phases_;
   std::array<HandState, instrument::kHandCount> hands_;
   bool was_achieved_ = false, was_completed_ = false;
   std::size_t errors_before_ = 0;  // before this tick

@@ -86,41 +86,28 @@ inline constexpr int kPhaseCount = static_cast<int>(Phase::kCount);
 /// "Preparation", "CalotTriangleDissection", ...
 std::string_view NameOf(Phase phase) noexcept;
 
-/// Act of one hand in a tick, as evidence of a phase.
-struct SeenAct {
-  Triplet triplet;
-  double seconds = 0;  ///< for which it counts, > 0
-};
-
 /// Progress of the operation so far.
 struct OperationFacts {
   bool is_gallbladder_free = false;  ///< nothing holds it any more
   bool is_gallbladder_in_bag = false;
   bool is_bag_leaving = false;  ///< the bag is drawn into a port
-  bool has_divided = false;     ///< a clip was closed, or a structure that enters the gallbladder was cut
-  int structures_entering = 0;  ///< the gallbladder, and not cut
-  bool is_upper_bed =
-      false;  ///< in this tick the bed is dissected beyond its middle, seen from the infundibulum
 };
 
-/// Says in which phase an operation is, from what is done. docs/operation.md has the definitions.
+/// Says in which phase an operation is, from what happens, in whatever order the surgeon chose.
 ///
-/// Each act speaks for a phase, or for none; evidence fades with time, and another phase begins when it has clearly more of it.
-/// Phases follow the order of Cholec80: dissection before the first clip is that of the hepatocystic triangle, the lower half of the
-/// bed with it, which the critical view asks for; afterwards it is that of the gallbladder. Fluids are cleaned from when the
-/// gallbladder is free. Nothing goes back to the preparation, and nothing to the triangle once a structure is clipped or cut.
+/// Each act speaks for a phase; evidence fades with time, and another phase begins when it has clearly more of it.
 class PhaseRecogniser {
  public:
-  /// Seconds of work of one kind after which a phase has begun: one clip, one cut or one spread is as many.
-  static constexpr double kBeginSeconds = 1.0;
+  /// Seconds of work of one kind after which a phase has begun.
+  static constexpr double kBeginSeconds = 2.0;
   /// In which evidence falls to 1/e [s].
   static constexpr double kFadeSeconds = 20.0;
 
   /// One tick.
-  /// \param acts  of all instruments, those included that only are there (null_verb)
+  /// \param acts  of all instruments; those that do nothing may be left out
   /// \param seconds  > 0
   /// \note Real-time safe.
-  void Update(std::span<const SeenAct> acts, const OperationFacts& facts, double seconds) noexcept;
+  void Update(std::span<const Triplet> acts, const OperationFacts& facts, double seconds) noexcept;
 
   Phase Current() const noexcept { return current_; }
   /// Time spent in a phase so far [s].
