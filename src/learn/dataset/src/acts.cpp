@@ -14,12 +14,6 @@ using cholecystectomy::Verb;
 using instrument::ToolKind;
 using surgery::FactKind;
 
-const instrument::Tool& ToolOf(const scene::Scene& scene, const simulation::Snapshot& now, std::size_t hand) {
-  const scene::InstrumentSetup& setup = scene.instruments[hand];
-  if (setup.tray.empty()) return setup.tool;
-  return setup.tray[std::min<std::size_t>(now.operation.tools[hand], setup.tray.size() - 1)];
-}
-
 /// An organ that is simulated and of which nothing more is known is none of a vessel's.
 Target TargetOf(const scene::SurfaceInfo& surface) {
   if (!surface.radii.empty()) return cholecystectomy::TargetOf(surface.tube);
@@ -47,6 +41,12 @@ std::optional<Triplet> FindCurrent(std::span<const surgery::Fact> facts, std::si
 }
 
 }  // namespace
+
+const instrument::Tool& ToolOf(const scene::Scene& scene, const simulation::Snapshot& now, std::size_t hand) {
+  const scene::InstrumentSetup& setup = scene.instruments[hand];
+  if (setup.tray.empty()) return setup.tool;
+  return setup.tray[std::min<std::size_t>(now.operation.tools[hand], setup.tray.size() - 1)];
+}
 
 ActWatch::ActWatch(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
                    std::span<const scene::StrandInfo> strands)

@@ -15,6 +15,9 @@
 
 namespace trocar::dataset {
 
+/// Tool that a hand has in use.
+const instrument::Tool& ToolOf(const scene::Scene& scene, const simulation::Snapshot& now, std::size_t hand);
+
 struct Act {
   cholecystectomy::Triplet triplet;
   std::size_t hand = 0;

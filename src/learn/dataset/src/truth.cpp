@@ -22,12 +22,6 @@ constexpr std::string_view kHead =
     "act,"
     "right_tool,right_holds,right_force_N,right_act,facts\n";
 
-const instrument::Tool& ToolOf(const scene::Scene& scene, const simulation::Snapshot& now, std::size_t hand) {
-  const scene::InstrumentSetup& setup = scene.instruments[hand];
-  if (setup.tray.empty()) return setup.tool;
-  return setup.tray[std::min<std::size_t>(now.operation.tools[hand], setup.tray.size() - 1)];
-}
-
 /// The fewest digits that are read back as the same number.
 std::string Shortest(double value) {
   std::array<char, 32> text{};
