@@ -21,7 +21,7 @@ constexpr int kRows = 301;  // 10 s
 
 std::string Number(double value) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
+  std::snprintf(text, sizeof text, "%.17g", value);
   return text;
 }
 

@@ -69,7 +69,7 @@ CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scen
   sight_ = std::move(model->sight);
   organs_ = OrganClearance(scene_->patient.organs, known_.surfaces, known_.rest);
   memory_.camera.field = Place::AtNode(known_.neck);
-  memory_.camera.follows = IsWholeOperation(error_scenario);
+  memory_.camera.follows = has_goals_ = IsWholeOperation(error_scenario);
   KnowFirstView(scene_->laparoscope.home);
   ActList plan(scene_->instruments);
   WriteErrorPlan(error_scenario, known_, memory_.Hand(kRight).Port(), plan);
@@ -163,7 +163,7 @@ scene::Input CholecystectomySurgeon::Act(const Snapshot& seen) {
 }
 
 std::optional<cholecystectomy::Phase> CholecystectomySurgeon::OwnPhase() const {
-  if (!memory_.camera.follows || course_.acts.empty()) return std::nullopt;
+  if (!has_goals_ || course_.acts.empty()) return std::nullopt;
   return FindPlannedPhase(course_.acts, scene_->instruments);
 }
 

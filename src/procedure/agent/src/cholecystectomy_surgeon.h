@@ -54,6 +54,7 @@ class CholecystectomySurgeon final : public Surgeon {
   std::shared_ptr<const scene::Scene> scene_;
   PatientKnowledge known_;                // constant
   bool operates_ = true;                  // means to finish; constant
+  bool has_goals_ = false;                // its plan is that of a whole operation; constant
   OrganClearance organs_;                 // follows what is seen
   cholecystectomy::TriangleSight sight_;  // likewise
   OperationMemory memory_;

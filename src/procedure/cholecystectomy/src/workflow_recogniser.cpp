@@ -55,8 +55,7 @@ std::optional<Phase> PhaseOf(const Triplet& act, const WorkflowFacts& facts) noe
     case Verb::kClip:
       return Phase::kClippingCutting;
     case Verb::kPack:
-      if (facts.is_gallbladder_free && !facts.is_gallbladder_in_bag) return Phase::kGallbladderPackaging;
-      return std::nullopt;
+      return facts.is_gallbladder_free ? std::optional(Phase::kGallbladderPackaging) : std::nullopt;
     case Verb::kAspirate:
     case Verb::kIrrigate:
       return facts.is_gallbladder_free ? std::optional(Phase::kCleaningCoagulation) : std::nullopt;
@@ -84,6 +83,9 @@ void WorkflowRecogniser::Update(std::span<const SeenAct> acts, const WorkflowFac
     double& most = spoken[static_cast<std::size_t>(*phase)];
     most = std::max(most, act.seconds);
   }
+  // a closed bag that is held meanwhile does not end the cleaning
+  if (current_ == Phase::kCleaningCoagulation && facts.is_gallbladder_in_bag)
+    spoken[static_cast<std::size_t>(Phase::kGallbladderPackaging)] = 0.0;
   if (facts.is_bag_leaving && spoken[static_cast<std::size_t>(Phase::kCleaningCoagulation)] == 0.0) {
     // who cleans meanwhile does not stop with the last drop
     const bool has_packed = current_ != Phase::kCleaningCoagulation;

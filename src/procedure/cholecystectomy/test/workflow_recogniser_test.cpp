@@ -84,6 +84,19 @@ TEST(WorkflowRecogniser, FollowsTheUsualOrder) {
   EXPECT_NEAR(operation.Sum(), operation.total_, 1e-6);
 }
 
+TEST(WorkflowRecogniser, ABagThatIsHeldMeanwhileDoesNotEndTheCleaning) {
+  Operation operation;
+  operation.facts.is_gallbladder_free = operation.facts.is_gallbladder_in_bag = true;
+  operation.Do(kSpecimenBag, Verb::kPack, Target::kGallbladder, 3);
+  EXPECT_EQ(operation.passed.back(), "GallbladderPackaging") << "it closes in the tick in which it comes";
+  for (int pause = 0; pause < 5; ++pause) {
+    operation.Do(kIrrigator, Verb::kIrrigate, Target::kAbdominalWallCavity, 2);
+    operation.Do(kSpecimenBag, Verb::kPack, Target::kGallbladder, 3);
+  }
+  EXPECT_EQ(operation.passed,
+            (std::vector<std::string>{"Preparation", "GallbladderPackaging", "CleaningCoagulation"}));
+}
+
 // issue 47: blunt dissection was none, and the preparation lasted until the hook came
 TEST(WorkflowRecogniser, SpreadingTheTriangleIsItsDissection) {
   Operation operation;
