@@ -41,6 +41,8 @@ def straight_reach():
                           "insertion": lambda t: 0.1 + 0.05 * reach(t, 0.5, 2)})
     return "A straight minimum-jerk reach of 200 mm in 2 s, with half a second of rest before and after; the right hand is still.", made, [
         known("path_length", 0.2, 4e-4, "length of the line; up to a noise step is lost at the end"),
+        known("path_sum", 0.2, 1e-6, "length of the line"),
+        known("path_sum", 0, 0, "a still hand", "right"),
         known("max_speed", 1.875 * 0.2 / 2, 5e-4, "1.875 L / T of a minimum-jerk movement"),
         known("depth_path", 0.05, 5e-4, "change of the insertion"),
         known("movements", 1, 0, "one reach"),
@@ -63,6 +65,8 @@ def circle():
     return "Two rounds of a circle of 30 mm in 8 s; the shaft sweeps a cone of 30 degrees, the spin goes half a turn and wraps.", made, [
         known("path_length", 4 * math.pi * 0.03, 1e-3, "two circumferences"),
         known("economy_of_motion", 0.5, 2e-3, "once round would have been enough"),
+        known("path_sum", 480 * 2 * 0.03 * math.sin(rate / 120), 1e-6, "480 chords"),
+        known("economy_sum", 0.5, 1e-3, "once round would have been enough"),
         known("spin_path", math.pi, 0.01, "half a turn"),
         known("angular_path", math.pi + 4 * math.pi * math.sin(cone), 0.03, "spin, and two circles of latitude"),
         known("angular_area", 2 * cone, 0.01, "the cone's whole angle, both ways"),
@@ -118,6 +122,8 @@ def noise():
     return "A reach of 100 mm in 3 s and a still hand, both with tracker noise of 0.2 mm rms on each axis.", made, [
         known("path_length", 0.1, 0.006, "the line; noise adds little"),
         known("path_length", 0, 0.02, "a still hand", "right"),
+        known("path_sum", 480 * math.sqrt(2) * 2e-4 * math.sqrt(8 / math.pi), 0.012,
+              "480 steps of a Maxwell distribution: without a filter a still hand travels", "right"),
         known("movements", 0, 0, "a still hand", "right")]
 
 

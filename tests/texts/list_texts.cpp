@@ -234,6 +234,8 @@ void PrintTablesOfCommands() {
   for (const double icc : {0.4, 0.6, 0.8, 0.95}) Print(report::DescribeAgreement(icc));
   for (const training::BetterWhen better : {training::BetterWhen::kHigher, training::BetterWhen::kLower})
     Print(NameOf(better));
+  for (std::size_t i = 0; i < training::kEvidenceCount; ++i)
+    Print(NameOf(static_cast<training::Evidence>(i)));
   for (const char* text : {"yes",
                            "no",
                            "NO",

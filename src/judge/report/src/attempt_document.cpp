@@ -334,9 +334,9 @@ Section MakeHands(const AttemptReport& report) {
   const bool has_mark = std::any_of(report.metrics.begin(), report.metrics.end(),
                                     [](const MetricRow& row) { return row.separates == false; });
   if (has_mark)
-    section.blocks.emplace_back(Paragraph{
-        host::Translate("† This measure does not tell novices from experts in our validation study."),
-        Tone::kMuted});
+    section.blocks.emplace_back(
+        Paragraph{host::Translate("† This measure does not tell scripted novices from scripted experts."),
+                  Tone::kMuted});
   return section;
 }
 
@@ -350,7 +350,8 @@ Section MakeAllMeasures(const AttemptReport& report) {
                {host::Translate("Laparoscope"), true, 1.05},
                {host::Translate("Whole"), true, 0.75},
                {host::Translate("Unit"), false, 0.65},
-               {host::Translate("What it is"), false, 3.6}},
+               {host::Translate("What it is"), false, 3.0},
+               {host::Translate("Evidence"), false, 1.1}},
               {}};
   for (const training::MetricDefinition& definition : training::MetricDefinitions()) {
     const std::array<const MetricRow*, 4> cells = {
@@ -365,7 +366,8 @@ Section MakeAllMeasures(const AttemptReport& report) {
                           {ValueText(cells[2])},
                           {ValueText(cells[3])},
                           {(*any)->unit},
-                          {host::Translate((*any)->about), Tone::kMuted}});
+                          {host::Translate((*any)->about), Tone::kMuted},
+                          {host::Translate(NameOf((*any)->evidence)), Tone::kMuted}});
   }
   section.blocks.emplace_back(std::move(table));
   return section;

@@ -83,6 +83,7 @@ MetricRow MakeRow(const training::MetricValue& value, std::span<const MetricRefe
     row.name = definition->name;
     row.about = definition->about;
     row.better = definition->better;
+    row.evidence = definition->evidence;
     row.scale = definition->shown_scale;
     row.unit = !definition->shown_unit.empty() ? definition->shown_unit
                : definition->unit == "1"       ? ""

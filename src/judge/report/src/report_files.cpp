@@ -48,6 +48,7 @@ ordered_json MetricJson(const MetricRow& row) {
   if (row.expert_mean) json["expert_mean"] = SiValue(row, *row.expert_mean);
   if (row.expert_deviation) json["expert_deviation"] = SiValue(row, *row.expert_deviation);
   if (row.separates) json["separates_levels"] = *row.separates;
+  json["evidence"] = training::NameOf(row.evidence);
   return json;
 }
 
@@ -101,8 +102,9 @@ std::vector<FieldMeaning> FixedFields() {
       {"metrics[].value", "in the measure's SI unit", "see the measure", own},
       {"metrics[].expert_mean", "mean of the expert set, in the same unit", "see the measure", own},
       {"metrics[].expert_deviation", "standard deviation of the expert set", "see the measure", own},
-      {"metrics[].separates_levels", "whether the measure tells novices from experts in our validation study",
-       "", own},
+      {"metrics[].separates_levels", "whether the measure tells scripted novices from scripted experts", "",
+       own},
+      {"metrics[].evidence", "the most that has been shown of the measure, see docs/evidence.md", "", own},
   };
 }
 

@@ -117,6 +117,7 @@ base::Result<AttemptMetrics> CalcAttemptMetrics(const AttemptTrace& trace, const
       // whoever stopped half way has not gone the whole path
       const auto ideal_path = trace.outcome.is_completed ? trace.ideal_path[h] : std::nullopt;
       MeasureHandMotion(tracks[h], ideal_path, part, HandName(hand), settings, list);
+      MeasurePlainPath(trace.hands[h], ideal_path, part, HandName(hand), list);
       MeasureHandTicks(trace, hand, part, settings, list);
       MeasureHandEvents(trace, hand, part, settings, list);
     }

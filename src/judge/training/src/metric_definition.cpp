@@ -2,6 +2,7 @@
 #include "trocar/training/metric_definition.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -32,6 +33,14 @@ BetterWhen ReadBetter(const std::string& text) {
   return BetterWhen::kNeither;
 }
 
+Evidence ReadEvidence(const std::string& text) {
+  for (std::size_t i = 0; i < kEvidenceCount; ++i) {
+    if (text == NameOf(static_cast<Evidence>(i))) return static_cast<Evidence>(i);
+  }
+  TROCAR_ASSERT(false);  // delivered inside of the program
+  return Evidence::kUnvalidated;
+}
+
 MetricDefinition ReadDefinition(const json& entry) {
   MetricDefinition d;
   d.id = TextOf(entry, "id");
@@ -50,6 +59,7 @@ MetricDefinition ReadDefinition(const json& entry) {
   d.undefined = TextOf(entry, "undefined");
   d.better = ReadBetter(TextOf(entry, "better"));
   d.source = TextOf(entry, "source");
+  d.evidence = ReadEvidence(TextOf(entry, "evidence"));
   const json& names = entry.at("also_called");
   d.fls = TextOf(names, "fls");
   d.lapsim = TextOf(names, "lapsim");
@@ -98,6 +108,12 @@ std::string_view NameOf(BetterWhen better) noexcept {
   return "neither";
 }
 
+std::string_view NameOf(Evidence evidence) noexcept {
+  constexpr std::array<std::string_view, kEvidenceCount> kNames = {
+      "analytic", "measured against truth", "emulated", "scripted people only", "real people", "unvalidated"};
+  return kNames[static_cast<std::size_t>(evidence)];
+}
+
 std::span<const MetricDefinition> MetricDefinitions() {
   static const std::vector<MetricDefinition> definitions = [] {
     std::vector<MetricDefinition> all;
@@ -131,15 +147,17 @@ std::string FormatMetricDefinitionsPage() {
       "another implementation](metrics-check.md).\n\n" +
       document.at("about").get<std::string>() +
       "\n\nValues in files are in SI units; the unit in parentheses is what people are shown.\n\n## "
-      "All metrics\n\n| id | name | what it is | unit | of, and for each | better | source | called "
+      "All metrics\n\n| id | name | what it is | unit | of, and for each | better | source | evidence | "
+      "called "
       "elsewhere |\n"
-      "|---|---|---|---|---|---|---|---|\n";
+      "|---|---|---|---|---|---|---|---|---|\n";
   for (const MetricDefinition& d : MetricDefinitions()) {
     const bool has_other_unit = !d.shown_unit.empty() && d.shown_unit != d.unit;
     page += "| `" + d.id + "` | " + d.name + " | " + CellOf(d.about) + " | " + d.unit +
             (has_other_unit ? " (" + d.shown_unit + ")" : "") + " | " + JoinWords(d.of) +
             (d.splits.empty() ? "" : "; " + JoinWords(d.splits)) + " | " + std::string(NameOf(d.better)) +
-            " | " + CellOf(d.source) + " | " + CellOf(NamesElsewhere(d)) + " |\n";
+            " | " + CellOf(d.source) + " | " + std::string(NameOf(d.evidence)) + " | " +
+            CellOf(NamesElsewhere(d)) + " |\n";
   }
   page += "\n## How each is computed\n";
   for (const MetricDefinition& d : MetricDefinitions()) {

@@ -162,6 +162,16 @@ void MeasureHandMotion(const MotionTrack& track, const std::optional<double>& id
   }
 }
 
+void MeasurePlainPath(std::span<const ToolSample> samples, const std::optional<double>& ideal_path,
+                      const AttemptPart& part, std::string_view hand, MetricList& list) {
+  double path = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (part.has_tick[i]) path += math::Distance(samples[i - 1].tip, samples[i].tip);
+  }
+  list.Add("path_sum", part, hand, path);
+  if (ideal_path && part.IsWhole() && path > 0.0) list.Add("economy_sum", part, hand, *ideal_path / path);
+}
+
 void MeasureBimanual(const MotionTrack& left, const MotionTrack& right, const AttemptPart& part,
                      const MetricSettings& settings, MetricList& list) {
   if (!(part.seconds > 0.0)) return;
@@ -181,12 +191,14 @@ void MeasureCamera(const MotionTrack& track, const AttemptTrace& trace, const At
   if (track.Size() == 0) return;
   list.Add("path_length", part, "camera", SumOf(track.tip_step, part.has_sample));
   list.Add("view_angular_path", part, "camera", SumOf(track.axis_step, part.has_sample));
-  double ticks = 0.0, sum = 0.0, most = 0.0;
+  double ticks = 0.0, sum = 0.0, most = 0.0, path = 0.0;
   for (std::size_t i = 0; i < trace.camera.size(); ++i) {
     if (!part.has_tick[i]) continue;
+    if (i > 0) path += math::Distance(trace.camera[i - 1].lens, trace.camera[i].lens);
     const double roll = std::fabs(trace.camera[i].roll);
     ticks += 1.0, sum += roll, most = std::max(most, roll);
   }
+  list.Add("path_sum", part, "camera", path);
   if (ticks == 0.0) return;
   list.Add("view_roll_mean", part, "camera", sum / ticks);
   list.Add("view_roll_max", part, "camera", most);

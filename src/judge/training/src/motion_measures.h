@@ -7,6 +7,9 @@
 
 namespace trocar::training {
 
+/// The path as published, from the ticks as they were recorded.
+void MeasurePlainPath(std::span<const ToolSample> samples, const std::optional<double>& ideal_path,
+                      const AttemptPart& part, std::string_view hand, MetricList& list);
 void MeasureHandMotion(const MotionTrack& track, const std::optional<double>& ideal_path,
                        const AttemptPart& part, std::string_view hand, const MetricSettings& settings,
                        MetricList& list);

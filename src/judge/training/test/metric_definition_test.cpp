@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -92,6 +93,36 @@ TEST(MetricDefinitions, AreWhatIsComputed) {
     }
   }
   for (const MetricDefinition& d : MetricDefinitions()) EXPECT_TRUE(computed.contains(d.id)) << d.id;
+}
+
+// issue 47: the evidence is what there is: a study in assets/validity.json, or a formula in the test vectors.
+TEST(MetricDefinitions, ClaimNoMoreEvidenceThanThereIs) {
+  std::ifstream file(std::filesystem::path(TROCAR_SOURCE_DIR) / "assets/validity.json");
+  std::set<std::string> studied, analytic;
+  const auto validity = nlohmann::json::parse(file);
+  for (const auto& task : validity.at("tasks")) {
+    for (const auto& measure : task.at("measures")) studied.insert(measure.at("metric").get<std::string>());
+  }
+  for (const MetricVector& vector : ReadMetricVectors()) {
+    for (const auto& known : vector.analytic) analytic.insert(known.metric);
+  }
+  for (const MetricDefinition& d : MetricDefinitions()) {
+    const Evidence expected = studied.contains(d.id)    ? Evidence::kScripted
+                              : analytic.contains(d.id) ? Evidence::kAnalytic
+                                                        : Evidence::kUnvalidated;
+    EXPECT_EQ(NameOf(d.evidence), NameOf(expected)) << d.id;
+  }
+}
+
+// issue 47: our path has a dead band and a filter, so only the plain sum is called what others call it
+TEST(MetricDefinitions, EquateOnlyThePlainPathWithOthers) {
+  for (const char* ours : {"path_length", "economy_of_motion", "mean_speed", "angular_path"}) {
+    const MetricDefinition* d = FindMetric(ours);
+    EXPECT_TRUE(d->fls.empty() && d->lapsim.empty() && d->lap_mentor.empty()) << ours;
+  }
+  EXPECT_EQ(FindMetric("path_sum")->lapsim, "Path length");
+  EXPECT_EQ(FindMetric("path_sum")->lap_mentor, "Path length");
+  EXPECT_EQ(FindMetric("economy_sum")->lap_mentor, "Economy of movement");
 }
 
 TEST(FormatMetricsJson, WritesValuesWithTheirUnits) {

@@ -2,6 +2,8 @@
 #include "acts.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace trocar::dataset {
 namespace {
@@ -12,8 +14,33 @@ using cholecystectomy::Verb;
 using instrument::ToolKind;
 using surgery::FactKind;
 
-constexpr double kRetraction = 0.3;  // N; what holds harder retracts
-constexpr double kMoment = 1.0;      // s for which a cut or a clip is seen as one
+/// An organ that is simulated and of which nothing more is known is none of a vessel's.
+Target TargetOf(const scene::SurfaceInfo& surface) {
+  if (!surface.radii.empty()) return cholecystectomy::TargetOf(surface.tube);
+  return cholecystectomy::TargetOf(surface.organ).value_or(Target::kGut);
+}
+
+/// Act of the current of a hand, of what most of it flows into; nothing where none flows.
+std::optional<Triplet> FindCurrent(std::span<const surgery::Fact> facts, std::size_t hand,
+                                   const cholecystectomy::TargetTable& targets) {
+  std::vector<std::pair<Triplet, int>> counts;
+  for (const surgery::Fact& fact : facts) {
+    if (fact.kind != FactKind::kCurrentInto || fact.hand != static_cast<int>(hand)) continue;
+    const Triplet act = *cholecystectomy::TripletOf(fact, targets);
+    const auto known =
+        std::find_if(counts.begin(), counts.end(), [&](const auto& one) { return one.first == act; });
+    if (known != counts.end()) {
+      ++known->second;
+    } else {
+      counts.emplace_back(act, 1);
+    }
+  }
+  const auto most = std::max_element(counts.begin(), counts.end(),
+                                     [](const auto& x, const auto& y) { return x.second < y.second; });
+  return most == counts.end() ? std::nullopt : std::optional(most->first);
+}
+
+}  // namespace
 
 const instrument::Tool& ToolOf(const scene::Scene& scene, const simulation::Snapshot& now, std::size_t hand) {
   const scene::InstrumentSetup& setup = scene.instruments[hand];
@@ -21,42 +48,10 @@ const instrument::Tool& ToolOf(const scene::Scene& scene, const simulation::Snap
   return setup.tray[std::min<std::size_t>(now.operation.tools[hand], setup.tray.size() - 1)];
 }
 
-Target TargetOf(view::LabelClass label) {
-  switch (label) {
-    case view::LabelClass::kLiver:
-      return Target::kLiver;
-    case view::LabelClass::kGallbladder:
-      return Target::kGallbladder;
-    case view::LabelClass::kCysticDuct:
-      return Target::kCysticDuct;
-    case view::LabelClass::kCysticArtery:
-      return Target::kCysticArtery;
-    case view::LabelClass::kArtery:
-    case view::LabelClass::kBileDuct:
-      return Target::kBloodVessel;
-    default:
-      return Target::kGut;
-  }
-}
-
-/// What most of the current goes into.
-Target FindHeated(std::span<const surgery::Fact> facts, std::size_t hand,
-                  const cholecystectomy::TargetTable& targets) {
-  std::array<int, static_cast<std::size_t>(Target::kCount)> counts{};
-  for (const surgery::Fact& fact : facts) {
-    if (fact.kind == FactKind::kCurrentInto && fact.hand == static_cast<int>(hand))
-      ++counts[static_cast<std::size_t>(targets.Of(fact))];
-  }
-  return static_cast<Target>(std::max_element(counts.begin(), counts.end()) - counts.begin());
-}
-
-}  // namespace
-
 ActWatch::ActWatch(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
                    std::span<const scene::StrandInfo> strands)
     : scene_(&scene) {
-  for (const scene::SurfaceInfo& surface : surfaces)
-    targets_.surfaces.push_back(TargetOf(view::FindLabelClass(surface, scene.HasPatient())));
+  for (const scene::SurfaceInfo& surface : surfaces) targets_.surfaces.push_back(TargetOf(surface));
   for (const scene::StrandInfo& strand : strands)
     targets_.strands.push_back(cholecystectomy::TargetOf(strand.kind));
 }
@@ -65,37 +60,24 @@ Triplet ActWatch::ActOf(const simulation::Snapshot& now, std::size_t hand) {
   const simulation::InstrumentSnapshot& tool = now.instruments[hand];
   const ToolKind kind = ToolOf(*scene_, now, hand).kind;
   const auto facts = std::span(now.facts).first(now.fact_count);
-  Triplet act{cholecystectomy::InstrumentOf(kind), Verb::kNullVerb, Target::kNullTarget};
-  const surgery::Fact* current = nullptr;
-  for (const surgery::Fact& fact : facts) {
-    if (fact.hand != static_cast<int>(hand)) continue;
-    if (fact.kind == FactKind::kCurrentInto) current = &fact;
-    const auto triplet = cholecystectomy::TripletOf(fact, targets_);
-    const bool is_moment =
-        fact.kind != FactKind::kCurrentInto && triplet &&
-        (triplet->verb == Verb::kCut || triplet->verb == Verb::kClip || triplet->verb == Verb::kDissect);
-    if (is_moment) moments_[hand] = {{act.instrument, triplet->verb, triplet->target}, now.time + kMoment};
+  std::optional<Triplet> fluid;
+  bool is_bag_open = false;
+  for (surgery::Fact fact : facts) {
+    is_bag_open = is_bag_open || fact.kind == FactKind::kBagOpen;
+    if (fact.kind == FactKind::kRinse) fact.surface = tool.organ;  // on which the jet lies
+    const auto act = cholecystectomy::TripletOf(fact, targets_);
+    if (!act || fact.hand != static_cast<int>(hand)) continue;
+    if (cholecystectomy::IsMoment(fact.kind)) moments_[hand] = {*act, now.time + cholecystectomy::kMoment};
+    if (act->verb == Verb::kAspirate || act->verb == Verb::kIrrigate) fluid = *act;
   }
   const Moment& moment = moments_[hand];
-  if (current != nullptr) {
-    act.verb = current->is_coagulating ? Verb::kCoagulate : Verb::kDissect;
-    act.target = FindHeated(facts, hand, targets_);
-  } else if (now.time < moment.until && moment.triplet.instrument == act.instrument) {
-    act = moment.triplet;
-  } else if (now.operation.is_aspirating[hand]) {
-    act = {act.instrument, Verb::kAspirate, Target::kFluid};
-  } else if (now.operation.is_rinsing[hand]) {
-    const bool is_liver = targets_.OfSurface(tool.organ) == Target::kLiver;
-    act = {act.instrument, Verb::kIrrigate, is_liver ? Target::kLiver : Target::kAbdominalWallCavity};
-  } else if (tool.is_grasping && tool.organ >= 0) {
-    act.target = targets_.OfSurface(tool.organ);
-    const bool is_packed = act.target == Target::kGallbladder &&
-                           std::any_of(facts.begin(), facts.end(),
-                                       [](const auto& fact) { return fact.kind == FactKind::kBagOpen; });
-    const bool is_pulled = math::Norm(tool.force) > kRetraction;
-    act.verb = is_packed ? Verb::kPack : is_pulled ? Verb::kRetract : Verb::kGrasp;
-  }
-  return act;
+  const Triplet idle{cholecystectomy::InstrumentOf(kind), Verb::kNullVerb, Target::kNullTarget};
+  if (const auto current = FindCurrent(facts, hand, targets_)) return *current;
+  if (now.time < moment.until && moment.triplet.instrument == idle.instrument) return moment.triplet;
+  if (fluid) return *fluid;
+  if (!tool.is_grasping || tool.organ < 0) return idle;
+  return cholecystectomy::TripletOfHold(kind, targets_.OfSurface(tool.organ), math::Norm(tool.force),
+                                        is_bag_open);
 }
 
 void ActWatch::Look(const simulation::Snapshot& now) {

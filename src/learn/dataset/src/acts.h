@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file acts.h  Acts of each hand in the terms of CholecT50, from the facts of a tick and what its jaws hold.
+/// \file acts.h  Acts of each hand in the terms of CholecT50, from the facts of a tick and what its jaws hold. Which fact is which act
+/// stands in cholecystectomy/hand_acts.h, where the phases have it from too.
 #pragma once
 
 #include <array>
@@ -13,6 +14,9 @@
 #include "trocar/view/labels.h"
 
 namespace trocar::dataset {
+
+/// Tool that a hand has in use.
+const instrument::Tool& ToolOf(const scene::Scene& scene, const simulation::Snapshot& now, std::size_t hand);
 
 struct Act {
   cholecystectomy::Triplet triplet;

@@ -145,7 +145,9 @@ class CholecT50Set : public LayoutSet {
         "Boxes go round all of a tool that is in the picture, not its tip; a target's box goes round all of "
         "that "
         "organ.",
-        "Fat and strands that are dissected count as omentum; every other duct or artery as blood_vessel.",
+        "Fat and fibres of the hepatocystic triangle count as cystic_pedicle, whose dissection by hook or "
+        "bipolar "
+        "is none of the 100; every other duct or artery as blood_vessel.",
         "The assistant's grasper and the bag have no instances."};
   }
 };

@@ -197,6 +197,11 @@ int ToEndoscapes(LabelClass label) noexcept {
   }
 }
 
+std::array<double, 3> EndoscapesCriteria(const scene::ViewScore& view) noexcept {
+  // ours are triangle, plate, structures
+  return {0.5 * view.Points(2), 0.5 * view.Points(0), 0.5 * view.Points(1)};
+}
+
 std::span<const cholecystectomy::Triplet> CholecT50Triplets() noexcept {
   return kTriplets;
 }

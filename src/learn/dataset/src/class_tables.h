@@ -10,6 +10,7 @@
 #include <span>
 #include <string_view>
 
+#include "trocar/scene/procedure_snapshot.h"
 #include "trocar/cholecystectomy/triplet.h"
 #include "trocar/view/labels.h"
 
@@ -29,6 +30,11 @@ std::span<const SegmentationClass> EndoscapesClasses() noexcept;
 /// Index in the table. What has no class of its own becomes what stands nearest, or the background.
 int ToCholecSeg8k(view::LabelClass label) noexcept;
 int ToEndoscapes(view::LabelClass label) noexcept;
+
+/// Criteria of the critical view as Endoscapes orders them: two structures, hepatocystic triangle, cystic plate; 0 not, 0.5 in part, 1
+/// whole. Source: "Endoscapes, a critical view of safety and surgical scene segmentation dataset", Sci Data 2025, s41597-025-04642-4,
+/// Fig. 5.
+std::array<double, 3> EndoscapesCriteria(const scene::ViewScore& view) noexcept;
 
 /// Place of a triplet in CholecT50's list of 100, or -1.
 int FindCholecT50Triplet(const cholecystectomy::Triplet& triplet) noexcept;

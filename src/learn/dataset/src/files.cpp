@@ -78,6 +78,25 @@ base::Status WriteGreyPng(const std::filesystem::path& path, int width, int heig
   return host::WriteFile(path, bytes);
 }
 
+base::Status WriteEqualChannelsPng(const std::filesystem::path& path, int width, int height,
+                                   std::span<const std::uint8_t> pixels) {
+  render::Image image{width, height, {}};
+  image.pixels.reserve(3 * pixels.size());
+  for (const std::uint8_t pixel : pixels) image.pixels.insert(image.pixels.end(), 3, pixel);
+  return render::WritePng(path, image);
+}
+
+base::Status LinkFile(const std::filesystem::path& file, const std::filesystem::path& name) {
+  std::error_code failure;
+  std::filesystem::create_directories(name.parent_path(), failure);
+  if (!failure) std::filesystem::create_hard_link(file, name, failure);
+  if (failure) std::filesystem::copy_file(file, name, failure);
+  if (!failure) return {};
+  return base::Error{
+      base::ErrorCode::kFileUnwritable,
+      name.string() + ": " + failure.message() + "; check the folder, its rights and the space left"};
+}
+
 base::Status WriteJpeg(const std::filesystem::path& path, const render::Image& image) {
   unsigned char* bytes = nullptr;
   unsigned long size = 0;

@@ -20,6 +20,12 @@ namespace trocar::dataset {
 /// \return kFileUnwritable
 base::Status WriteGreyPng(const std::filesystem::path& path, int width, int height,
                           std::span<const std::uint8_t> pixels);
+/// The same as an 8-bit PNG file of three equal channels.
+base::Status WriteEqualChannelsPng(const std::filesystem::path& path, int width, int height,
+                                   std::span<const std::uint8_t> pixels);
+/// A second name for a file; a copy where the file system has no such names.
+/// \return kFileUnwritable
+base::Status LinkFile(const std::filesystem::path& file, const std::filesystem::path& name);
 /// Quality 95, colours not thinned out. \return kFileUnwritable
 base::Status WriteJpeg(const std::filesystem::path& path, const render::Image& image);
 /// NumPy's format, version 1.0, of bytes. \return kFileUnwritable

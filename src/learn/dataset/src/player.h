@@ -3,7 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string_view>
 
+#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/dataset/dataset.h"
 #include "trocar/simulation/simulation.h"
 
@@ -20,6 +23,9 @@ class Player {
   virtual void Step() = 0;
   /// Input of the last tick; before the first tick, the place of hands and camera.
   virtual const scene::Input& LastInput() const = 0;
+  /// The work under way by the surgeon's own words, and the phase to which it belongs by its plan; of a recording nobody says so.
+  virtual std::string_view Doing() const { return {}; }
+  virtual std::optional<cholecystectomy::Phase> OwnPhase() const { return std::nullopt; }
   /// After the last tick. \return kRecordingInvalid where other states were computed than were recorded
   virtual base::Status Finish() const { return {}; }
 };

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "layout_set.h"
 #include "player.h"
 #include "trocar/host/sha256.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
 #include "trocar/simulation/attempt_end.h"
 #include "trocar/view/laparoscope_view.h"
+#include "truth.h"
 
 namespace trocar::dataset {
 namespace {
@@ -125,15 +127,19 @@ base::Result<VideoResult> MakeVideo(
 
   const auto writer = make_writer(simulation);
   ActWatch watch(simulation.GetScene(), simulation.Surfaces(), simulation.Strands());
+  std::optional<TruthTable> truth;
+  if (simulation.GetOperationResult()) truth.emplace(simulation);
   Frame frame;
   const simulation::Snapshot& now = simulation.GetSnapshot();
   const double begin = now.time, half_tick = 0.5 * simulation.GetScene().tick_seconds;
   for (;;) {
     watch.Look(now);
+    if (truth) truth->Look(now);
     writer->Look(simulation, (*player)->LastInput());
     if (now.time - begin + half_tick >= static_cast<double>(frame.index) * plan.every) {
       frame.number = static_cast<std::uint64_t>(std::llround(kFramesPerSecond * (now.time - begin)));
       frame.acts = watch.Acts();
+      if (truth) truth->Add(frame.index, frame.number, **player, frame.acts);
       if (camera) {
         if (auto taken = camera->Take(now, frame); !taken) return taken.error();
         std::erase_if(frame.acts, [&](const Act& act) { return !IsVisible(frame.geometry, act); });
@@ -148,6 +154,10 @@ base::Result<VideoResult> MakeVideo(
   }
   if (auto whole = (*player)->Finish(); !whole) return whole.error();
   if (auto finished = writer->Finish(); !finished) return finished.error();
+  if (truth) {
+    const std::string name = NameVideo("video_", result.seed, 5) + ".csv";
+    if (auto written = truth->Write(task.folder / "truth" / name); !written) return written.error();
+  }
   result.frames = frame.index;
   result.seconds = now.time - begin;
   result.hash = simulation.Hash();

@@ -79,6 +79,28 @@ TEST_F(ActWatchTest, ACutIsSeenForAMoment) {
   EXPECT_EQ(Look(), "scissors,null_verb,null_target");
 }
 
+// issue 47: it was labelled as nothing, and its fat as omentum
+TEST_F(ActWatchTest, SpreadingTheTriangleDissectsThePedicle) {
+  Hold(ToolKind::kDissector);
+  EXPECT_EQ(Look(), "bipolar,null_verb,null_target");
+  Add(FactKind::kStrandSpread, -1, 1);
+  EXPECT_EQ(Look(), "bipolar,dissect,cystic_pedicle");
+  now_.time += 1.1;
+  EXPECT_EQ(Look(), "bipolar,null_verb,null_target");
+}
+
+TEST_F(ActWatchTest, AnIrrigatorDoesWhatItsFactsSay) {
+  Hold(ToolKind::kSuctionIrrigator);
+  Add(FactKind::kRinse, -1);
+  EXPECT_EQ(Look(), "irrigator,irrigate,abdominal_wall_cavity");
+  now_.instruments[kRight].organ = 0;
+  Add(FactKind::kRinse, -1);
+  EXPECT_EQ(Look(), "irrigator,irrigate,liver");
+  Add(FactKind::kAspirate, -1);
+  EXPECT_EQ(Look(), "irrigator,aspirate,fluid");
+  EXPECT_EQ(Look(), "irrigator,null_verb,null_target");
+}
+
 TEST_F(ActWatchTest, JawsGraspRetractAndPack) {
   Hold(ToolKind::kGrasper);
   now_.instruments[kRight].is_grasping = true;

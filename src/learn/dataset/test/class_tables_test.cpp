@@ -35,6 +35,15 @@ TEST(ClassTables, MapEveryLabelToAClassThatIsThere) {
   EXPECT_EQ(ToEndoscapes(view::LabelClass::kScissors), 6);
 }
 
+// issue 47: the second and the third were exchanged. Ours are triangle, plate, structures; theirs structures, triangle, plate.
+TEST(ClassTables, OrderTheCriticalViewAsEndoscapesDoes) {
+  scene::ViewScore score;
+  score.criteria = {2, 1, 0};
+  EXPECT_EQ(EndoscapesCriteria(score), (std::array{0.0, 1.0, 0.5}));
+  score.criteria = {0, 0, 2};
+  EXPECT_EQ(EndoscapesCriteria(score), (std::array{1.0, 0.0, 0.0}));
+}
+
 TEST(ClassTables, NumberTheTripletsOfCholecT50AsPublished) {
   const auto find = [](InstrumentKind i, Verb v, Target t) { return FindCholecT50Triplet({i, v, t}); };
   EXPECT_EQ(find(InstrumentKind::kGrasper, Verb::kRetract, Target::kGallbladder), 17);

@@ -67,6 +67,11 @@ base::Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
                      Printable(path.string()) + " is taken and given back all the time"};
 }
 
+void FileLock::LeaveToParent() noexcept {
+  if (descriptor_ >= 0) close(descriptor_);
+  descriptor_ = -1;
+}
+
 FileLock::~FileLock() {
   if (descriptor_ < 0) return;
   unlink(path_.c_str());

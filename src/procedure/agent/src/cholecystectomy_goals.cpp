@@ -16,6 +16,7 @@ using scene::AssistantCommand;
 
 namespace {
 
+using cholecystectomy::Phase;
 using Kind = SurgeonAct::Kind;
 
 constexpr double kFirstLook = 0.090, kLastLook = 0.100;             // of the lens [m]
@@ -70,21 +71,21 @@ constexpr std::nullptr_t kNoRound = nullptr, kGoOn = nullptr;
 // Without the view nothing is clipped; a gallbladder that is still tied is not taken off its bed.
 // clang-format off
 constexpr OperationGoal kGoals[] = {
-  // goal                   told meanwhile               rounds           reached when      a round           without it
-  {.doing = "expose", .write = Expose},
-  {Kind::kClearTriangle,    "look at the triangle",      4,               IsTriangleDone,   SpreadTriangle,   OpenTriangle, true},
-  {Kind::kFreeLowerThird,   "look at the bed",           4,               IsLowerThirdDone, FreeLowerThird,   TurnToFundus},
-  {Kind::kShowCriticalView, "look for what is missing",  kViewRounds,     IsViewShown,      ShowCriticalView, kGoOn},
-  {Kind::kTimeOut,          "time-out",                  0,               HasSeenView,      kNoRound,         BailOutWithoutView},
-  {Kind::kDivide,           "plan the clips",            kDivisionRounds, AreAllDivided,    ClipAndCut,       kGoOn, false, Divide},
-  {Kind::kStopBleeding,     "look for blood",            4,               IsDry,            CoagulateLeak,    kGoOn},
-  {Kind::kCheckStumps,      "look at the stumps",        0,               AreStumpsThere,   kNoRound,         BailOutWithStumps},
-  {Kind::kFreeFromBed,      "look at the bed",           12,              IsOffBed,         FreeFromBed,      BailOutOnBed},
-  {.doing = "bring out", .write = BringOut},
+  // goal                   its phase                         told meanwhile               rounds           reached when      a round           without it
+  {.phase = Phase::kPreparation, .doing = "expose", .write = Expose},
+  {Kind::kClearTriangle,    Phase::kCalotTriangleDissection,  "look at the triangle",      4,               IsTriangleDone,   SpreadTriangle,   OpenTriangle, true},
+  {Kind::kFreeLowerThird,   Phase::kCalotTriangleDissection,  "look at the bed",           4,               IsLowerThirdDone, FreeLowerThird,   TurnToFundus},
+  {Kind::kShowCriticalView, Phase::kCalotTriangleDissection,  "look for what is missing",  kViewRounds,     IsViewShown,      ShowCriticalView, kGoOn},
+  {Kind::kTimeOut,          Phase::kCalotTriangleDissection,  "time-out",                  0,               HasSeenView,      kNoRound,         BailOutWithoutView},
+  {Kind::kDivide,           Phase::kClippingCutting,          "plan the clips",            kDivisionRounds, AreAllDivided,    ClipAndCut,       kGoOn, false, Divide},
+  {Kind::kStopBleeding,     Phase::kClippingCutting,          "look for blood",            4,               IsDry,            CoagulateLeak,    kGoOn},
+  {Kind::kCheckStumps,      Phase::kClippingCutting,          "look at the stumps",        0,               AreStumpsThere,   kNoRound,         BailOutWithStumps},
+  {Kind::kFreeFromBed,      Phase::kGallbladderDissection,    "look at the bed",           12,              IsOffBed,         FreeFromBed,      BailOutOnBed},
+  {.phase = Phase::kGallbladderPackaging, .doing = "bring out", .write = BringOut},
 };
 // begun by TurnToFundus
 constexpr OperationGoal kFundusFirst =
-  {Kind::kFundusFirst,      "fundus first",              12,              IsFundusFirstDone, FreeFromFundus,  kGoOn};
+  {Kind::kFundusFirst,      Phase::kGallbladderDissection,    "fundus first",              12,              IsFundusFirstDone, FreeFromFundus,  kGoOn};
 // clang-format on
 
 /// Steps of goals that are decided when they are reached.
@@ -121,6 +122,12 @@ const OperationGoal* FindGoal(Kind kind) {
   return goal == std::end(kGoals) ? nullptr : goal;
 }
 
+/// Of clips and cuts.
+bool IsOfDivision(Kind kind) {
+  return kind == Kind::kLineUpClip || kind == Kind::kLineUpScissors || kind == Kind::kDivideExtraArtery ||
+         (kind >= Kind::kGoOnDividing && kind <= Kind::kCheckDivision);
+}
+
 void Pursue(const OperationGoal& goal, Planning& on, const SurgeonAct& act) {
   if (goal.is_reached(on, act)) return;
   if (act.count <= 0) {
@@ -137,6 +144,28 @@ void Pursue(const OperationGoal& goal, Planning& on, const SurgeonAct& act) {
 
 std::span<const OperationGoal> CholecystectomyGoals() {
   return kGoals;
+}
+
+std::optional<Phase> FindPlannedPhase(
+    const std::deque<SurgeonAct>& acts,
+    const std::array<scene::InstrumentSetup, instrument::kHandCount>& instruments) {
+  // acts of a goal's round stand before the goal itself, which is next again
+  bool divides = false;
+  for (std::size_t i = 0; i < acts.size(); ++i) {
+    const SurgeonAct& act = acts[i];
+    divides = divides || IsOfDivision(act.kind);
+    const OperationGoal* goal = FindGoal(act.kind);
+    if (goal == nullptr) continue;
+    if (divides) return Phase::kClippingCutting;
+    const bool is_untried = act.kind == Kind::kClearTriangle && act.count == goal->rounds && !act.is_on;
+    return is_untried && i > 0 ? Phase::kPreparation : goal->phase;
+  }
+  if (acts.front().kind == Kind::kTakeOut) return Phase::kGallbladderRetraction;
+  const bool is_bag_to_come = std::any_of(acts.begin() + 1, acts.end(), [&](const SurgeonAct& act) {
+    const auto& tray = instruments[static_cast<std::size_t>(act.hand)].tray;
+    return act.kind == Kind::kExchange && act.tool < tray.size() && tray[act.tool].kind == ToolKind::kBag;
+  });
+  return is_bag_to_come ? Phase::kGallbladderDissection : Phase::kGallbladderPackaging;
 }
 
 void WritePlan(std::span<const OperationGoal> goals, const PatientKnowledge& known, ActList& plan) {

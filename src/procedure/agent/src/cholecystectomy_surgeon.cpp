@@ -70,7 +70,7 @@ CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scen
   sight_ = std::move(triangle.sight);
   organs_ = OrganClearance(scene_->patient.organs, known_.surfaces, known_.rest);
   memory_.camera.field = Place::AtNode(known_.neck);
-  memory_.camera.follows = IsWholeOperation(error_scenario);
+  memory_.camera.follows = has_goals_ = IsWholeOperation(error_scenario);
   KnowFirstView(scene_->laparoscope.home);
   ActList plan(scene_->instruments);
   WriteErrorPlan(error_scenario, known_, memory_.Hand(kRight).Port(), plan);
@@ -161,6 +161,11 @@ scene::Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   input.laparoscope = camera.now;
   input.settings = scene_->settings;
   return input;
+}
+
+std::optional<cholecystectomy::Phase> CholecystectomySurgeon::OwnPhase() const {
+  if (!has_goals_ || course_.acts.empty()) return std::nullopt;
+  return FindPlannedPhase(course_.acts, scene_->instruments);
 }
 
 // The order is that of states that have been saved.

@@ -34,6 +34,7 @@ class CholecystectomySurgeon final : public Surgeon {
   scene::Input Act(const simulation::Snapshot& seen) override;
   bool HasFinished() const override { return course_.has_finished; }
   std::string_view Doing() const override { return course_.doing; }
+  std::optional<cholecystectomy::Phase> OwnPhase() const override;
   std::string_view BailOutReason() const override { return memory_.bail_out; }
   void VisitState(base::StateArchive& archive) override;
   void KnowFirstView(const instrument::TrocarJoints& laparoscope) override;
@@ -53,6 +54,7 @@ class CholecystectomySurgeon final : public Surgeon {
   std::shared_ptr<const scene::Scene> scene_;
   PatientKnowledge known_;                // constant
   bool operates_ = true;                  // means to finish; constant
+  bool has_goals_ = false;                // its plan is that of a whole operation; constant
   OrganClearance organs_;                 // follows what is seen
   cholecystectomy::TriangleSight sight_;  // likewise
   OperationMemory memory_;

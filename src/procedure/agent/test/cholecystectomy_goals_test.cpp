@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,26 @@ TEST_F(Goals, StandInTheOrderOfTheOperation) {
                                  Kind::kCheckStumps, Kind::kFreeFromBed));
   EXPECT_EQ(plan.acts.front().command, scene::AssistantCommand::kRetract);
   EXPECT_EQ(plan.acts.back().kind, Kind::kTakeOut);
+}
+
+// What the plan means is the truth that recognised phases are judged by.
+TEST_F(Goals, EachPlansItsOwnPhase) {
+  WritePlan(CholecystectomyGoals(), known, plan);
+  std::deque<SurgeonAct> acts(plan.acts.begin(), plan.acts.end());
+  std::vector<std::string> phases;
+  for (; !acts.empty(); acts.pop_front()) {
+    const auto phase = FindPlannedPhase(acts, scene.instruments);
+    ASSERT_TRUE(phase);
+    if (phases.empty() || phases.back() != NameOf(*phase)) phases.emplace_back(NameOf(*phase));
+  }
+  EXPECT_THAT(phases, ElementsAre("Preparation", "CalotTriangleDissection", "ClippingCutting",
+                                  "GallbladderDissection", "GallbladderPackaging", "GallbladderRetraction"));
+  // acts of a round stand before their goal, which comes again
+  acts = {Goal(Kind::kSpread, 0), Goal(Kind::kClearTriangle, 3)};
+  EXPECT_EQ(FindPlannedPhase(acts, scene.instruments), cholecystectomy::Phase::kCalotTriangleDissection);
+  acts = {Goal(Kind::kCheckClip, 0), Goal(Kind::kShowCriticalView, 3)};
+  EXPECT_EQ(FindPlannedPhase(acts, scene.instruments), cholecystectomy::Phase::kClippingCutting)
+      << "an extra artery";
 }
 
 TEST_F(Goals, WhoLeavesStonesOpensTheGallbladderBeforeItIsBroughtOut) {

@@ -129,6 +129,29 @@ TEST(Operation, ExchangesToolsButNotWhileHolding) {
                           [](const Event& event) { return event.kind == FactKind::kExchangeRefused; }));
 }
 
+/// Share of the ticks in which the recognised phase is the surgeon's own.
+double PlayForAgreement(std::uint64_t seed, double most_seconds) {
+  Simulation simulation = MakeOperation();
+  auto surgeon = MakeSurgeon("expert", OperationScene(), seed);
+  EXPECT_TRUE(surgeon.ok());
+  int ticks = 0, agreed = 0;
+  while (!(*surgeon)->HasFinished() && simulation.GetSnapshot().time < most_seconds) {
+    simulation.Step((*surgeon)->Act(simulation.GetSnapshot()));
+    const auto own = (*surgeon)->OwnPhase();
+    if (!own) continue;
+    ++ticks;
+    agreed += simulation.GetSnapshot().operation.phase == *own ? 1 : 0;
+  }
+  EXPECT_GT(ticks, 0);
+  return static_cast<double>(agreed) / ticks;
+}
+
+// issue 47: the expert spread the triangle from 8 s on, and it was said to prepare until 106 s
+TEST(OperationWhole, PhasesAgreeWithTheSurgeonsOwn) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed)
+    EXPECT_GE(PlayForAgreement(seed, 1200.0), 0.95) << "seed " << seed;
+}
+
 TEST(Operation, BloodAndBileAreAccountedFor) {
   Simulation simulation = MakeOperation();
   const OperationResult result = Play("bleeds", simulation, 30.0);

@@ -70,6 +70,16 @@ Target TargetTable::Of(const surgery::Fact& fact) const noexcept {
   return fact.strand >= 0 && strand < strands.size() ? strands[strand] : OfSurface(fact.surface);
 }
 
+namespace {
+
+Verb VerbOfCurrent(const surgery::Fact& fact) noexcept {
+  if (!fact.is_coagulating) return Verb::kDissect;
+  const bool is_bipolar = InstrumentOf(fact.tool) == InstrumentKind::kBipolar;
+  return fact.strand >= 0 && !is_bipolar ? Verb::kDissect : Verb::kCoagulate;
+}
+
+}  // namespace
+
 std::optional<Triplet> TripletOf(const surgery::Fact& fact, const TargetTable& targets) noexcept {
   const InstrumentKind tool = InstrumentOf(fact.tool);
   switch (fact.kind) {
@@ -77,14 +87,16 @@ std::optional<Triplet> TripletOf(const surgery::Fact& fact, const TargetTable& t
     case FactKind::kOrganCut:
     case FactKind::kTubeCut:
       return Triplet{tool, Verb::kCut, targets.Of(fact)};
-    case FactKind::kStrandSpread:  // without current a dissector is a grasper
-      return Triplet{InstrumentKind::kGrasper, Verb::kDissect, targets.Of(fact)};
+    case FactKind::kStrandSpread:
+      return Triplet{tool, Verb::kDissect, targets.Of(fact)};
     case FactKind::kCurrentInto:
-      return Triplet{tool, fact.strand >= 0 ? Verb::kDissect : Verb::kCoagulate, targets.Of(fact)};
+      return Triplet{tool, VerbOfCurrent(fact), targets.Of(fact)};
     case FactKind::kClipClosed:
       return Triplet{tool, Verb::kClip, targets.Of(fact)};
     case FactKind::kRinse:
-      return Triplet{tool, Verb::kIrrigate, Target::kFluid};
+      return Triplet{
+          tool, Verb::kIrrigate,
+          targets.OfSurface(fact.surface) == Target::kLiver ? Target::kLiver : Target::kAbdominalWallCavity};
     case FactKind::kAspirate:
       return Triplet{tool, Verb::kAspirate, Target::kFluid};
     case FactKind::kBagOpen:
@@ -94,12 +106,34 @@ std::optional<Triplet> TripletOf(const surgery::Fact& fact, const TargetTable& t
   }
 }
 
-void HandActs::Add(const Triplet& triplet, int hand) noexcept {
+Triplet TripletOfHold(ToolKind tool, Target held, double pull, bool is_bag_open) noexcept {
+  const bool is_packed = is_bag_open && held == Target::kGallbladder;
+  return {InstrumentOf(tool),
+          is_packed            ? Verb::kPack
+          : pull > kRetraction ? Verb::kRetract
+                               : Verb::kGrasp,
+          held};
+}
+
+bool IsMoment(FactKind kind) noexcept {
+  switch (kind) {
+    case FactKind::kStrandCut:
+    case FactKind::kOrganCut:
+    case FactKind::kTubeCut:
+    case FactKind::kStrandSpread:
+    case FactKind::kClipClosed:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void HandActs::Add(const Triplet& triplet, int hand, double seconds) noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
-    if (triplets_[i] == triplet && hands_[i] == hand) return;
+    if (acts_[i].triplet == triplet && hands_[i] == hand) return;
   }
   if (count_ == kCapacity) return;
-  triplets_[count_] = triplet;
+  acts_[count_] = {triplet, seconds};
   hands_[count_++] = hand;
 }
 

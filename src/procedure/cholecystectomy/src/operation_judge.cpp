@@ -16,7 +16,8 @@ using surgery::FactKind;
 
 namespace {
 
-constexpr int kClipsThatStay = 2;  // on the patient's side of a cut: the rule that is taught
+constexpr double kMiddleOfBed = 0.5;  // from the infundibulum; the critical view asks for a third [-]
+constexpr int kClipsThatStay = 2;     // on the patient's side of a cut: the rule that is taught
 
 }  // namespace
 
@@ -25,7 +26,12 @@ OperationJudge::OperationJudge(JudgedAnatomy anatomy, DissectionMonitor dissecti
     : anatomy_(std::move(anatomy)),
       settings_(settings),
       dissection_(std::move(dissection)),
-      errors_(OperationErrors()) {}
+      errors_(OperationErrors()) {
+  is_upper_bed_.resize(anatomy_.targets.strands.size());
+  for (const DissectedAnatomy::BedFibre& fibre : dissection_.Bed()) {
+    if (fibre.strand < is_upper_bed_.size()) is_upper_bed_[fibre.strand] = fibre.along > kMiddleOfBed ? 1 : 0;
+  }
+}
 
 void OperationJudge::Report(OperationError error, const surgery::Fact& fact, double time) noexcept {
   errors_.Add({error, time, fact.position, fact.hand});
@@ -142,18 +148,32 @@ void OperationJudge::JudgeHand(int hand, const surgery::OperationObservation& no
 
 void OperationJudge::JudgePhase(const surgery::OperationObservation& now) noexcept {
   HandActs acts;
+  const auto& [is_free, is_in_bag, is_leaving] = now.retrieval;
+  const auto entering = static_cast<std::size_t>(dissection_.Facts().structures_entering);
+  WorkflowFacts facts{is_free, is_in_bag, is_leaving};
+  facts.structures_entering = dissection_.Facts().structures_entering;
+  facts.has_divided = !now.vessels.Acts().clips.empty() || entering < dissection_.EnteringAtStart();
+  bool is_bag_open = false;
   for (const surgery::Fact& fact : now.facts) {
-    if (const auto triplet = TripletOf(fact, anatomy_.targets)) acts.Add(*triplet, fact.hand);
+    const auto triplet = TripletOf(fact, anatomy_.targets);
+    if (!triplet) continue;
+    acts.Add(*triplet, fact.hand, IsMoment(fact.kind) ? kMoment : now.seconds);
+    is_bag_open = is_bag_open || fact.kind == FactKind::kBagOpen;
+    const auto strand = static_cast<std::size_t>(fact.strand);
+    facts.is_upper_bed = facts.is_upper_bed ||
+                         (fact.strand >= 0 && strand < is_upper_bed_.size() && is_upper_bed_[strand] != 0);
   }
-  // what a hand holds it retracts, whatever else it has done
   for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
     const surgery::HandObservation& seen = now.hands[hand];
-    if (seen.is_holding)
-      acts.Add({InstrumentKind::kGrasper, Verb::kRetract, anatomy_.targets.OfSurface(seen.held_surface)},
-               static_cast<int>(hand));
+    const auto h = static_cast<int>(hand);
+    if (seen.is_holding) {
+      acts.Add(TripletOfHold(seen.tool, anatomy_.targets.OfSurface(seen.held_surface), 0.0, is_bag_open), h,
+               now.seconds);
+    } else if (seen.depth > settings_.tip_in) {
+      acts.Add({InstrumentOf(seen.tool), Verb::kNullVerb, Target::kNullTarget}, h, now.seconds);
+    }
   }
-  const auto& [is_free, is_in_bag, is_leaving] = now.retrieval;
-  phases_.Update(acts.Triplets(), {is_free, is_in_bag, is_leaving}, now.seconds);
+  phases_.Update(acts.Acts(), facts, now.seconds);
 }
 
 void OperationJudge::SeeTools(const surgery::OperationObservation& now) noexcept {

@@ -140,5 +140,28 @@ TEST_F(OperationJudgeTest, FactsSinceTheToolsAreJudgedOnceAtTheEndOfTheTick) {
   EXPECT_THAT(judge.NewErrors(), IsEmpty());
 }
 
+// issue 47: what is spread in the triangle is its dissection, from the first fibres on
+TEST_F(OperationJudgeTest, FactsOfTheTickSpeakForPhases) {
+  anatomy_.targets.strands = {Target::kCysticPedicle, Target::kCysticPlate};
+  DissectedAnatomy dissected;
+  dissected.bed = {{1, 0.9}};
+  tissue_.strand_is_intact = {1, 1};
+  OperationJudge judge(anatomy_, DissectionMonitor(std::move(dissected), tissue_.position));
+  const auto phase_after = [&](FactKind kind, ToolKind tool, std::int32_t strand) {
+    Fact fact = MakeFact(kind);
+    fact.tool = tool;
+    fact.strand = strand;
+    const std::vector<Fact> facts = {fact};
+    // a continuous act has to last
+    for (int tick = 0; tick < (kind == FactKind::kCurrentInto ? 360 : 2); ++tick)
+      judge.Update({1.0, 1.0 / 120, facts, {}, tissue_, *vessels_, {}, camera_, {}, 0, 0, {}});
+    return judge.CurrentPhase();
+  };
+  EXPECT_EQ(judge.CurrentPhase(), Phase::kPreparation);
+  EXPECT_EQ(phase_after(FactKind::kStrandSpread, ToolKind::kDissector, 0), Phase::kCalotTriangleDissection);
+  EXPECT_EQ(phase_after(FactKind::kCurrentInto, ToolKind::kHook, 1), Phase::kGallbladderDissection)
+      << "beyond the middle of the bed";
+}
+
 }  // namespace
 }  // namespace trocar::cholecystectomy

@@ -140,6 +140,7 @@ void AddMetrics(const JudgedAttempt& judged, const Access* access, ResultPage& p
       shown.about +=
           "\n" +
           host::Translate("It does not tell scripted novices from experts in this task (docs/validity.md).");
+    shown.about += "\n" + host::TranslateWith("Evidence: {1}.", {host::Translate(NameOf(row.evidence))});
     shown.value = report::FormatShown(row.value) + (row.unit.empty() ? "" : " " + row.unit);
     shown.expert = RangeText(row);
     shown.is_outside = IsOutside(row);

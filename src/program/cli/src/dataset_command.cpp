@@ -177,8 +177,9 @@ void AddDatasetCommand(CLI::App& app, Outcome& outcome) {
       "Check a data set with a reader that shares no code with what wrote it (Python, numpy, h5py)");
   verify->add_option("folder", *folder, "The data set")->required()->type_name("DIR");
   verify->footer(
-      "Files against their sums, sizes, classes, boxes, masks and poses against each other. E-DAT-001 if "
-      "not.");
+      "Files against their sums, sizes, classes, boxes, masks and poses against each other; acts, phases and "
+      "the critical "
+      "view against what the simulation knows. E-DAT-001 if not.");
   command->callback(
       [a, verify, folder, &outcome] { outcome.status = verify->parsed() ? Verify(*folder) : Make(*a); });
 }

@@ -19,6 +19,7 @@
 #include "trocar/host/version.h"
 #include "trocar/record/trace.h"
 #include "trocar/training/attempt_metrics.h"
+#include "trocar/training/kinematics_file.h"
 #include "trocar/training/metric_definition.h"
 #include "trocar/training/trace_file.h"
 #include "validity_note.h"
@@ -37,7 +38,7 @@ using training::AttemptTrace;
 constexpr std::size_t kMostTraceBytes = std::size_t{2} << 30;
 
 struct MetricsArguments {
-  std::string file, output, trace;
+  std::string file, output, trace, kinematics;
   int threads = 1;
   bool is_json = false, is_csv = false, is_list = false, is_markdown = false, has_parts = false;
 };
@@ -46,6 +47,7 @@ struct MetricsArguments {
 struct TracedFile {
   AttemptTrace trace;
   ordered_json of = ordered_json::object();
+  bool has_tips_alone = false;  ///< nothing else was recorded: no shaft, force, view or event
 };
 
 base::Result<TracedFile> ReadTraceFile(const std::string& path) {
@@ -56,7 +58,21 @@ base::Result<TracedFile> ReadTraceFile(const std::string& path) {
   return TracedFile{std::move(*trace), {{"trace", path}}};
 }
 
+base::Result<TracedFile> ReadKinematicsFile(const MetricsArguments& arguments) {
+  const auto format = training::FindKinematicsFormat(arguments.kinematics);
+  if (!format)
+    return base::Error{base::ErrorCode::kUnknownName,
+                       "no kinematics \"" + arguments.kinematics + "\"; there are jigsaws and compass"};
+  const auto text = host::ReadFile(arguments.file, kMostTraceBytes);
+  if (!text.ok()) return text.error();
+  auto trace = training::ParseKinematics(*text, *format, arguments.file);
+  if (!trace.ok()) return trace.error();
+  return TracedFile{
+      std::move(*trace), {{"kinematics", arguments.kinematics}, {"file", arguments.file}}, true};
+}
+
 base::Result<TracedFile> TraceAttempt(const MetricsArguments& arguments) {
+  if (!arguments.kinematics.empty()) return ReadKinematicsFile(arguments);
   if (std::filesystem::path(arguments.file).extension() == ".json") return ReadTraceFile(arguments.file);
   auto recording = record::ReadRecording(arguments.file);
   if (!recording.ok()) return recording.error();
@@ -115,11 +131,11 @@ base::Status PutOut(const std::string& text, const std::string& output) {
 base::Status ListDefinitions(const MetricsArguments& arguments) {
   if (arguments.is_json) return PutOut(std::string(training::MetricDefinitionsJson()), arguments.output);
   if (arguments.is_markdown) return PutOut(training::FormatMetricDefinitionsPage(), arguments.output);
-  std::vector<std::vector<std::string>> rows = {{"id", "name", "unit", "better", "what it is"}};
+  std::vector<std::vector<std::string>> rows = {{"id", "name", "unit", "better", "evidence", "what it is"}};
   for (const training::MetricDefinition& d : training::MetricDefinitions()) {
     rows.push_back({d.id, Translate(d.name), d.shown_unit,
                     d.better == training::BetterWhen::kNeither ? "" : Translate(NameOf(d.better)),
-                    Translate(d.about)});
+                    Translate(NameOf(d.evidence)), Translate(d.about)});
   }
   return PutOut(host::FormatShownTable(rows), arguments.output);
 }
@@ -136,8 +152,9 @@ base::Status MeasureAttempt(const MetricsArguments& arguments) {
         is_csv ? training::FormatTraceCsv(traced->trace) : training::FormatTraceJson(traced->trace);
     if (const auto status = host::WriteFile(arguments.trace, text); !status.ok()) return status;
   }
-  const auto metrics = training::CalcAttemptMetrics(traced->trace);
+  auto metrics = training::CalcAttemptMetrics(traced->trace);
   if (!metrics.ok()) return metrics.error();
+  if (traced->has_tips_alone) *metrics = training::KeepMetricsOfTips(std::move(*metrics));
   if (arguments.is_json) return PutOut(FormatMetricsFile(*traced, *metrics), arguments.output);
   if (arguments.is_csv) return PutOut(training::FormatMetricsCsv(*metrics), arguments.output);
   const auto validity = ReadValidity();
@@ -164,6 +181,12 @@ void AddMetricsCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--trace", arguments->trace,
                    "Also write what is measured: every tick (.csv), or everything (.json)")
       ->type_name("FILE");
+  command
+      ->add_option("--kinematics", arguments->kinematics,
+                   "The file is of people on a surgical robot, as a public data set writes it: jigsaws or "
+                   "compass; then what "
+                   "follows from the tips alone is measured")
+      ->type_name("DATASET");
   auto* list = command->add_flag("--list", arguments->is_list,
                                  "Say what each metric is; with --json the definitions of docs/metrics.json");
   command->add_flag("--markdown", arguments->is_markdown, "With --list: as the page docs/metrics.md")
@@ -172,7 +195,8 @@ void AddMetricsCommand(CLI::App& app, Outcome& outcome) {
   command->footer(
       "The same recording gives the same numbers. They are training feedback, not certified assessment.\n"
       "Examples: trocar metrics attempt.trocar --parts\n"
-      "          trocar metrics attempt.trocar --json -o metrics.json --trace trace.csv");
+      "          trocar metrics attempt.trocar --json -o metrics.json --trace trace.csv\n"
+      "          trocar metrics Suturing_B001.txt --kinematics jigsaws");
   command->callback([arguments, &outcome] { outcome.status = MeasureAttempt(*arguments); });
 }
 

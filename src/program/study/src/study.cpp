@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <set>
 #include <thread>
 
+#include "bound_child.h"
 #include "study_folder.h"
 #include "table.h"
 #include "trocar/host/console.h"
@@ -36,8 +38,8 @@ pid_t Start(const std::vector<std::string>& words, const std::filesystem::path& 
   std::vector<char*> argv;
   for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
-  std::fflush(nullptr);
-  const pid_t child = fork();
+  // asked to end, mpirun ends its ranks
+  const pid_t child = ForkBound(SIGTERM);
   if (child != 0) return child;
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (file >= 0) {
@@ -128,16 +130,16 @@ std::vector<std::string> MpiCommand(const StudyOptions& options) {
 }
 
 /// Workers are forks: each runs its share and writes what it says into a log.
-base::Status RunLocally(const StudyOptions& options, const StudyPlan& plan,
+base::Status RunLocally(const StudyOptions& options, const StudyPlan& plan, host::FileLock& lock,
                         const std::function<void()>& tell) {
   Children children;
   for (int i = 0; i < options.workers; ++i) {
-    std::fflush(nullptr);
-    const pid_t child = fork();
+    const pid_t child = ForkBound(SIGKILL);
     if (child < 0)
       return base::Error{base::ErrorCode::kOutOfMemory, std::string("no process: ") + std::strerror(errno) +
                                                             "; ask for fewer workers (--jobs)"};
     if (child == 0) {
+      lock.LeaveToParent();
       const base::Status worked = Work(options, plan, {i, options.workers});
       if (!worked.ok())
         host::PrintErrorLine("trocar: worker " + std::to_string(i) + ": " + worked.error().Text());
@@ -192,7 +194,7 @@ base::Result<StudySummary> RunStudy(const StudyOptions& options, const StudyPlan
     return base::Error{base::ErrorCode::kFileUnwritable, options.folder.string() + ": " + failure.message() +
                                                              "; check the folder and its rights"};
   // two of them would start every run twice
-  const auto lock = host::FileLock::Take(options.folder / "lock");
+  auto lock = host::FileLock::Take(options.folder / "lock");
   if (!lock) return lock.error();
   if (auto status = folder.Begin(options.plan_file); !status) return status.error();
   const std::vector<Run> runs = ListRuns(plan);
@@ -204,7 +206,7 @@ base::Result<StudySummary> RunStudy(const StudyOptions& options, const StudyPlan
   };
   tell();
   if (!open.empty()) {
-    const base::Status ran = options.backend == Backend::kLocal ? RunLocally(options, plan, tell)
+    const base::Status ran = options.backend == Backend::kLocal ? RunLocally(options, plan, *lock, tell)
                                                                 : RunOnCluster(options, plan, tell);
     if (!ran) return ran.error();
   }

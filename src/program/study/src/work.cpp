@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <cstdio>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 
+#include "bound_child.h"
 #include "study_folder.h"
 
 namespace trocar::study {
@@ -33,8 +34,7 @@ std::optional<int> ReadVariable(const char* name) {
 std::optional<std::string> TryRun(const StudyFolder& folder, const StudyPlan& plan, const Run& run) {
   int ends[2] = {-1, -1};
   if (pipe(ends) != 0) return std::string("no pipe: ") + std::strerror(errno);
-  std::fflush(nullptr);
-  const pid_t child = fork();
+  const pid_t child = ForkBound(SIGKILL);
   if (child < 0) {
     close(ends[0]);
     close(ends[1]);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <thread>
 
@@ -210,6 +211,44 @@ TEST_F(StudyTest, IsCompleteAtTheSecondStartThoughRunsAreKilledAtRandom) {
   EXPECT_EQ(summary->done, 8U);
   EXPECT_EQ(Lines().size(), 9U);
   EXPECT_EQ(CountInDatabase(), 8);
+}
+
+std::vector<pid_t> ChildrenOf(pid_t process) {
+  const std::string id = std::to_string(process);
+  std::ifstream file("/proc/" + id + "/task/" + id + "/children");
+  return {std::istream_iterator<pid_t>(file), {}};
+}
+/// Ended, or waiting for whoever took it over to notice.
+bool HasEnded(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string id, name, state;
+  return !(file >> id >> name >> state) || state == "Z" || state == "X";
+}
+
+// issue 47: only the coordinator is killed. Its workers and their runs end with it, and the restart goes on at once.
+TEST_F(StudyTest, WorkersEndWithAKilledCoordinator) {
+  WritePlan("expert", 5);
+  const auto plan = ReadPlan(options_.plan_file);
+  ASSERT_TRUE(plan.ok());
+  const pid_t study = fork();
+  if (study == 0) _exit(RunStudy(options_, *plan, nullptr).ok() ? 0 : 1);
+  std::vector<pid_t> started;
+  for (int i = 0; i < 2000 && started.size() < 4; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    started.clear();
+    for (const pid_t worker : ChildrenOf(study)) {
+      started.push_back(worker);
+      for (const pid_t run : ChildrenOf(worker)) started.push_back(run);
+    }
+  }
+  ASSERT_GE(started.size(), 4U) << "two workers with a run each";
+  kill(study, SIGKILL);
+  waitpid(study, nullptr, 0);
+  const auto summary = Start();
+  ASSERT_TRUE(summary.ok()) << summary.error().Text();
+  EXPECT_EQ(summary->done, 8U);
+  EXPECT_EQ(CountInDatabase(), 8);
+  for (const pid_t process : started) EXPECT_TRUE(HasEnded(process)) << process;
 }
 
 TEST_F(StudyTest, NamesARunThatFails) {

@@ -376,9 +376,10 @@ surgery::OperationObservation Operation::Observe(const HandsNow& hands, const Op
   for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
     surgery::HandObservation& seen = now.hands[hand];
     const surgery::Grasp& grasp = tissue.grasps[hand];
+    seen.tool = Tool(static_cast<int>(hand)).kind;
     seen.p_world_tip = hands.X_proxy[hand].translation;
     seen.depth = hands.joints[hand].depth;
-    seen.is_holding = grasp.IsHolding() && !instrument::AbilitiesOf(Tool(static_cast<int>(hand)).kind).is_bag;
+    seen.is_holding = grasp.IsHolding() && !instrument::AbilitiesOf(seen.tool).is_bag;
     seen.held_surface = grasp.surface;
     seen.change = hands.changes[hand];
   }

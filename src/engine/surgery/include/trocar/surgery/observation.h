@@ -8,6 +8,7 @@
 
 #include "trocar/instrument/camera.h"
 #include "trocar/instrument/hand.h"
+#include "trocar/instrument/tool.h"
 #include "trocar/surgery/fact.h"
 #include "trocar/surgery/grasp.h"
 #include "trocar/surgery/organ_surface.h"
@@ -18,9 +19,10 @@ namespace trocar::surgery {
 
 /// Observation of a hand.
 struct HandObservation {
-  math::Vec3 p_world_tip;          ///< of the tool that is seen [m]
-  double depth = 0;                ///< of the tool in its trocar [m]
-  bool is_holding = false;         ///< jaws hold tissue; of a bag never
+  instrument::ToolKind tool = instrument::ToolKind::kGrasper;  ///< in its trocar
+  math::Vec3 p_world_tip;                                      ///< of the tool that is seen [m]
+  double depth = 0;                                            ///< of the tool in its trocar [m]
+  bool is_holding = false;                                     ///< jaws hold tissue; of a bag never
   std::int32_t held_surface = -1;  ///< that jaws or the bag hold, index into Simulation::Surfaces(), or -1
   GraspChange change = GraspChange::kNone;  ///< in this tick
 };

@@ -67,6 +67,8 @@ struct MetricRow {
   std::optional<double> expert_mean, expert_deviation;
   std::vector<double> group;  ///< ascending
   std::optional<bool> separates;
+  training::Evidence evidence =
+      training::Evidence::kUnvalidated;  ///< the most that has been shown of the measure
 };
 
 struct ErrorRow {

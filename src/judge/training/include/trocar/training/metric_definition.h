@@ -17,6 +17,19 @@ enum class BetterWhen : std::uint8_t { kHigher, kLower, kNeither };
 /// "higher", "lower", "neither"
 std::string_view NameOf(BetterWhen better) noexcept;
 
+/// The most that has been shown of a number or a feature. docs/evidence.md says what each is of.
+enum class Evidence : std::uint8_t {
+  kAnalytic,    ///< it equals a closed formula
+  kMeasured,    ///< it was compared with the truth that a test knows
+  kEmulated,    ///< only with a device or a person that a program plays
+  kScripted,    ///< scripted people of known skill were told apart, or not
+  kRealPeople,  ///< people were
+  kUnvalidated  ///< nothing
+};
+inline constexpr std::size_t kEvidenceCount = 6;
+/// "analytic", "measured against truth", "emulated", "scripted people only", "real people", "unvalidated"
+std::string_view NameOf(Evidence evidence) noexcept;
+
 /// How far a metric may move when only the measuring changes; tested with one motion of known shape.
 struct MetricTolerance {
   double rate = 0;   ///< share of the value: sampled at 60 or 240 Hz instead of 120 Hz [-]
@@ -39,8 +52,9 @@ struct MetricDefinition {
   std::string undefined;  ///< when there is no value; empty: always one
   BetterWhen better = BetterWhen::kNeither;
   std::string source;
-  /// Name of the metric in Fundamentals of Laparoscopic Surgery, LapSim and LAP Mentor; empty where they have none, or
-  /// nothing is known.
+  Evidence evidence = Evidence::kUnvalidated;
+  /// Name of the metric in Fundamentals of Laparoscopic Surgery, LapSim and LAP Mentor; empty where they have none, where their
+  /// definition is another, or nothing is known.
   std::string fls, lapsim, lap_mentor;
   std::optional<MetricTolerance> tolerance;  ///< of what is measured on motion
 };

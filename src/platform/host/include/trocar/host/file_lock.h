@@ -24,6 +24,8 @@ class FileLock {
     std::swap(descriptor_, other.descriptor_);
     return *this;
   }
+  /// In a process that was forked: closes its copy, which would hold the lock after the one who took it has died.
+  void LeaveToParent() noexcept;
   /// Removes the lock file.
   ~FileLock();
 

@@ -46,6 +46,9 @@ class DissectionMonitor {
               std::span<const surgery::OrganSurface> organs, const instrument::Camera& camera) noexcept;
 
   const DissectionFacts& Facts() const { return facts_; }
+  std::span<const DissectedAnatomy::BedFibre> Bed() const { return anatomy_.bed; }
+  /// Tubes that entered the gallbladder at the start.
+  std::size_t EnteringAtStart() const { return anatomy_.entering.size(); }
   void VisitState(base::StateArchive& archive);
 
  private:

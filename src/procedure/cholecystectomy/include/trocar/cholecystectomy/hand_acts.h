@@ -33,7 +33,25 @@ struct TargetTable {
 };
 
 /// Act that a fact is; nothing where it is no act of a tool on a target. Holding is none: it is a state, not a fact of a tick.
+///
+/// Parting tissue is dissection, with a jaw that opens, with a hook, and whichever pedal is down: current into a fibre dissects.
+/// Current into the wall of an organ, a duct or a vessel dissects with the cut pedal and coagulates with the other; a bipolar tool's
+/// coagulation coagulates whatever it holds.
 std::optional<Triplet> TripletOf(const surgery::Fact& fact, const TargetTable& targets) noexcept;
+/// Jaws that hold: they grasp, with more than kRetraction they retract, and they pack while a bag is open for the gallbladder.
+/// \param pull  force on the tool [N]
+Triplet TripletOfHold(instrument::ToolKind tool, Target held, double pull, bool is_bag_open) noexcept;
+inline constexpr double kRetraction = 0.3;  ///< [N]
+
+/// Whether a fact is an act that is done at once, as a clip, a cut and a spread are, and is seen as one for kMoment.
+bool IsMoment(surgery::FactKind kind) noexcept;
+inline constexpr double kMoment = 1.0;  ///< [s]
+
+/// Act of one hand in a tick, as evidence of a phase.
+struct SeenAct {
+  Triplet triplet;
+  double seconds = 0;  ///< for which it counts, > 0
+};
 
 /// Different acts of one tick, of all hands, in the order of the facts. Fixed capacity.
 class HandActs {
@@ -41,11 +59,12 @@ class HandActs {
   static constexpr std::size_t kCapacity = 16;
 
   /// Once for each hand; beyond the capacity left out.
-  void Add(const Triplet& triplet, int hand) noexcept;
-  std::span<const Triplet> Triplets() const { return std::span(triplets_).first(count_); }
+  /// \param seconds  for which it counts: those of the tick, or kMoment
+  void Add(const Triplet& triplet, int hand, double seconds) noexcept;
+  std::span<const SeenAct> Acts() const { return std::span(acts_).first(count_); }
 
  private:
-  std::array<Triplet, kCapacity> triplets_{};
+  std::array<SeenAct, kCapacity> acts_{};
   std::array<int, kCapacity> hands_{};
   std::size_t count_ = 0;
 };

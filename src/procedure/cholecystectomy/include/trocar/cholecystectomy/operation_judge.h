@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "trocar/base/state_archive.h"
 #include "trocar/cholecystectomy/critical_view.h"
@@ -15,6 +16,7 @@
 #include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/cholecystectomy/triplet.h"
 #include "trocar/cholecystectomy/vessel_judgement.h"
+#include "trocar/cholecystectomy/workflow_recogniser.h"
 #include "trocar/instrument/hand.h"
 #include "trocar/scene/procedure.h"
 #include "trocar/surgery/observation.h"
@@ -75,12 +77,13 @@ class OperationJudge final : public scene::ProcedureJudge {
   void JudgePhase(const surgery::OperationObservation& now) noexcept;
   void Report(OperationError error, const surgery::Fact& fact, double time) noexcept;
 
-  JudgedAnatomy anatomy_;                // constant
-  surgery::JudgementSettings settings_;  // constant
+  JudgedAnatomy anatomy_;                   // constant
+  surgery::JudgementSettings settings_;     // constant
+  std::vector<std::uint8_t> is_upper_bed_;  // (strands) constant
   DissectionMonitor dissection_;
   surgery::ErrorLog errors_;
   CriticalView view_;
-  PhaseRecogniser phases_;
+  WorkflowRecogniser phases_;
   std::array<HandState, instrument::kHandCount> hands_;
   bool was_achieved_ = false, was_completed_ = false;
   std::size_t errors_before_ = 0;  // before this tick
