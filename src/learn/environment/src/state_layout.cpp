@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "state_layout.h"
 
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "trocar/base/assert.h"
 
@@ -13,6 +18,43 @@ using simulation::Snapshot;
 
 constexpr double kMillilitre = 1e6;  // per m^3
 constexpr std::size_t kJointCount = 5;
+
+/// Beyond which a scaled state says no more.
+constexpr double kUsualForce = 5;         // [N]
+constexpr double kUsualPressure = 3000;   // [Pa]
+constexpr double kUsualCount = 8;         // of clips and cuts
+constexpr double kUsualFluid = 100;       // [mL]
+constexpr double kRoundPlaces = 0.030;    // round what a task has [m]
+constexpr double kRoundOrgans = 0.060;    // organs are larger than their landmarks [m]
+
+/// Corners of a box round the places that a scene names.
+std::pair<Vec3, Vec3> FindBox(const scene::Scene& scene) {
+  std::vector<Vec3> places;
+  for (const scene::InstrumentSetup& setup : scene.instruments)
+    places.push_back(instrument::CalcToolPose(setup.p_world_port, setup.home).translation);
+  for (const scene::SceneObject& object : scene.objects)
+    places.push_back(object.body.X_world_body.translation);
+  if (scene.task) {
+    for (const scene::Region& region : scene.task->regions) places.push_back(region.centre);
+  }
+  for (const patient::Landmark& landmark : scene.patient.landmarks) places.push_back(landmark.position);
+  if (scene.model) {
+    for (const scene::ModelBand& band : scene.model->bands) places.insert(places.end(), {band.from, band.to});
+    for (const scene::ModelSheet& sheet : scene.model->sheets)
+      places.insert(places.end(), {sheet.centre - sheet.half, sheet.centre + sheet.half});
+  }
+  std::pair<Vec3, Vec3> box = {places.front(), places.front()};
+  const double round = scene.HasPatient() ? kRoundOrgans : kRoundPlaces;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Vec3& place : places) {
+      box.first[axis] = std::min(box.first[axis], place[axis]);
+      box.second[axis] = std::max(box.second[axis], place[axis]);
+    }
+    box.first[axis] -= round;
+    box.second[axis] += round;
+  }
+  return box;
+}
 
 /// Writes one number after the other.
 class Writer {
@@ -39,62 +81,103 @@ Vec3 CalcMiddle(const Snapshot& now, const scene::SurfaceInfo& surface) {
 
 }  // namespace
 
-void StateLayout::Add(std::string name, std::size_t count, std::string unit) {
+void StateLayout::Add(std::string name, std::size_t count, std::string unit, double low, double high) {
   fields_.push_back({std::move(name), size_, count, std::move(unit)});
   size_ += count;
+  low_.resize(size_, static_cast<float>(low));
+  high_.resize(size_, static_cast<float>(high));
 }
 
-StateLayout::StateLayout(const simulation::Simulation& simulation) {
-  const scene::Scene& scene = simulation.GetScene();
-  for (const std::string hand : {"left.", "right."}) {
-    Add(hand + "tip", 3, "m");
-    Add(hand + "shaft", 3, "-");  // unit, from the tip back to the trocar
-    Add(hand + "joints", kJointCount, "rad, rad, rad, m, rad");
-    Add(hand + "force", 3, "N");
-    Add(hand + "is_grasping", 1, "-");
-    Add(hand + "is_touching", 1, "-");
-    Add(hand + "tool", 1, "-");
-    Add(hand + "clips_left", 1, "-");
+void StateLayout::AddPlace(std::string name) {
+  Add(std::move(name), 3, "m", 0, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t at = size_ - 3 + static_cast<std::size_t>(axis);
+    low_[at] = static_cast<float>(box_low_[axis]);
+    high_[at] = static_cast<float>(box_high_[axis]);
   }
-  Add("laparoscope.joints", 4, "rad, rad, rad, m");
+}
+
+void StateLayout::AddRow(std::string name, std::string unit, std::span<const Range> ranges) {
+  Add(std::move(name), ranges.size(), std::move(unit), 0, 0);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    low_[size_ - ranges.size() + i] = static_cast<float>(ranges[i].low);
+    high_[size_ - ranges.size() + i] = static_cast<float>(ranges[i].high);
+  }
+}
+
+StateLayout::StateLayout(const simulation::Simulation& simulation, const scene::Scene& reference) {
+  const scene::Scene& scene = simulation.GetScene();
+  std::tie(box_low_, box_high_) = FindBox(reference);
+  const double turn = std::numbers::pi;
+  const instrument::JointLimits limits;
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
+    const std::string name = hand == instrument::kLeft ? "left." : "right.";
+    const scene::InstrumentSetup& setup = scene.instruments[hand];
+    AddPlace(name + "tip");
+    Add(name + "shaft", 3, "-", -1, 1);  // unit, from the tip back to the trocar
+    AddRow(name + "joints", "rad, rad, rad, m, rad",
+           std::array<Range, kJointCount>{{{-limits.max_pan, limits.max_pan},
+                                           {-limits.max_tilt, limits.max_tilt},
+                                           {-turn, turn},
+                                           {limits.min_depth, limits.max_depth},
+                                           {0, limits.max_jaw}}});
+    Add(name + "force", 3, "N", -kUsualForce, kUsualForce);
+    Add(name + "is_grasping", 1, "-", 0, 1);
+    Add(name + "is_touching", 1, "-", 0, 1);
+    Add(name + "tool", 1, "-", 0, std::max(1.0, static_cast<double>(setup.tray.size()) - 1));
+    Add(name + "clips_left", 1, "-", 0, kUsualCount);
+  }
+  AddRow("laparoscope.joints", "rad, rad, rad, m",
+         std::array<Range, 4>{{{-limits.max_pan, limits.max_pan},
+                               {-limits.max_tilt, limits.max_tilt},
+                               {-turn, turn},
+                               {0, limits.max_depth}}});
   for (const scene::SceneObject& object : scene.objects) {
-    Add("object." + object.name + ".position", 3, "m");
-    Add("object." + object.name + ".rotation", 4, "quaternion w, x, y, z");
-    if (object.Moves()) Add("object." + object.name + ".held", 2, "-");
+    AddPlace("object." + object.name + ".position");
+    Add("object." + object.name + ".rotation", 4, "quaternion w, x, y, z", -1, 1);
+    if (object.Moves()) Add("object." + object.name + ".held", 2, "-", 0, 1);
   }
   if (scene.task) {
-    for (const scene::Region& region : scene.task->regions) Add("region." + region.name + ".centre", 3, "m");
+    for (const scene::Region& region : scene.task->regions) AddPlace("region." + region.name + ".centre");
     for (const scene::Goal& goal : scene.task->goals) {
-      Add("goal." + goal.name + ".done", 1, "-");
-      Add("goal." + goal.name + ".is_open", 1, "-");
+      Add("goal." + goal.name + ".done", 1, "-", 0, 1);
+      Add("goal." + goal.name + ".is_open", 1, "-", 0, 1);
     }
   }
   if (scene.model) {
-    for (const scene::ModelBand& band : scene.model->bands) Add("band." + band.name + ".is_whole", 1, "-");
+    for (const scene::ModelBand& band : scene.model->bands) {
+      AddPlace("band." + band.name + ".from");
+      AddPlace("band." + band.name + ".to");
+      Add("band." + band.name + ".is_whole", 1, "-", 0, 1);
+    }
+    for (const scene::ModelSheet& sheet : scene.model->sheets) {
+      AddPlace("sheet." + sheet.name + ".circle_centre");
+      Add("sheet." + sheet.name + ".circle_radius", 1, "m", 0, 0.05);
+    }
   }
   for (const scene::SurfaceInfo& surface : simulation.Surfaces())
-    Add("surface." + surface.name + ".middle", 3, "m");
+    AddPlace("surface." + surface.name + ".middle");
   for (std::size_t i = 0; i < simulation.GetSnapshot().organs.size(); ++i)
-    Add("surface." + simulation.Surfaces()[i].name + ".pressure", 1, "Pa");
+    Add("surface." + simulation.Surfaces()[i].name + ".pressure", 1, "Pa", 0, kUsualPressure);
   if (scene.operation || scene.model) {
-    Add("clips", 1, "-");
-    Add("cuts", 1, "-");
-    Add("strands_intact", 1, "-");  // share
+    Add("clips", 1, "-", 0, kUsualCount);
+    Add("cuts", 1, "-", 0, kUsualCount);
+    Add("strands_intact", 1, "-", 0, 1);  // share
   }
   if (scene.operation) {
-    Add("cleared", 1, "-");
-    Add("detached", 1, "-");
-    Add("structures_entering", 1, "-");
-    Add("critical_view", 3, "-");
-    Add("critical_view_seen", 2, "-");
-    Add("phase", cholecystectomy::kPhaseCount, "-");
-    Add("gallbladder_is_free", 1, "-");
-    Add("gallbladder_is_in_bag", 1, "-");
-    Add("blood", 1, "mL");
-    Add("bile", 1, "mL");
-    Add("smoke", 1, "-");
+    Add("cleared", 1, "-", 0, 1);
+    Add("detached", 1, "-", 0, 1);
+    Add("structures_entering", 1, "-", 0, 4);
+    Add("critical_view", 3, "-", 0, 2);
+    Add("critical_view_seen", 2, "-", 0, 1);
+    Add("phase", cholecystectomy::kPhaseCount, "-", 0, 1);
+    Add("gallbladder_is_free", 1, "-", 0, 1);
+    Add("gallbladder_is_in_bag", 1, "-", 0, 1);
+    Add("blood", 1, "mL", 0, kUsualFluid);
+    Add("bile", 1, "mL", 0, kUsualFluid);
+    Add("smoke", 1, "-", 0, 1);
   }
-  Add("time", 1, "-");  // share of the episode's
+  Add("time", 1, "-", 0, 1);  // share of the episode's
 }
 
 void StateLayout::Write(const simulation::Simulation& simulation, double time_share,
@@ -135,7 +218,12 @@ void StateLayout::Write(const simulation::Simulation& simulation, double time_sh
     }
   }
   if (scene.model) {
-    for (const std::uint8_t is_whole : operation.band_is_whole) out.Put(is_whole);
+    for (std::size_t i = 0; i < scene.model->bands.size(); ++i) {
+      out.Put(scene.model->bands[i].from);
+      out.Put(scene.model->bands[i].to);
+      out.Put(operation.band_is_whole[i]);
+    }
+    for (const scene::ModelSheet& sheet : scene.model->sheets) out.Put(sheet.centre), out.Put(sheet.circle);
   }
   for (const scene::SurfaceInfo& surface : simulation.Surfaces()) out.Put(CalcMiddle(now, surface));
   for (const simulation::OrganSnapshot& organ : now.organs) out.Put(organ.pressure);

@@ -14,18 +14,25 @@ namespace trocar::environment {
 /// Constant for one task: all its layouts have the same things.
 class StateLayout {
  public:
-  explicit StateLayout(const simulation::Simulation& simulation);
+  /// \param reference  standardised scene of the same task: its places say in what box those of states lie
+  StateLayout(const simulation::Simulation& simulation, const scene::Scene& reference);
 
   std::span<const Field> Fields() const { return fields_; }
+  std::span<const float> Low() const { return low_; }    ///< (Size())
+  std::span<const float> High() const { return high_; }  ///< (Size())
   std::size_t Size() const { return size_; }
   /// \param time_share   of the episode's time that has passed [-]
   /// \param[out] state  (Size())
   void Write(const simulation::Simulation& simulation, double time_share, std::span<float> state) const;
 
  private:
-  void Add(std::string name, std::size_t count, std::string unit);
+  void Add(std::string name, std::size_t count, std::string unit, double low, double high);
+  void AddPlace(std::string name);
+  void AddRow(std::string name, std::string unit, std::span<const Range> ranges);
 
   std::vector<Field> fields_;
+  std::vector<float> low_, high_;
+  math::Vec3 box_low_, box_high_;  // of places [m]
   std::size_t size_ = 0;
 };
 

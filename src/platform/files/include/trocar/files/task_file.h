@@ -17,6 +17,9 @@ struct TaskChoice {
   std::string level = "normal";          ///< one of the file's
   std::uint64_t seed = 1;                ///< of its random parameters and of the scene
   std::filesystem::path patient_folder;  ///< takes the place of the scene's patient unless it is empty
+  /// The seed also decides what the file lets vary (`vary`, `shuffle`): for policies that learn. People train at the
+  /// standardised task.
+  bool is_varied = false;
 };
 
 /// A task that is delivered.
