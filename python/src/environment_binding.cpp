@@ -457,6 +457,13 @@ void BindEnvironment(py::module_& module) {
     features.append(std::string(environment::NameOf(static_cast<Feature>(i))));
   module.attr("FEATURES") = py::tuple(features);
   module.attr("CONTACT_ROWS") = kContactRows;
+  py::dict ranges;
+  for (std::size_t i = 0; i < kVariedCount; ++i) {
+    const environment::Range limits = environment::LimitsOf(static_cast<Varied>(i));
+    ranges[py::str(std::string(environment::NameOf(static_cast<Varied>(i))))] =
+        py::make_tuple(limits.low, limits.high);
+  }
+  module.attr("RANGES") = ranges;
   module.def("default_weights", [] { return DescribeFeatures(environment::DefaultWeights()); });
   py::class_<EnvironmentModel, std::shared_ptr<EnvironmentModel>>(
       module, "EnvironmentModel", "What all environments of the same settings share.")

@@ -424,6 +424,9 @@ void BindSimulation(py::module_& module) {
       },
       "The delivered tasks by key.");
   module.def(
+      "set_data_folder", [](const std::filesystem::path& folder) { host::SetDataFolder(folder); },
+      py::arg("folder"), "Where the delivered files are, unless TROCAR_DATA_DIR names another place.");
+  module.def(
       "find",
       [](const std::string& name) {
         const auto data = Take(host::FindDataFolder());
