@@ -39,7 +39,7 @@ def main():
         with zipfile.ZipFile(made) as archive:
             names = archive.namelist()
             assert archive.testzip() is None and len(names) == len(set(names))
-            for wanted in ("trocar/__init__.py", "trocar/py.typed", "trocar/share/scenes/tasks/peg_transfer.json", "trocar/share/assets/patients/schematic/patient.json"):
+            for wanted in ("trocar/__init__.py", "trocar/py.typed", "trocar/share/scenes/tasks/peg_transfer.json", "trocar/share/assets/patients/visible-human-male/control_points.json"):
                 assert wanted in names, f"{wanted} is not in the wheel"
         subprocess.run([sys.executable, "-m", "venv", folder / "bare"], check=True)
         python = folder / "bare" / "bin" / "python"
