@@ -304,7 +304,7 @@ class Renamed(trocar.Environment):
 
 class Metrics(unittest.TestCase):
     def test_are_those_of_a_simulation_with_the_same_hands(self):
-        with trocar.make("instrument_navigation", seed=2, metrics=True) as env:
+        with trocar.make("instrument_navigation", seed=2, layouts=1, metrics=True) as env:
             env.reset(seed=2)
             env.step(np.full(env.action_space.shape, 0.5, np.float32))
             env.reset()  # what was before is no part of it

@@ -13,7 +13,7 @@ import numpy as np
 
 from .environments import Scene, VectorEnvironment
 from .errors import Error
-from .objects import seed_of
+from .objects import Taken, one_at_a_time, seed_of
 
 try:
     from stable_baselines3.common.vec_env import VecEnv as _VecEnv
@@ -45,7 +45,8 @@ class _Episodes:
         return found
 
 
-class StableBaselinesVecEnv(_VecEnv):
+@one_at_a_time
+class StableBaselinesVecEnv(Taken, _VecEnv):
     """A pool as Stable-Baselines3's ``VecEnv``: an episode that ends begins anew in the same step.
 
     Infos have "terminal_observation", "TimeLimit.truncated" and "episode" ({"r", "l", "t"}) of episodes that have ended, and
@@ -142,7 +143,8 @@ class StableBaselinesVecEnv(_VecEnv):
         return [None] * self.num_envs if images is None else list(images)
 
 
-class RlGamesVecEnv(_IVecEnv):
+@one_at_a_time
+class RlGamesVecEnv(Taken, _IVecEnv):
     """A pool after rl_games' ``IVecEnv``: dones in one, ``infos["time_outs"]`` beside. Registered by :func:`register_rl_games`."""
 
     def __init__(self, config_name: str, num_actors: int, *, task: Scene, **settings: Any) -> None:
@@ -199,6 +201,7 @@ def register_rl_games(name: str = "TROCAR") -> None:
     env_configurations.register("trocar", {"vecenv_type": name, "env_creator": lambda **settings: None})
 
 
+@one_at_a_time
 class CleanRlVectorEnvironment(VectorEnvironment):
     """A pool whose infos say what CleanRL's scripts print: ``infos["final_info"]["episode"]`` has "r", "l" and "t".
 
