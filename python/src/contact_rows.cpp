@@ -12,9 +12,8 @@ void WriteContacts(const simulation::Simulation& simulation, std::span<float> ro
   TROCAR_ASSERT(rows.size() == kContactRows * kContactNumbers);
   std::vector<simulation::ToolContact> contacts;
   simulation.FindToolContacts(contacts);
-  std::stable_sort(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
-    return math::Norm(a.force) > math::Norm(b.force);
-  });
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const auto& a, const auto& b) { return math::Norm(a.force) > math::Norm(b.force); });
   std::fill(rows.begin(), rows.end(), 0.0F);
   auto to = rows.begin();
   for (std::size_t i = 0; i < std::min(contacts.size(), kContactRows); ++i) {

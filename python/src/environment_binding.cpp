@@ -76,7 +76,8 @@ environment::Ranges ReadRanges(const py::dict& named, environment::Ranges ranges
       std::string known;
       for (std::size_t k = 0; k < kVariedCount; ++k)
         known += (k == 0 ? "" : ", ") + std::string(environment::NameOf(static_cast<Varied>(k)));
-      throw Failure({base::ErrorCode::kUnknownName, "nothing that varies is called \"" + name + "\"; there are " + known});
+      throw Failure({base::ErrorCode::kUnknownName,
+                     "nothing that varies is called \"" + name + "\"; there are " + known});
     }
     const auto is_number = [](const py::handle& value) {
       return py::isinstance<py::float_>(value) ||
@@ -144,8 +145,7 @@ std::shared_ptr<EnvironmentModel> MakeModel(const py::object& task, const std::s
   settings.seed = seed;
   settings.layouts = layouts;
   settings.models = models;
-  const environment::Ranges usual =
-      layouts > 0 ? environment::StandardRanges() : environment::UsualRanges();
+  const environment::Ranges usual = layouts > 0 ? environment::StandardRanges() : environment::UsualRanges();
   settings.ranges = ReadRanges(ranges, usual, usual);
   settings.actions = *kind;
   settings.actions_per_second = actions_per_second;
@@ -335,7 +335,8 @@ void BindPool(py::module_& module) {
           },
           py::arg("ids"), py::arg("ranges"))
       .def(
-          "drawn", [](const DrawnPool& p, std::int32_t id) { return DescribeDrawn(Take(p.pool->Look(id))->Drawn()); },
+          "drawn",
+          [](const DrawnPool& p, std::int32_t id) { return DescribeDrawn(Take(p.pool->Look(id))->Drawn()); },
           py::arg("id"))
       .def("rows", &ViewPool,
            "Views of the pool's own rows; row i is written while environment i is at work.");

@@ -42,7 +42,8 @@ std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& 
   const SceneSource source = ReadSceneSource(task, folder);
   PatientSource given(patient);
   const py::gil_scoped_release release;
-  auto scene = std::make_shared<const scene::Scene>(Take(FindScene(source, {level, seed, given.Folder(), is_varied})));
+  auto scene =
+      std::make_shared<const scene::Scene>(Take(FindScene(source, {level, seed, given.Folder(), is_varied})));
   auto simulation = Take(Simulation::Make(scene, {.threads = host::UseThreads(threads)}));
   auto running = std::make_unique<Running>(
       Running{std::move(scene), std::move(simulation), std::move(given), std::nullopt});
@@ -273,7 +274,8 @@ void BindRunning(py::module_& module) {
            py::arg("folder") = "", py::arg("varied") = false,
            "`task` is a task's key, \"cholecystectomy\", a file, or a dictionary as such a file holds, whose "
            "relative paths start from `folder`; `patient` a folder, or {\"seed\": 5, \"set\": {...}}. With "
-           "`metrics` each tick is collected for metrics(). With `varied` the seed also decides what a task lets "
+           "`metrics` each tick is collected for metrics(). With `varied` the seed also decides what a task "
+           "lets "
            "vary, as in environments.")
       .def_property_readonly("name", [](const Running& r) { return r.scene->name; })
       .def_property_readonly(
@@ -326,8 +328,9 @@ void BindRunning(py::module_& module) {
             r.BeginAttempt();
           },
           "Back to the first tick.")
-      .def("snapshot", [](const Running& r) { return DescribeSnapshot(r.simulation); },
-           "What the last tick published, copied: SI units, world frame.")
+      .def(
+          "snapshot", [](const Running& r) { return DescribeSnapshot(r.simulation); },
+          "What the last tick published, copied: SI units, world frame.")
       .def(
           "positions",
           [](const Running& r) { return ToArray(std::span(r.simulation.GetSnapshot().positions)); },

@@ -73,6 +73,17 @@ class Terms(unittest.TestCase):
                 tip = next(field["first"] for field in env.state_fields if field["name"] == "left.tip")
                 self.assertAlmostEqual(info["terms"]["high"], 2 * (float(seen[tip + 2]) + 1), places=6)
 
+    def test_vectors_of_three_environments_are_not_mixed_up(self):
+        """Three environments and three parts of a place: what is beside what must not be guessed from the sizes."""
+        terms = {"e": "norm(max(left.tip, time) * 2 - clip(right.tip, 0 - force, 1))"}
+        pool, env = trocar.make_vec("peg_transfer", 3, actions="tip", terms=terms), trocar.make("peg_transfer", actions="tip", terms=terms)
+        pool.reset(seed=1)
+        action = np.linspace(-1, 1, 10)
+        found = pool.step(np.tile(action, (3, 1)))[-1]["terms"]["e"]
+        for i in range(3):
+            env.reset(seed=1 + i)
+            self.assertAlmostEqual(env.step(action)[-1]["terms"]["e"], found[i], places=6)
+
     def test_names_with_blanks(self):
         with trocar.make("lift_and_grasp", terms={"half": 'state["goal.The bead.done"] - before(state["goal.The bead.done"])'}) as env:
             env.reset(seed=1)
@@ -80,7 +91,7 @@ class Terms(unittest.TestCase):
 
     def test_what_is_none_is_refused_with_its_name(self):
         for code, term in (("E-SCN-003", "left.tipp[0]"), ("E-SCN-003", "nobody"), ("E-CLI-001", "left.tip"), ("E-CLI-001", "1 +"), ("E-CLI-001", "__import__('os')"),
-                           ("E-CLI-001", "left.tip[5]"), ("E-CLI-001", "(lambda: 1)()"), ("E-CLI-001", "[1, 2]"), ("E-CLI-001", "before(before(time))"), ("E-CLI-001", "norm(1, 2)"),
+                           ("E-CLI-001", "left.tip[5]"), ("E-CLI-001", "(lambda: 1)()"), ("E-CLI-001", "[1, 2]"), ("E-CLI-001", "before(before(time))"), ("E-CLI-001", "norm(1, 2)"), ("E-CLI-001", "norm(time)"), ("E-CLI-001", "dot(left.tip, 2)"), ("E-CLI-001", "9" * 400),
                            ("E-CLI-001", "'text'"), ("E-CLI-001", "before(goal)"), ("E-CLI-001", "True"), ("E-CLI-001", "(" * 400 + "1" + ")" * 400), ("E-CLI-001", 3),
                            ("E-CLI-001", {"weight": 1}), ("E-CLI-001", {"expression": "1", "function": near}), ("E-CLI-001", {"expression": "1", "weight": float("nan")}),
                            ("E-CLI-001", {"expression": "1", "wait": 1})):

@@ -157,8 +157,7 @@ class RlGamesVecEnv(Taken, _IVecEnv):
     def step(self, actions: Any):
         if hasattr(actions, "detach"):
             actions = actions.detach().cpu().numpy()
-        observations, rewards, terminated, truncated, infos = self.pool.step(np.clip(actions, -1, 1) if np.ndim(actions) and
-                                                                             self.action_space.dtype.kind == "f" else actions)
+        observations, rewards, terminated, truncated, infos = self.pool.step(actions)
         return observations, rewards.astype(np.float32), terminated | truncated, {
             "time_outs": truncated & ~terminated, "is_success": infos["is_success"]}
 

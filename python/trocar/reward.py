@@ -48,20 +48,19 @@ def _wrong(term: str, what: str) -> Error:
     return Error("E-CLI-001", f'the reward term "{term}" {what}')
 
 
-def _level(a: Any, b: Any) -> tuple[Any, Any]:
-    """A number of each environment beside a vector of each."""
-    if np.ndim(a) == 1 and np.ndim(b) == 2:
-        return a[:, None], b
-    if np.ndim(a) == 2 and np.ndim(b) == 1:
-        return a, b[:, None]
-    return a, b
+def _level(*values: Any) -> list[Any]:
+    """Numbers of each environment beside vectors of each."""
+    if max(map(np.ndim, values)) < 2:
+        return list(values)
+    return [value[:, None] if np.ndim(value) == 1 else value for value in values]
 
 
 _BINARY = {ast.Add: np.add, ast.Sub: np.subtract, ast.Mult: np.multiply, ast.Div: np.divide, ast.Pow: np.power}
 _COMPARE = {ast.Lt: np.less, ast.LtE: np.less_equal, ast.Gt: np.greater, ast.GtE: np.greater_equal, ast.Eq: np.equal,
             ast.NotEq: np.not_equal}
-_CALLS = {"norm": (1, lambda x: np.linalg.norm(x, axis=-1)), "dot": (2, lambda a, b: (a * b).sum(-1)), "abs": (1, np.abs),
-          "sqrt": (1, np.sqrt), "exp": (1, np.exp), "min": (2, np.minimum), "max": (2, np.maximum), "clip": (3, np.clip)}
+_OF_VECTORS = {"norm": (1, lambda x: np.linalg.norm(x, axis=-1)), "dot": (2, lambda a, b: (a * b).sum(-1))}
+_CALLS = {**_OF_VECTORS, "abs": (1, np.abs), "sqrt": (1, np.sqrt), "exp": (1, np.exp), "min": (2, np.minimum), "max": (2, np.maximum),
+          "clip": (3, np.clip)}
 
 
 class Expression:
@@ -99,7 +98,10 @@ class Expression:
     def _compile(self, node: ast.AST, is_before: bool) -> Callable:
         again = lambda part: self._compile(part, is_before)  # noqa: E731
         if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
-            value = float(node.value)
+            try:
+                value = float(node.value)
+            except OverflowError:
+                raise _wrong(self._term, "has a number that is too large") from None
             return lambda at: value
         if isinstance(node, (ast.Name, ast.Attribute)):
             return self._name(_dotted(node, self._term), is_before)
@@ -117,8 +119,14 @@ class Expression:
                 return self._compile(node.args[0], True)
             count, call = _CALLS.get(node.func.id, (None, None))
             if count == len(node.args):
-                parts = [again(part) for part in node.args]
-                return lambda at: call(*(part(at) for part in parts))
+                parts, name = [again(part) for part in node.args], node.func.id
+
+                def calc(at):
+                    values = [part(at) for part in parts]
+                    if name in _OF_VECTORS and any(np.ndim(value) != 2 for value in values):
+                        raise _wrong(self._term, f"takes {name} of what is no vector: {ast.unparse(node)}")
+                    return call(*_level(*values))
+                return calc
         if isinstance(node, ast.Subscript):
             key = node.slice
             if isinstance(node.value, ast.Name) and node.value.id == "state" and isinstance(key, ast.Constant) and isinstance(key.value, str):

@@ -45,7 +45,8 @@ TEST(OtherStart, TakesHandsAndLensThereAndNothingElse) {
     EXPECT_GT(math::Distance(now.instruments[0].X_world_tool.translation,
                              before.instruments[0].X_world_tool.translation),
               0.003);
-    EXPECT_GT(math::Distance(now.X_world_laparoscope.translation, before.X_world_laparoscope.translation), 0.001);
+    EXPECT_GT(math::Distance(now.X_world_laparoscope.translation, before.X_world_laparoscope.translation),
+              0.001);
     for (std::size_t i = 0; i < now.objects.size(); ++i)
       EXPECT_EQ(now.objects[i].X_world_object.translation, before.objects[i].X_world_object.translation);
     // whoever holds still has not begun

@@ -204,8 +204,7 @@ Motion ActionLayout::ReadDiscrete(std::span<const double> action, scene::Input& 
       motion.camera[joint] = (choice % 2 == 1 ? 1 : -1) * (joint == 3 ? kMaxTipSpeed : kMaxTurn);
     }
   }
-  if (has_assistant_)
-    input.assistant = static_cast<scene::AssistantCommand>(take());
+  if (has_assistant_) input.assistant = static_cast<scene::AssistantCommand>(take());
   return motion;
 }
 

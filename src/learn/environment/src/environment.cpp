@@ -70,10 +70,9 @@ base::Result<Source> ReadSource(const EnvironmentSettings& settings) {
 base::Result<scene::Scene> ParseLayout(const Source& source, const files::TaskChoice& choice) {
   auto scene = files::ParseScene(source.text, source.path, choice);
   if (scene.ok() && !scene->task && !scene->operation) {
-    return base::Error{
-        base::ErrorCode::kSceneInvalid,
-        source.path.string() +
-            ": in this scene nothing is to be done; an environment is a task or an operation"};
+    return base::Error{base::ErrorCode::kSceneInvalid,
+                       source.path.string() +
+                           ": in this scene nothing is to be done; an environment is a task or an operation"};
   }
   return scene;
 }
@@ -94,13 +93,16 @@ struct EnvironmentModel::Content {
   std::vector<std::shared_ptr<const simulation::SimulationModel>> models;
 
   std::filesystem::path PatientOf(std::size_t number) const {
-    return settings.patients.empty() ? std::filesystem::path() : settings.patients[number % settings.patients.size()];
+    return settings.patients.empty() ? std::filesystem::path()
+                                     : settings.patients[number % settings.patients.size()];
   }
   /// Seed of a kept model's layout.
   std::uint64_t SeedOf(std::size_t number) const {
-    return settings.layouts > 0 ? settings.seed + number : 1 + number / std::max<std::size_t>(1, settings.patients.size());
+    return settings.layouts > 0 ? settings.seed + number
+                                : 1 + number / std::max<std::size_t>(1, settings.patients.size());
   }
-  base::Result<scene::Scene> Parse(std::uint64_t seed, const std::filesystem::path& patient, bool is_varied) const {
+  base::Result<scene::Scene> Parse(std::uint64_t seed, const std::filesystem::path& patient,
+                                   bool is_varied) const {
     return ParseLayout(source, {settings.level, seed, patient, is_varied});
   }
   base::Status CheckFits(const simulation::Simulation& made, const scene::Scene& reference) const;
@@ -111,12 +113,14 @@ base::Status EnvironmentModel::Content::CheckFits(const simulation::Simulation& 
                                                   const scene::Scene& reference) const {
   const StateLayout other(made, reference);
   const auto same = [](const Field& a, const Field& b) { return a.name == b.name && a.count == b.count; };
-  if (std::equal(other.Fields().begin(), other.Fields().end(), state->Fields().begin(), state->Fields().end(), same))
+  if (std::equal(other.Fields().begin(), other.Fields().end(), state->Fields().begin(), state->Fields().end(),
+                 same))
     return {};
-  return base::Error{base::ErrorCode::kSceneInvalid,
-                     source.path.string() + ": \"" + made.GetScene().patient_folder.string() +
-                         "\" has other organs, ducts or things than the first patient; an environment's states name "
-                         "the same ones"};
+  return base::Error{
+      base::ErrorCode::kSceneInvalid,
+      source.path.string() + ": \"" + made.GetScene().patient_folder.string() +
+          "\" has other organs, ducts or things than the first patient; an environment's states name "
+          "the same ones"};
 }
 
 EnvironmentModel::EnvironmentModel(std::unique_ptr<Content> content) : content_(std::move(content)) {}
@@ -139,7 +143,7 @@ base::Result<std::shared_ptr<EnvironmentModel>> EnvironmentModel::Make(const Env
   made.has_tissue = reference->operation || reference->model || reference->HasPatient();
   const std::size_t patients = std::max<std::size_t>(1, settings.patients.size());
   const int usual = reference->model ? 8 : static_cast<int>(patients);
-  made.kept = static_cast<std::size_t>(settings.layouts > 0   ? settings.layouts
+  made.kept = static_cast<std::size_t>(settings.layouts > 0  ? settings.layouts
                                        : settings.models > 0 ? settings.models
                                                              : usual);
   made.models.resize(made.kept);
@@ -361,8 +365,7 @@ base::Result<Environment> Environment::Make(std::shared_ptr<EnvironmentModel> mo
   if (!first.ok()) return first.error();
   auto simulation = simulation::Simulation::Make(first->model);
   if (!simulation) return simulation.error();
-  auto content =
-      std::make_unique<Content>(std::move(model), std::move(first->model), std::move(*simulation));
+  auto content = std::make_unique<Content>(std::move(model), std::move(first->model), std::move(*simulation));
   content->progress.ranges = *content->model->Settings().ranges;
   return Environment(std::move(content));
 }
@@ -407,7 +410,7 @@ base::Status Environment::CheckIsRunning() const {
   if (content_->progress.is_begun && !content_->progress.is_over) return {};
   return base::Error{base::ErrorCode::kEnvironmentState,
                      content_->progress.is_begun ? "the episode is over; call reset before the next step"
-                                        : "no episode has begun; call reset before the first step"};
+                                                 : "no episode has begun; call reset before the first step"};
 }
 
 base::Result<Outcome> Environment::Step(std::span<const double> action) {
@@ -545,13 +548,15 @@ base::Status Environment::Restore(std::span<const std::byte> bytes) {
                        ", this program reads " + std::to_string(kSaveVersion) + "; save it again");
   }
   if (header.size != content.size() || header.checksum != base::CalcChecksum(content))
-    return RefuseState("the saved environment is damaged: its checksum does not fit; take another copy of it");
+    return RefuseState(
+        "the saved environment is damaged: its checksum does not fit; take another copy of it");
 
   Content& now = *content_;
   EpisodeDraw draw;
   base::StateArchive archive = base::StateArchive::ForRestore(content);
   VisitDraw(archive, draw);
-  if (!archive.ok() || !IsUsable(draw)) return RefuseState("what a saved environment has drawn is out of range");
+  if (!archive.ok() || !IsUsable(draw))
+    return RefuseState("what a saved environment has drawn is out of range");
   Progress progress;
   progress.late.resize(now.LateTicks(draw));
   archive.Field("progress", progress);

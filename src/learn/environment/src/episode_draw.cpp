@@ -36,8 +36,8 @@ base::Status CheckRanges(const Ranges& ranges) {
       return digits;
     };
     return base::Error{base::ErrorCode::kUsage,
-                       "the range of " + std::string(NameOf(quantity)) + " goes from " + text(range.low) + " to " +
-                           text(range.high) + "; it lies within " + text(limits.low) + " and " +
+                       "the range of " + std::string(NameOf(quantity)) + " goes from " + text(range.low) +
+                           " to " + text(range.high) + "; it lies within " + text(limits.low) + " and " +
                            text(limits.high) + ", the lower number first"};
   }
   return {};
@@ -50,8 +50,9 @@ EpisodeDraw DrawEpisode(std::uint64_t seed, const Ranges& ranges) {
   draw.choice = seeds.NextWord();
   for (std::size_t i = 0; i < kVariedCount; ++i) {
     const double share = math::Random(seeds.NextWord()).Uniform();
-    draw.values[i] = ranges[i].low == ranges[i].high ? ranges[i].low
-                                                     : ranges[i].low + share * (ranges[i].high - ranges[i].low);
+    draw.values[i] = ranges[i].low == ranges[i].high
+                         ? ranges[i].low
+                         : ranges[i].low + share * (ranges[i].high - ranges[i].low);
   }
   for (math::Vec3& aside : draw.asides) {
     math::Random random(seeds.NextWord());

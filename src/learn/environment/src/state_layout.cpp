@@ -20,12 +20,12 @@ constexpr double kMillilitre = 1e6;  // per m^3
 constexpr std::size_t kJointCount = 5;
 
 /// Beyond which a scaled state says no more.
-constexpr double kUsualForce = 5;         // [N]
-constexpr double kUsualPressure = 3000;   // [Pa]
-constexpr double kUsualCount = 8;         // of clips and cuts
-constexpr double kUsualFluid = 100;       // [mL]
-constexpr double kRoundPlaces = 0.030;    // round what a task has [m]
-constexpr double kRoundOrgans = 0.060;    // organs are larger than their landmarks [m]
+constexpr double kUsualForce = 5;        // [N]
+constexpr double kUsualPressure = 3000;  // [Pa]
+constexpr double kUsualCount = 8;        // of clips and cuts
+constexpr double kUsualFluid = 100;      // [mL]
+constexpr double kRoundPlaces = 0.030;   // round what a task has [m]
+constexpr double kRoundOrgans = 0.060;   // organs are larger than their landmarks [m]
 
 /// Corners of a box round the places that a scene names.
 std::pair<Vec3, Vec3> FindBox(const scene::Scene& scene) {

@@ -85,7 +85,8 @@ TEST(Environment, SeedsChooseLayouts) {
 // Every seed has its own layout and start; the row of episodes that nobody names has, too.
 TEST(Environment, EverySeedIsAStartOfItsOwn) {
   const auto model = MakeModel({.task = "peg_transfer"});
-  Environment environment = std::move(*Environment::Make(model)), other = std::move(*Environment::Make(model));
+  Environment environment = std::move(*Environment::Make(model)),
+              other = std::move(*Environment::Make(model));
   std::vector<float> state(model->StateSize()), again(state.size());
   std::set<std::vector<float>> starts;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -106,7 +107,8 @@ TEST(Environment, EverySeedIsAStartOfItsOwn) {
 
 TEST(Environment, IsSavedWithWhatItHasDrawn) {
   const auto model = MakeModel({.task = "lift_and_grasp", .actions = ActionKind::kTip});
-  Environment environment = std::move(*Environment::Make(model)), other = std::move(*Environment::Make(model));
+  Environment environment = std::move(*Environment::Make(model)),
+              other = std::move(*Environment::Make(model));
   Ranges ranges = UsualRanges();
   ranges[static_cast<std::size_t>(Varied::kLatency)] = {0.03, 0.2};
   ranges[static_cast<std::size_t>(Varied::kFriction)] = {0.8, 1.2};

@@ -165,7 +165,8 @@ std::string SubstituteParameters(std::string_view text, const ParameterValues& v
     close = std::min(close, text.size() - 1);
     out += text.substr(at, open - at);
     const std::string_view content = text.substr(open + 1, close - open - 1);
-    const auto sum = content.find('{') == std::string_view::npos ? std::nullopt : SumReader(content, values).Read();
+    const auto sum =
+        content.find('{') == std::string_view::npos ? std::nullopt : SumReader(content, values).Read();
     if (sum) {
       char number[40];
       std::snprintf(number, sizeof number, "%.17g", *sum);

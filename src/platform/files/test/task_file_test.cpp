@@ -98,9 +98,11 @@ TEST_F(TaskFile, WhatVariesIsDrawnBesideWhatIsStandardised) {
     text.replace(at, what.size(), by);
   };
   // a new parameter stands before the old one in the alphabet
-  replace(R"("x": {"value": 3, "spread": 2})",
-          R"("a": {"value": 0, "vary": 4}, "b": {"value": 1}, "c": {"value": 2}, "x": {"value": 3, "spread": 2})");
-  replace(R"("at_mm": ["{x}", "-{x}", -136])", R"("at_mm": ["{a} + {x}", "2*{b}-{c} - {x}", " - 0.5*{c} - 135 "])");
+  replace(
+      R"("x": {"value": 3, "spread": 2})",
+      R"("a": {"value": 0, "vary": 4}, "b": {"value": 1}, "c": {"value": 2}, "x": {"value": 3, "spread": 2})");
+  replace(R"("at_mm": ["{x}", "-{x}", -136])",
+          R"("at_mm": ["{a} + {x}", "2*{b}-{c} - {x}", " - 0.5*{c} - 135 "])");
   replace(R"("scene": {)", R"("shuffle": [[["b"], ["c"]]], "scene": {)");
   const auto place = [&](std::uint64_t seed, bool is_varied) {
     const auto scene = Read(text, {.level = "easy", .seed = seed, .is_varied = is_varied});
@@ -143,7 +145,9 @@ TEST_F(TaskFile, BadOnesAreRefusedWithPathAndRemedy) {
   using base::ErrorCode;
   const Bad kBad[] = {
       {R"("levels")", R"("shuffle": [[["x"], ["nobody"]]], "levels")", ErrorCode::kSceneInvalid, {"nobody"}},
-      {R"("levels")", R"("shuffle": [[["x"], ["x", "size"]]], "levels")", ErrorCode::kSceneInvalid,
+      {R"("levels")",
+       R"("shuffle": [[["x"], ["x", "size"]]], "levels")",
+       ErrorCode::kSceneInvalid,
        {"equally many"}},
       {R"("spread": 2)", R"("spread": 2, "vary": -1)", ErrorCode::kJsonField, {"parameters.x", "vary"}},
       {R"("tool": "maryland", "port_mm": [-70)",

@@ -118,7 +118,8 @@ class Environment {
   const simulation::Simulation& GetSimulation() const;
   /// Input of the last tick of the last action.
   const scene::Input& LastInput() const;
-  std::uint64_t Layout() const;       ///< of this episode: its number among `layouts`, else the seed of the task's layout
+  std::uint64_t Layout()
+      const;  ///< of this episode: its number among `layouts`, else the seed of the task's layout
   /// With which a Reset brings this episode about again, where every seed has its own layout.
   std::uint64_t EpisodeSeed() const;
   std::uint64_t ActionCount() const;  ///< of this episode

@@ -46,8 +46,8 @@ struct PoolRows {
   std::vector<double> features;                              ///< (count, kFeatureCount)
   std::vector<std::uint8_t> terminated, truncated, success;  ///< (count)
   std::vector<std::uint8_t> was_reset;                       ///< (count) this row begins an episode
-  std::vector<std::uint64_t> layout;                         ///< (count) Environment::Layout() of the episode of `state`
-  std::vector<std::uint64_t> episode_seed;                   ///< (count) of it
+  std::vector<std::uint64_t> layout;        ///< (count) Environment::Layout() of the episode of `state`
+  std::vector<std::uint64_t> episode_seed;  ///< (count) of it
 };
 
 /// Send and Receive may be called from one thread at a time. The results do not depend on the number of threads.

@@ -98,7 +98,7 @@ struct EnvironmentSettings {
   double actions_per_second = 10;  ///< 0.5 to 120; an action lasts a whole number of ticks
   /// After which an episode is truncated [s]; 0: the task's own limit and 30 s, 1800 s for an operation.
   double most_seconds = 0;
-  bool moves_camera = false;  ///< the laparoscope is part of the action; tasks that are about it set this
+  bool moves_camera = false;   ///< the laparoscope is part of the action; tasks that are about it set this
   bool clips_actions = false;  ///< what lies out of range is cut to it; else it is refused
   Features weights = DefaultWeights();
   /// JSON of a task or an operation that stands in no file; `task` is then its name in messages, and relative paths inside
