@@ -24,7 +24,7 @@ def near(state, before, features):
 class Terms(unittest.TestCase):
     def test_functions_and_expressions_say_the_same(self):
         terms = {"function": near, "expression": "before(norm(left.tip - region.left_1.centre)) - norm(left.tip - region.left_1.centre)",
-                 "weighted": {"expression": "time", "weight": -2, "about": "seconds cost"}}
+                 "weighted": {"expression": 'feature["time"]', "weight": -2, "about": "seconds cost"}}
         with trocar.make("peg_transfer", actions="tip", terms=terms) as env, trocar.make("peg_transfer", actions="tip") as plain:
             env.reset(seed=1)
             plain.reset(seed=1)
@@ -75,7 +75,7 @@ class Terms(unittest.TestCase):
 
     def test_vectors_of_three_environments_are_not_mixed_up(self):
         """Three environments and three parts of a place: what is beside what must not be guessed from the sizes."""
-        terms = {"e": "norm(max(left.tip, time) * 2 - clip(right.tip, 0 - force, 1))"}
+        terms = {"e": "norm(max(left.tip, state["time"]) * 2 - clip(right.tip, 0 - force, 1))"}
         pool, env = trocar.make_vec("peg_transfer", 3, actions="tip", terms=terms), trocar.make("peg_transfer", actions="tip", terms=terms)
         pool.reset(seed=1)
         action = np.linspace(-1, 1, 10)
@@ -91,7 +91,7 @@ class Terms(unittest.TestCase):
 
     def test_what_is_none_is_refused_with_its_name(self):
         for code, term in (("E-SCN-003", "left.tipp[0]"), ("E-SCN-003", "nobody"), ("E-CLI-001", "left.tip"), ("E-CLI-001", "1 +"), ("E-CLI-001", "__import__('os')"),
-                           ("E-CLI-001", "left.tip[5]"), ("E-CLI-001", "(lambda: 1)()"), ("E-CLI-001", "[1, 2]"), ("E-CLI-001", "before(before(time))"), ("E-CLI-001", "norm(1, 2)"), ("E-CLI-001", "norm(time)"), ("E-CLI-001", "dot(left.tip, 2)"), ("E-CLI-001", "9" * 400),
+                           ("E-CLI-001", "left.tip[5]"), ("E-CLI-001", "(lambda: 1)()"), ("E-CLI-001", "[1, 2]"), ("E-CLI-001", "before(before(left.force))"), ("E-SCN-003", "time"), ("E-SCN-003", 'feature["left.tip"]'), ("E-SCN-003", 'state["goal"]'), ("E-CLI-001", "norm(1, 2)"), ("E-CLI-001", "norm(force)"), ("E-CLI-001", "dot(left.tip, 2)"), ("E-CLI-001", "9" * 400),
                            ("E-CLI-001", "'text'"), ("E-CLI-001", "before(goal)"), ("E-CLI-001", "True"), ("E-CLI-001", "(" * 400 + "1" + ")" * 400), ("E-CLI-001", 3),
                            ("E-CLI-001", {"weight": 1}), ("E-CLI-001", {"expression": "1", "function": near}), ("E-CLI-001", {"expression": "1", "weight": float("nan")}),
                            ("E-CLI-001", {"expression": "1", "wait": 1})):

@@ -2,8 +2,8 @@
 """Terms of a reward that an environment's user writes: a Python function, or an expression, which may stand in a JSON file.
 
 An expression knows the fields of the state by their names (``left.tip``, ``region.end.centre``; ``state["goal.The bead.done"]``
-where a name has blanks), the features of the reward (``goal``, ``force``), numbers, + - * / **, comparisons (1 or 0), parts of a
-vector (``left.tip[2]``), and ``norm``, ``dot``, ``abs``, ``sqrt``, ``exp``, ``min``, ``max``, ``clip(x, low, high)`` and
+where a name has blanks), the features of the reward (``goal``, ``force``; ``feature["time"]`` where the state has the name, too), numbers,
++ - * / **, comparisons (1 or 0), parts of a vector (``left.tip[2]``), and ``norm``, ``dot``, ``abs``, ``sqrt``, ``exp``, ``min``, ``max``, ``clip(x, low, high)`` and
 ``before(x)``: what x was before the action.
 """
 from __future__ import annotations
@@ -84,10 +84,13 @@ class Expression:
             raise _wrong(self._term, "gives a vector; take its norm, or one of its parts: left.tip[2]")
         return np.broadcast_to(np.asarray(value, np.float64), (len(now),))
 
-    def _name(self, name: str, is_before: bool) -> Callable:
-        if name in self._fields:
+    def _name(self, name: str, is_before: bool, of: str = "") -> Callable:
+        if not of and name in self._fields and name in _trocar.FEATURES:
+            raise Error("E-SCN-003", f'the reward term "{self._term}" names "{name}", which the state has and the features have; '
+                        f'write state["{name}"] or feature["{name}"]')
+        if of != "feature" and name in self._fields:
             return lambda at: at[is_before][name]
-        if name in _trocar.FEATURES:
+        if of != "state" and name in _trocar.FEATURES:
             if is_before:
                 raise _wrong(self._term, f"asks for {name} before the action; features are of the action")
             return lambda at: at[2][name]
@@ -129,8 +132,8 @@ class Expression:
                 return calc
         if isinstance(node, ast.Subscript):
             key = node.slice
-            if isinstance(node.value, ast.Name) and node.value.id == "state" and isinstance(key, ast.Constant) and isinstance(key.value, str):
-                return self._name(key.value, is_before)
+            if isinstance(node.value, ast.Name) and node.value.id in ("state", "feature") and isinstance(key, ast.Constant) and isinstance(key.value, str):
+                return self._name(key.value, is_before, of=node.value.id)
             if isinstance(key, ast.Constant) and isinstance(key.value, int) and isinstance(node.value, (ast.Name, ast.Attribute, ast.Subscript)):
                 part, at_index = again(node.value), key.value
                 name = self._size_of(node.value)

@@ -20,6 +20,7 @@
 #include "trocar/base/state_archive.h"
 #include "trocar/files/find_scene.h"
 #include "trocar/files/task_file.h"
+#include "trocar/host/json.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/instrument/state_fields.h"
 #include "trocar/math/random.h"
@@ -67,14 +68,10 @@ base::Result<Source> ReadSource(const EnvironmentSettings& settings) {
   return Source{std::move(*text), *path};
 }
 
-base::Result<scene::Scene> ParseLayout(const Source& source, const files::TaskChoice& choice) {
-  auto scene = files::ParseScene(source.text, source.path, choice);
-  if (scene.ok() && !scene->task && !scene->operation) {
-    return base::Error{base::ErrorCode::kSceneInvalid,
-                       source.path.string() +
-                           ": in this scene nothing is to be done; an environment is a task or an operation"};
-  }
-  return scene;
+/// Whether a text is a task's. Nothing where it is not readable: whoever parses it says why.
+bool IsTask(const Source& source) {
+  const auto document = host::JsonDocument::Parse(source.text, source.path.string());
+  return document.ok() && document->Root().TextOr("format", "") == "trocar-task";
 }
 
 }  // namespace
@@ -84,6 +81,7 @@ base::Result<scene::Scene> ParseLayout(const Source& source, const files::TaskCh
 struct EnvironmentModel::Content {
   EnvironmentSettings settings;
   Source source;
+  std::optional<files::TaskForm> form;  ///< of a task
   bool has_tissue = false;
   std::size_t kept = 1;  ///< models, of `layouts` or of tissue
   int ticks = 1;
@@ -102,11 +100,23 @@ struct EnvironmentModel::Content {
                                 : 1 + number / std::max<std::size_t>(1, settings.patients.size());
   }
   base::Result<scene::Scene> Parse(std::uint64_t seed, const std::filesystem::path& patient,
-                                   bool is_varied) const {
-    return ParseLayout(source, {settings.level, seed, patient, is_varied});
-  }
+                                   bool is_varied) const;
   base::Status CheckFits(const simulation::Simulation& made, const scene::Scene& reference) const;
 };
+
+base::Result<scene::Scene> EnvironmentModel::Content::Parse(std::uint64_t seed,
+                                                            const std::filesystem::path& patient,
+                                                            bool is_varied) const {
+  if (form) return form->MakeScene(seed, is_varied, patient);
+  auto scene = files::ParseScene(source.text, source.path, {settings.level, seed, patient});
+  if (scene.ok() && !scene->operation) {
+    return base::Error{
+        base::ErrorCode::kSceneInvalid,
+        source.path.string() +
+            ": in this scene nothing is to be done; an environment is a task or an operation"};
+  }
+  return scene;
+}
 
 /// A patient may have other organs, whose states a policy could not read.
 base::Status EnvironmentModel::Content::CheckFits(const simulation::Simulation& made,
@@ -136,6 +146,11 @@ base::Result<std::shared_ptr<EnvironmentModel>> EnvironmentModel::Make(const Env
   auto source = ReadSource(settings);
   if (!source.ok()) return source.error();
   made.source = std::move(*source);
+  if (IsTask(made.source)) {
+    auto form = files::TaskForm::Parse(made.source.text, made.source.path, settings.level);
+    if (!form.ok()) return form.error();
+    made.form = std::move(*form);
+  }
   // what the meaning of states is measured with: the same whatever the seed
   auto standard = made.Parse(1, made.PatientOf(0), false);
   if (!standard.ok()) return standard.error();

@@ -69,7 +69,7 @@ TEST(Environment, SeedsChooseLayouts) {
   Environment environment = std::move(*Environment::Make(model));
   std::vector<float> one(model->StateSize()), other(model->StateSize());
   ASSERT_TRUE(environment.Reset(1).ok());
-  const int layout = environment.Layout();
+  const std::uint64_t layout = environment.Layout();
   environment.Observe(one);
   std::uint64_t seed = 2;
   do {

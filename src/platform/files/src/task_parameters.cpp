@@ -32,13 +32,18 @@ double ReadValue(const JsonView& view, const std::vector<std::string>& levels, c
 }
 
 /// Rows of names whose values change places as wholes; nothing where it complained.
-std::vector<std::vector<std::string>> ReadShuffle(const JsonView& list, const ParameterValues& values) {
+std::vector<std::vector<std::string>> ReadShuffle(const JsonView& list,
+                                                  const TaskParameters& parameters) {
+  const auto is_known = [&](const std::string& name) {
+    return std::any_of(parameters.all.begin(), parameters.all.end(),
+                       [&](const TaskParameters::Parameter& one) { return one.name == name; });
+  };
   std::vector<std::vector<std::string>> rows;
   for (const JsonView& row : list.Elements()) {
     std::vector<std::string> names;
     for (const JsonView& name : row.Elements()) {
       names.push_back(name.AsText());
-      if (values.contains(names.back())) continue;
+      if (is_known(names.back())) continue;
       name.Complain("there is no parameter \"" + names.back() + "\" to shuffle", ErrorCode::kSceneInvalid);
       return {};
     }
@@ -122,33 +127,57 @@ class SumReader {
 
 }  // namespace
 
-ParameterValues CalcParameters(const JsonView& root, const std::vector<std::string>& levels,
-                               const TaskChoice& choice) {
-  ParameterValues values;
+TaskParameters ReadTaskParameters(const JsonView& root, const std::vector<std::string>& levels,
+                                  const std::string& level) {
+  TaskParameters made;
   if (!root.Has("parameters")) {
     if (root.Has("shuffle"))
       root.Complain("shuffle names parameters, and there are none", ErrorCode::kSceneInvalid);
-    return values;
+    return made;
   }
   const JsonView parameters = root.Object("parameters");
-  math::Random random(choice.seed), varied(choice.seed ^ kVariedSeed);
   for (const std::string& name : parameters.Keys()) {
     const JsonView view = parameters.Object(name);
     view.AllowOnly({"about", "value", "by_level", "spread", "vary"});
-    double value = ReadValue(view, levels, choice.level);
-    const double spread = view.NumberOr("spread", 0.0, range::kSpread);
-    const double vary = view.NumberOr("vary", 0.0, range::kSpread);
     // what only varies takes no number from the row of the others, whose layouts are older than it
-    if (view.Has("spread") || !view.Has("vary")) value += random.Uniform(-spread, spread);
-    const double moved = varied.Uniform(-vary, vary);
-    values[name] = choice.is_varied && view.Has("vary") ? value + moved : value;
+    made.all.push_back({name, ReadValue(view, levels, level), view.NumberOr("spread", 0.0, range::kSpread),
+                        view.NumberOr("vary", 0.0, range::kSpread), view.Has("spread") || !view.Has("vary")});
   }
-  if (!root.Has("shuffle")) return values;
+  if (!root.Has("shuffle")) return made;
   for (const JsonView& list : root.Array("shuffle")) {
-    const auto rows = ReadShuffle(list, values);
-    if (choice.is_varied && !rows.empty()) Shuffle(rows, varied, values);
+    auto rows = ReadShuffle(list, made);
+    if (!rows.empty()) made.shuffled.push_back(std::move(rows));
+  }
+  return made;
+}
+
+ParameterValues TaskParameters::Draw(std::uint64_t seed, bool is_varied) const {
+  ParameterValues values;
+  math::Random random(seed), varied(seed ^ kVariedSeed);
+  for (const Parameter& parameter : all) {
+    double value = parameter.value;
+    if (parameter.is_standard) value += random.Uniform(-parameter.spread, parameter.spread);
+    const double moved = varied.Uniform(-parameter.vary, parameter.vary);
+    values[parameter.name] = is_varied && parameter.vary > 0 ? value + moved : value;
+  }
+  for (const auto& rows : shuffled) {
+    if (is_varied) Shuffle(rows, varied, values);
   }
   return values;
+}
+
+std::string WithoutBlanks(std::string_view json) {
+  std::string out;
+  out.reserve(json.size());
+  bool is_text = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (!is_text && (c == ' ' || c == '\n' || c == '\t' || c == '\r')) continue;
+    out += c;
+    if (is_text && c == '\\' && i + 1 < json.size()) out += json[++i];
+    if (c == '"') is_text = !is_text;
+  }
+  return out;
 }
 
 std::string SubstituteParameters(std::string_view text, const ParameterValues& values) {

@@ -71,7 +71,7 @@ using TickObserver = std::function<void(const simulation::Simulation& simulation
 /// One running environment. Not for two threads at a time. The same model, seeds and actions give the same states and rewards.
 class Environment {
  public:
-  /// \return as EnvironmentModel::FindLayout
+  /// \return as EnvironmentModel::Make
   static base::Result<Environment> Make(std::shared_ptr<EnvironmentModel> model);
   Environment(Environment&&) noexcept;
   Environment& operator=(Environment&&) noexcept;
