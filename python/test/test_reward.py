@@ -75,7 +75,7 @@ class Terms(unittest.TestCase):
 
     def test_vectors_of_three_environments_are_not_mixed_up(self):
         """Three environments and three parts of a place: what is beside what must not be guessed from the sizes."""
-        terms = {"e": "norm(max(left.tip, state["time"]) * 2 - clip(right.tip, 0 - force, 1))"}
+        terms = {"e": "norm(max(left.tip, feature['time']) * 2 - clip(right.tip, 0 - force, 1))"}
         pool, env = trocar.make_vec("peg_transfer", 3, actions="tip", terms=terms), trocar.make("peg_transfer", actions="tip", terms=terms)
         pool.reset(seed=1)
         action = np.linspace(-1, 1, 10)

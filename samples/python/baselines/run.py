@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trains the baselines, judges them on unseen seeds, and renews their page.
 
-  build/python/bin/python samples/python/baselines/run.py                      all: every task, three algorithms, five seeds, 10 minutes each
+  build/python/bin/python samples/python/baselines/run.py                      all: every task, three algorithms, five seeds, 20 minutes of processor
+                                                                               time each, which is 10 minutes of two cores
   build/python/bin/python samples/python/baselines/run.py --task reach --algorithm ppo --seeds 1:5 --minutes 3
   build/python/bin/python samples/python/baselines/run.py --page               the page anew, of what was measured so far
 
@@ -50,7 +51,7 @@ def measure(task, algorithm, seed, minutes, episodes):
     if algorithm in ALGORITHMS:
         act, curve = ALGORITHMS[algorithm](task, 60 * minutes, seed)
         run.update(actions=curve.taken, curve={"actions": curve.actions, "success": curve.success, "goals": curve.goals},
-                   trained_seconds=round(time.monotonic() - begin, 1), processor_seconds=round(time.process_time() - work, 1))
+                   seconds=round(time.monotonic() - begin, 1), processor_seconds=round(time.process_time() - work, 1))
         run.update(common.judge(lambda unseen: common.play(task, unseen, act), seeds))
     else:
         attempt = common.play_random if algorithm == "random" else common.play_expert
@@ -84,15 +85,14 @@ def row(name, runs):
     success = 100 * np.array([run["success"] for run in runs])
     goals = 100 * np.array([run["goals"] for run in runs])
     spread = f" ({success.min():.0f} to {success.max():.0f})" if len(runs) > 1 else ""
-    trained = (f"{min(run['minutes'] for run in runs):g} min, {np.mean([run['actions'] for run in runs]):,.0f} actions, "
-               f"{np.mean([run['processor_seconds'] for run in runs]):.0f} s of processor time") if "actions" in runs[0] else "-"
+    trained = (f"{min(run['minutes'] for run in runs):g} min of processor time, {np.mean([run['actions'] for run in runs]):,.0f} actions") if "actions" in runs[0] else "-"
     return (f"| {name} | {len(runs)} | {trained} | {success.mean():.0f} %{spread} | {goals.mean():.0f} % | {runs[0]['episodes']} | "
             f"{runs[-1]['machine']}, {runs[-1]['date']} |")
 
 
 def write_page(runs):
     lines = ["# Baselines", "",
-             "What PPO, SAC and behaviour cloning reach in short time, beside random actions and the scripted expert: a figure to compare with, not the best that can be reached.",
+             "What PPO, SAC and behaviour cloning reach in at most 10 minutes of two cores, beside random actions and the scripted expert: a figure to compare with, not the best that can be reached.",
              f"Every policy sees the whole state, each number over its range (`observation=\"scaled\"`), and moves all of `actions=\"tip\"`; every seed is another start. Judged over unseen",
              f"seeds from {common.UNSEEN[0]} on, without noise. Our own short code: `samples/python/baselines`. `samples/python/baselines/run.py` trains, judges and renews this page, which is",
              "written from [baselines.json](baselines.json) (`--page` alone).", ""]
@@ -114,7 +114,7 @@ def write_page(runs):
             lines += ["", f"![learning curves of {task}](images/baselines/{task}.svg)"]
         lines.append("")
     if missing:
-        lines += ["## Not measured yet", "", "The command without options would train these, too, for 10 minutes and five seeds each:", "", *[f"- {one}" for one in missing], ""]
+        lines += ["## Not measured yet", "", "The command without options would train these, too, for 20 minutes of processor time and five seeds each:", "", *[f"- {one}" for one in missing], ""]
     PAGE.write_text("\n".join(lines).rstrip("\n") + "\n")
 
 
@@ -123,7 +123,7 @@ def main():
     parser.add_argument("--task", action="append", choices=common.tasks(), help="only this one; may be repeated")
     parser.add_argument("--algorithm", action="append", choices=[*ALGORITHMS, "random", "expert"], help="only this one; may be repeated")
     parser.add_argument("--seeds", default="1:5", help="first and last seed of training")
-    parser.add_argument("--minutes", type=float, default=10, help="of training, each")
+    parser.add_argument("--minutes", type=float, default=20, help="of processor time for training, each (20: 10 minutes of two cores)")
     parser.add_argument("--episodes", type=int, default=len(common.UNSEEN), help="unseen seeds that it is judged on")
     parser.add_argument("--page", action="store_true", help="train nothing, only write the page")
     arguments = parser.parse_args()

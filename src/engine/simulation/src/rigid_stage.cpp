@@ -152,12 +152,17 @@ void RigidStage::FindContacts(const Scene& scene,
   std::vector<rigid::ToolObstacle> obstacles;
   world_->FindObstacles(static_cast<std::uint32_t>(hand), X,
                         kObstacleReach + std::min(motion, kMostObstacleMotion), obstacles);
+  // what never moves presses where the tool is deepest, as in FindObstacles
+  double deepest = 0;
+  ToolContact contact;
   for (const rigid::ToolObstacle& one : obstacles) {
     const double clearance = math::Dot(one.normal, one.point - X_device_proxy * one.point) - one.depth;
-    if (!(clearance < 0)) continue;
-    contacts.push_back({one.point, -1.0 * one.normal, (kObstacleStiffness * clearance) * one.normal, hand, -1,
-                        static_cast<std::int32_t>(one.body)});
+    if (!(-clearance > deepest)) continue;
+    deepest = -clearance;
+    contact = {one.point, -1.0 * one.normal, (kObstacleStiffness * clearance) * one.normal, hand, -1,
+               static_cast<std::int32_t>(one.body)};
   }
+  if (deepest > 0) contacts.push_back(contact);
 }
 
 void RigidStage::UpdateHold(const Scene& scene, int hand, double jaw) {

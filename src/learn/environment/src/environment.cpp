@@ -381,6 +381,7 @@ base::Result<Environment> Environment::Make(std::shared_ptr<EnvironmentModel> mo
   auto simulation = simulation::Simulation::Make(first->model);
   if (!simulation) return simulation.error();
   auto content = std::make_unique<Content>(std::move(model), std::move(first->model), std::move(*simulation));
+  content->draw = DrawEpisode(content->model->Settings().seed, StandardRanges());
   content->progress.ranges = *content->model->Settings().ranges;
   return Environment(std::move(content));
 }

@@ -22,6 +22,7 @@ constexpr std::size_t kJointCount = 5;
 /// Beyond which a scaled state says no more.
 constexpr double kUsualForce = 5;        // [N]
 constexpr double kUsualPressure = 3000;  // [Pa]
+constexpr double kUsualClips = 20;  // in an applier
 constexpr double kUsualCount = 8;        // of clips and cuts
 constexpr double kUsualFluid = 100;      // [mL]
 constexpr double kRoundPlaces = 0.030;   // round what a task has [m]
@@ -125,7 +126,7 @@ StateLayout::StateLayout(const simulation::Simulation& simulation, const scene::
     Add(name + "is_grasping", 1, "-", 0, 1);
     Add(name + "is_touching", 1, "-", 0, 1);
     Add(name + "tool", 1, "-", 0, std::max(1.0, static_cast<double>(setup.tray.size()) - 1));
-    Add(name + "clips_left", 1, "-", 0, kUsualCount);
+    Add(name + "clips_left", 1, "-", 0, kUsualClips);
   }
   AddRow("laparoscope.joints", "rad, rad, rad, m",
          std::array<Range, 4>{{{-limits.max_pan, limits.max_pan},

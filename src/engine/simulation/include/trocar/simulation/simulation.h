@@ -98,7 +98,7 @@ class Simulation {
   std::optional<OperationResult> GetOperationResult() const;
 
   /// Where the tools touch tissue and things after the last tick: the left hand's first. What jaws hold is not among them, nor
-  /// where one tool touches the other.
+  /// the patient's neighbours, nor where one tool touches the other.
   /// \param[out] contacts  replaced
   /// \note Allocates. Changes nothing.
   void FindToolContacts(std::vector<ToolContact>& contacts) const;
