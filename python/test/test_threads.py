@@ -38,7 +38,10 @@ class Objects:
         simulation.save_file(file)
         self.all = {"Simulation": simulation, "Environment": environment, "Camera": camera, "Surgeon": surgeon, "Pool": pool,
                     "Input": simulation.home()}
+        environment.reset(1)
         self.arguments = {
+            "Environment.set_ranges": (model, {"mass": 1}), "Environment.restore": (environment.save(),),
+            "Pool.set_ranges": (everyone, {"light": 1}), "Pool.drawn": (0,),
             "Simulation.step": (inputs,), "Simulation.play": (other, 1), "Simulation.restore": (saved,),
             "Simulation.save_file": (file + "2",), "Simulation.restore_file": (file,),
             "Environment.reset": (1,), "Environment.step": (action,), "Environment.step_by": (other, action.copy()),
@@ -50,7 +53,7 @@ class Objects:
         self.functions = {  # whatever else takes an object: (object, call)
             "surgeons": (simulation, lambda: trocar.surgeons(simulation)), "Surgeon": (simulation, lambda: trocar.Surgeon("expert", simulation)),
             "step": (inputs, lambda: simulation.step(inputs)), "play": (other, lambda: simulation.play(other, 1)),
-            "act": (simulation, lambda: surgeon.act(simulation)), "draw": (simulation, lambda: camera.draw(simulation)),
+            "act": (simulation, lambda: surgeon.act(simulation)), "draw": (simulation, lambda: camera.draw(simulation)), "draw of a pool": (pool, lambda: camera.draw(pool, 0)),
             "geometry": (environment, lambda: camera.geometry(environment)), "step_by": (other, lambda: environment.step_by(other, action)),
         }
 
