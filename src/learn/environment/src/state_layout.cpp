@@ -22,7 +22,7 @@ constexpr std::size_t kJointCount = 5;
 /// Beyond which a scaled state says no more.
 constexpr double kUsualForce = 5;        // [N]
 constexpr double kUsualPressure = 3000;  // [Pa]
-constexpr double kUsualClips = 20;  // in an applier
+constexpr double kUsualClips = 20;       // in an applier
 constexpr double kUsualCount = 8;        // of clips and cuts
 constexpr double kUsualFluid = 100;      // [mL]
 constexpr double kRoundPlaces = 0.030;   // round what a task has [m]
