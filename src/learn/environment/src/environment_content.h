@@ -52,7 +52,7 @@ struct EnvironmentModel::Content {
   }
   base::Result<scene::Scene> Parse(std::uint64_t seed, const std::filesystem::path& patient,
                                    bool is_varied) const;
-  base::Status CheckFits(const simulation::Simulation& made, const scene::Scene& reference) const;
+  base::Status CheckFits(const simulation::Simulation& made) const;
 };
 
 /// All that decides how an environment goes on, beside its simulation and what the episode has drawn.

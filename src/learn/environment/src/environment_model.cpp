@@ -11,6 +11,9 @@
 namespace trocar::environment {
 namespace {
 
+/// Layouts whose places say between what bounds those of all seeds lie.
+constexpr std::size_t kSamples = 32;
+
 base::Error Unusable(const std::string& what) {
   return base::Error{base::ErrorCode::kUsage, what};
 }
@@ -65,9 +68,8 @@ base::Result<scene::Scene> EnvironmentModel::Content::Parse(std::uint64_t seed,
 }
 
 /// A patient may have other organs, whose states a policy could not read.
-base::Status EnvironmentModel::Content::CheckFits(const simulation::Simulation& made,
-                                                  const scene::Scene& reference) const {
-  const StateLayout other(made, reference);
+base::Status EnvironmentModel::Content::CheckFits(const simulation::Simulation& made) const {
+  const StateLayout other(made, std::span(&made.GetScene(), 1));
   const auto same = [](const Field& a, const Field& b) { return a.name == b.name && a.count == b.count; };
   if (std::equal(other.Fields().begin(), other.Fields().end(), state->Fields().begin(), state->Fields().end(),
                  same))
@@ -97,13 +99,17 @@ base::Result<std::shared_ptr<EnvironmentModel>> EnvironmentModel::Make(const Env
     if (!form.ok()) return form.error();
     made.form = std::move(*form);
   }
-  // what the meaning of states is measured with: the same whatever the seed
-  auto standard = made.Parse(1, made.PatientOf(0), false);
-  if (!standard.ok()) return standard.error();
-  const auto reference = std::make_shared<const scene::Scene>(std::move(*standard));
-  made.has_tissue = reference->operation || reference->model || reference->HasPatient();
+  // what states are measured with: the same whatever seed and layouts are asked for
+  std::vector<scene::Scene> samples;
+  do {
+    auto sample = made.Parse(samples.size() + 1, made.PatientOf(0), true);
+    if (!sample.ok()) return sample.error();
+    samples.push_back(std::move(*sample));
+  } while (samples.size() < kSamples && !samples.front().HasPatient());
+  const scene::Scene& sample = samples.front();
+  made.has_tissue = sample.operation || sample.model || sample.HasPatient();
   const std::size_t patients = std::max<std::size_t>(1, settings.patients.size());
-  const int usual = reference->model ? 8 : static_cast<int>(patients);
+  const int usual = sample.model ? 8 : static_cast<int>(patients);
   made.kept = static_cast<std::size_t>(settings.layouts > 0  ? settings.layouts
                                        : settings.models > 0 ? settings.models
                                                              : usual);
@@ -119,7 +125,7 @@ base::Result<std::shared_ptr<EnvironmentModel>> EnvironmentModel::Make(const Env
   made.ticks =
       std::max(1, static_cast<int>(std::lround(1 / (settings.actions_per_second * scene.tick_seconds))));
   made.action = std::make_unique<const ActionLayout>(scene, made.settings);
-  made.state = std::make_unique<const StateLayout>(*simulation, *reference);
+  made.state = std::make_unique<const StateLayout>(*simulation, samples);
   return model;
 }
 
@@ -179,7 +185,7 @@ base::Result<EnvironmentModel::Found> EnvironmentModel::FindModel(const EpisodeD
   if (c.state != nullptr && c.settings.patients.size() > 1) {
     const auto simulation = simulation::Simulation::Make(*made);
     if (!simulation.ok()) return simulation.error();
-    if (const auto fits = c.CheckFits(*simulation, simulation->GetScene()); !fits) return fits.error();
+    if (const auto fits = c.CheckFits(*simulation); !fits) return fits.error();
   }
   model = std::move(*made);
   return Found{model, layout};

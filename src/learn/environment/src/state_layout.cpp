@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numbers>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,36 +25,75 @@ constexpr double kUsualPressure = 3000;  // [Pa]
 constexpr double kUsualClips = 20;       // in an applier
 constexpr double kUsualCount = 8;        // of clips and cuts
 constexpr double kUsualFluid = 100;      // [mL]
-constexpr double kRoundPlaces = 0.030;   // round what a task has [m]
+constexpr double kRoundPlaces = 0.005;   // round where samples have a place [m]
+constexpr double kRoundWork = 0.015;     // round where something is to be done [m]
+constexpr double kWidestPlace = 0.040;   // a region that is larger is the field [m]
 constexpr double kRoundOrgans = 0.060;   // organs are larger than their landmarks [m]
 
-/// Corners of a box round the places that a scene names.
-std::pair<Vec3, Vec3> FindBox(const scene::Scene& scene) {
-  std::vector<Vec3> places;
-  for (const scene::InstrumentSetup& setup : scene.instruments)
-    places.push_back(instrument::CalcToolPose(setup.p_world_port, setup.home).translation);
-  for (const scene::SceneObject& object : scene.objects)
-    places.push_back(object.body.X_world_body.translation);
-  if (scene.task) {
-    for (const scene::Region& region : scene.task->regions) places.push_back(region.centre);
-  }
-  for (const patient::Landmark& landmark : scene.patient.landmarks) places.push_back(landmark.position);
-  if (scene.model) {
-    for (const scene::ModelBand& band : scene.model->bands) places.insert(places.end(), {band.from, band.to});
-    for (const scene::ModelSheet& sheet : scene.model->sheets)
-      places.insert(places.end(), {sheet.centre - sheet.half, sheet.centre + sheet.half});
-  }
-  std::pair<Vec3, Vec3> box = {places.front(), places.front()};
-  const double round = scene.HasPatient() ? kRoundOrgans : kRoundPlaces;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const Vec3& place : places) {
-      box.first[axis] = std::min(box.first[axis], place[axis]);
-      box.second[axis] = std::max(box.second[axis], place[axis]);
+class Box {
+ public:
+  void Add(const Vec3& place) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low_[axis] = std::min(low_[axis], place[axis]);
+      high_[axis] = std::max(high_[axis], place[axis]);
     }
-    box.first[axis] -= round;
-    box.second[axis] += round;
   }
-  return box;
+  PlaceBounds Round(double margin) const {
+    const Vec3 round{margin, margin, margin};
+    return {low_ - round, high_ + round};
+  }
+
+ private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vec3 low_{kFar, kFar, kFar}, high_{-kFar, -kFar, -kFar};
+};
+
+/// Of one place over all samples. \param place_of  a scene's place
+template <typename PlaceOf>
+PlaceBounds BoundsOf(std::span<const scene::Scene> samples, const PlaceOf& place_of) {
+  Box box;
+  for (const scene::Scene& scene : samples) box.Add(place_of(scene));
+  return box.Round(kRoundPlaces);
+}
+
+/// Whether a region is a place to go to and not the whole field.
+bool IsPlace(const scene::Region& region) {
+  return std::max({region.radius, region.half.x, region.half.y, region.half.z}) < kWidestPlace;
+}
+
+/// Where something is to be done.
+Box FindWork(std::span<const scene::Scene> samples) {
+  Box work;
+  for (const scene::Scene& scene : samples) {
+    for (const scene::SceneObject& object : scene.objects) {
+      if (object.Moves()) work.Add(object.body.X_world_body.translation);
+    }
+    if (scene.task) {
+      for (const scene::Region& region : scene.task->regions) {
+        if (IsPlace(region)) work.Add(region.centre);
+      }
+    }
+    if (scene.model) {
+      for (const scene::ModelBand& band : scene.model->bands) work.Add(band.from), work.Add(band.to);
+      for (const scene::ModelSheet& sheet : scene.model->sheets)
+        work.Add(sheet.centre - sheet.half), work.Add(sheet.centre + sheet.half);
+    }
+    for (const patient::Tube& tube : scene.patient.tubes) {
+      if (!scene.model) continue;
+      for (const math::Vec3& point : tube.line.points) work.Add(point);
+    }
+    if (!scene.HasPatient()) continue;
+    for (const patient::Landmark& landmark : scene.patient.landmarks) work.Add(landmark.position);
+  }
+  return work;
+}
+
+/// A tip goes from where it begins to where something is to be done.
+PlaceBounds FindWay(std::span<const scene::Scene> samples, const Box& work, std::size_t hand) {
+  Box box = work;
+  const scene::InstrumentSetup& setup = samples.front().instruments[hand];
+  box.Add(instrument::CalcToolPose(setup.p_world_port, setup.home).translation);
+  return box.Round(samples.front().HasPatient() ? kRoundOrgans : kRoundWork);
 }
 
 /// Writes one number after the other.
@@ -89,12 +128,12 @@ void StateLayout::Add(std::string name, std::size_t count, std::string unit, dou
   high_.resize(size_, static_cast<float>(high));
 }
 
-void StateLayout::AddPlace(std::string name) {
+void StateLayout::AddPlace(std::string name, const PlaceBounds& bounds) {
   Add(std::move(name), 3, "m", 0, 0);
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t at = size_ - 3 + static_cast<std::size_t>(axis);
-    low_[at] = static_cast<float>(box_low_[axis]);
-    high_[at] = static_cast<float>(box_high_[axis]);
+    low_[at] = static_cast<float>(bounds.low[axis]);
+    high_[at] = static_cast<float>(bounds.high[axis]);
   }
 }
 
@@ -106,15 +145,17 @@ void StateLayout::AddRow(std::string name, std::string unit, std::span<const Ran
   }
 }
 
-StateLayout::StateLayout(const simulation::Simulation& simulation, const scene::Scene& reference) {
+StateLayout::StateLayout(const simulation::Simulation& simulation, std::span<const scene::Scene> samples) {
+  TROCAR_ASSERT(!samples.empty());
   const scene::Scene& scene = simulation.GetScene();
-  std::tie(box_low_, box_high_) = FindBox(reference);
+  const Box work = FindWork(samples);
+  const PlaceBounds worked = work.Round(scene.HasPatient() ? kRoundOrgans : kRoundWork);
   const double turn = std::numbers::pi;
   const instrument::JointLimits limits;
   for (int hand = 0; hand < instrument::kHandCount; ++hand) {
     const std::string name = hand == instrument::kLeft ? "left." : "right.";
     const scene::InstrumentSetup& setup = scene.instruments[hand];
-    AddPlace(name + "tip");
+    AddPlace(name + "tip", FindWay(samples, work, static_cast<std::size_t>(hand)));
     Add(name + "shaft", 3, "-", -1, 1);  // unit, from the tip back to the trocar
     AddRow(name + "joints", "rad, rad, rad, m, rad",
            std::array<Range, kJointCount>{{{-limits.max_pan, limits.max_pan},
@@ -133,31 +174,43 @@ StateLayout::StateLayout(const simulation::Simulation& simulation, const scene::
                                {-limits.max_tilt, limits.max_tilt},
                                {-turn, turn},
                                {0, limits.max_depth}}});
-  for (const scene::SceneObject& object : scene.objects) {
-    AddPlace("object." + object.name + ".position");
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const scene::SceneObject& object = scene.objects[i];
+    AddPlace("object." + object.name + ".position",
+             object.Moves() ? worked : BoundsOf(samples, [i](const scene::Scene& of) {
+               return of.objects[i].body.X_world_body.translation;
+             }));
     Add("object." + object.name + ".rotation", 4, "quaternion w, x, y, z", -1, 1);
     if (object.Moves()) Add("object." + object.name + ".held", 2, "-", 0, 1);
   }
   if (scene.task) {
-    for (const scene::Region& region : scene.task->regions) AddPlace("region." + region.name + ".centre");
+    for (std::size_t i = 0; i < scene.task->regions.size(); ++i) {
+      AddPlace("region." + scene.task->regions[i].name + ".centre",
+               BoundsOf(samples, [i](const scene::Scene& of) { return of.task->regions[i].centre; }));
+    }
     for (const scene::Goal& goal : scene.task->goals) {
       Add("goal." + goal.name + ".done", 1, "-", 0, 1);
       Add("goal." + goal.name + ".is_open", 1, "-", 0, 1);
     }
   }
   if (scene.model) {
-    for (const scene::ModelBand& band : scene.model->bands) {
-      AddPlace("band." + band.name + ".from");
-      AddPlace("band." + band.name + ".to");
-      Add("band." + band.name + ".is_whole", 1, "-", 0, 1);
+    for (std::size_t i = 0; i < scene.model->bands.size(); ++i) {
+      const std::string name = "band." + scene.model->bands[i].name;
+      AddPlace(name + ".from",
+               BoundsOf(samples, [i](const scene::Scene& of) { return of.model->bands[i].from; }));
+      AddPlace(name + ".to",
+               BoundsOf(samples, [i](const scene::Scene& of) { return of.model->bands[i].to; }));
+      Add(name + ".is_whole", 1, "-", 0, 1);
     }
-    for (const scene::ModelSheet& sheet : scene.model->sheets) {
-      AddPlace("sheet." + sheet.name + ".circle_centre");
+    for (std::size_t i = 0; i < scene.model->sheets.size(); ++i) {
+      const scene::ModelSheet& sheet = scene.model->sheets[i];
+      AddPlace("sheet." + sheet.name + ".circle_centre",
+               BoundsOf(samples, [i](const scene::Scene& of) { return of.model->sheets[i].centre; }));
       Add("sheet." + sheet.name + ".circle_radius", 1, "m", 0, 0.05);
     }
   }
   for (const scene::SurfaceInfo& surface : simulation.Surfaces())
-    AddPlace("surface." + surface.name + ".middle");
+    AddPlace("surface." + surface.name + ".middle", worked);
   for (std::size_t i = 0; i < simulation.GetSnapshot().organs.size(); ++i)
     Add("surface." + simulation.Surfaces()[i].name + ".pressure", 1, "Pa", 0, kUsualPressure);
   if (scene.operation || scene.model) {

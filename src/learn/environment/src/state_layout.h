@@ -11,11 +11,16 @@
 
 namespace trocar::environment {
 
+/// Box that places lie in [m].
+struct PlaceBounds {
+  math::Vec3 low, high;
+};
+
 /// Constant for one task: all its layouts have the same things.
 class StateLayout {
  public:
-  /// \param reference  standardised scene of the same task: its places say in what box those of states lie
-  StateLayout(const simulation::Simulation& simulation, const scene::Scene& reference);
+  /// \param samples  scenes of the same task with other seeds, at least one: between what bounds their places lie is that of states
+  StateLayout(const simulation::Simulation& simulation, std::span<const scene::Scene> samples);
 
   std::span<const Field> Fields() const { return fields_; }
   std::span<const float> Low() const { return low_; }    ///< (Size())
@@ -27,12 +32,11 @@ class StateLayout {
 
  private:
   void Add(std::string name, std::size_t count, std::string unit, double low, double high);
-  void AddPlace(std::string name);
+  void AddPlace(std::string name, const PlaceBounds& bounds);
   void AddRow(std::string name, std::string unit, std::span<const Range> ranges);
 
   std::vector<Field> fields_;
   std::vector<float> low_, high_;
-  math::Vec3 box_low_, box_high_;  // of places [m]
   std::size_t size_ = 0;
 };
 
