@@ -33,8 +33,8 @@ except ImportError:
 def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        made = subprocess.run([ROOT / "tools" / "make-wheel", PACKAGE, "-o", folder], check=True, capture_output=True, text=True).stdout.strip()
-        again = subprocess.run([ROOT / "tools" / "make-wheel", PACKAGE, "-o", folder / "again"], check=True, capture_output=True, text=True).stdout.strip()
+        made = subprocess.run([sys.executable, ROOT / "tools" / "make-wheel", PACKAGE, "-o", folder], check=True, capture_output=True, text=True).stdout.strip()
+        again = subprocess.run([sys.executable, ROOT / "tools" / "make-wheel", PACKAGE, "-o", folder / "again"], check=True, capture_output=True, text=True).stdout.strip()
         assert pathlib.Path(made).read_bytes() == pathlib.Path(again).read_bytes(), "the same files give another wheel"
         with zipfile.ZipFile(made) as archive:
             names = archive.namelist()
