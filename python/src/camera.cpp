@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "contact_rows.h"
 #include "forks.h"
 #include "trocar/view/labels.h"
 
@@ -53,9 +54,12 @@ base::Status Camera::Show(const simulation::Simulation& simulation) {
   return {};
 }
 
-base::Status Camera::Draw(const simulation::Simulation& simulation, render::Image& image) {
+base::Status Camera::Draw(const simulation::Simulation& simulation, double light, render::Image& image) {
   return InContext([&]() -> base::Status {
     if (const auto shown = Show(simulation); !shown) return shown;
+    view::ViewOptions options = graphics_->view->GetOptions();
+    options.light_power = light;
+    graphics_->view->SetOptions(options);
     render::OffscreenTarget& target = graphics_->target;
     target.Bind();
     graphics_->view->Draw(target.Width(), target.Height());
@@ -83,21 +87,31 @@ PoolPictures::PoolPictures(int count, int width, int height, const Parts& parts)
     if (parts.has_depth) rows->depth.resize(pixels);
     if (parts.has_masks) rows->masks.resize(pixels);
     if (parts.has_normals) rows->normals.resize(3 * pixels);
+    if (parts.has_contacts)
+      rows->contacts.resize(static_cast<std::size_t>(count) * kContactRows * kContactNumbers);
   }
 }
 
 base::Status PoolPictures::Observe(std::int32_t id, const environment::Environment& environment,
                                    bool is_final) {
+  Rows& rows = is_final ? final_ : now_;
+  if (parts_.has_contacts) {
+    constexpr std::size_t kNumbers = kContactRows * kContactNumbers;
+    WriteContacts(environment.GetSimulation(),
+                  std::span(rows.contacts).subspan(static_cast<std::size_t>(id) * kNumbers, kNumbers));
+  }
+  if (!parts_.IsDrawn()) return {};
   Eye& eye = eyes_[static_cast<std::size_t>(id)];
   if (eye.camera == nullptr) {
     auto made = Camera::Make(width_, height_);
     if (!made) return made.error();
     eye.camera = std::move(*made);
   }
-  Rows& rows = is_final ? final_ : now_;
   const auto first = static_cast<std::ptrdiff_t>(id) * width_ * height_;
   if (parts_.has_picture) {
-    if (const auto drawn = eye.camera->Draw(environment.GetSimulation(), eye.image); !drawn) return drawn;
+    const double light = environment.Drawn()[static_cast<std::size_t>(environment::Varied::kLight)];
+    if (const auto drawn = eye.camera->Draw(environment.GetSimulation(), light, eye.image); !drawn)
+      return drawn;
     std::copy(eye.image.pixels.begin(), eye.image.pixels.end(), rows.picture.begin() + 3 * first);
   }
   if (!parts_.HasGeometry()) return {};

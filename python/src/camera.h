@@ -27,7 +27,8 @@ class Camera {
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
 
-  base::Status Draw(const simulation::Simulation& simulation, render::Image& image);
+  /// \param light  power of the head light, in the usual one [-]
+  base::Status Draw(const simulation::Simulation& simulation, double light, render::Image& image);
   /// \param has_flow  also the flow since this was asked for last
   base::Status LookAt(const simulation::Simulation& simulation, bool has_flow,
                       render::GeometryPicture& picture);
@@ -56,8 +57,9 @@ class PoolPictures {
  public:
   /// Which of them are drawn.
   struct Parts {
-    bool has_picture = false, has_depth = false, has_masks = false, has_normals = false;
+    bool has_picture = false, has_depth = false, has_masks = false, has_normals = false, has_contacts = false;
     bool HasGeometry() const { return has_depth || has_masks || has_normals; }
+    bool IsDrawn() const { return has_picture || HasGeometry(); }
   };
   /// Row i is environment i's, first row of a picture at the top; empty where a part is not drawn.
   struct Rows {
@@ -65,6 +67,7 @@ class PoolPictures {
     std::vector<float> depth;           ///< (count, height, width) [m]
     std::vector<std::uint8_t> masks;    ///< (count, height, width)
     std::vector<float> normals;         ///< (count, height, width, 3)
+    std::vector<float> contacts;        ///< (count, kContactRows, kContactNumbers)
   };
 
   PoolPictures(int count, int width, int height, const Parts& parts);

@@ -5,6 +5,7 @@
 
 #include "binding.h"
 #include "camera.h"
+#include "drawn_pool.h"
 #include "running.h"
 #include "trocar/view/labels.h"
 
@@ -18,11 +19,11 @@ std::unique_ptr<Camera> MakeCamera(int width, int height) {
 }
 
 /// (height, width, 3)
-py::array_t<std::uint8_t> Draw(Camera& camera, const Simulation& simulation) {
+py::array_t<std::uint8_t> Draw(Camera& camera, const Simulation& simulation, double light) {
   render::Image image;
   {
     const py::gil_scoped_release release;
-    Check(camera.Draw(simulation, image));
+    Check(camera.Draw(simulation, light, image));
   }
   py::array_t<std::uint8_t> out({image.height, image.width, 3});
   std::memcpy(out.mutable_data(), image.pixels.data(), image.pixels.size());
@@ -59,6 +60,10 @@ py::dict LookAt(Camera& camera, const Simulation& simulation, bool has_flow) {
   return out;
 }
 
+double LightOf(const environment::Environment& environment) {
+  return environment.Drawn()[static_cast<std::size_t>(environment::Varied::kLight)];
+}
+
 }  // namespace
 
 void BindPicture(py::module_& module) {
@@ -76,14 +81,21 @@ void BindPicture(py::module_& module) {
                      "Draws what the laparoscope of a simulation or environment shows, off-screen.")
       .def(py::init(&MakeCamera), py::arg("width"), py::arg("height"))
       .def(
-          "draw", [](Camera& camera, const Running& running) { return Draw(camera, running.simulation); },
+          "draw", [](Camera& camera, const Running& running) { return Draw(camera, running.simulation, 1); },
           py::arg("simulation"), py::keep_alive<1, 2>(), about)
       .def(
           "draw",
           [](Camera& camera, const RunningEnvironment& running) {
-            return Draw(camera, running.Simulation());
+            return Draw(camera, running.Simulation(), LightOf(running.environment));
           },
           py::arg("environment"), py::keep_alive<1, 2>(), about)
+      .def(
+          "draw",
+          [](Camera& camera, const DrawnPool& pool, std::int32_t id) {
+            const environment::Environment& environment = *Take(pool.pool->Look(id));
+            return Draw(camera, environment.GetSimulation(), LightOf(environment));
+          },
+          py::arg("pool"), py::arg("id"), py::keep_alive<1, 2>(), about)
       .def(
           "geometry",
           [](Camera& camera, const Running& running, bool flow) {

@@ -13,6 +13,7 @@
 #include "binding.h"
 #include "forks.h"
 #include "running.h"
+#include "snapshot_description.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/base/state_hash.h"
 #include "trocar/files/state_file.h"
@@ -31,20 +32,19 @@ using scene::Input;
 using simulation::Simulation;
 using simulation::Snapshot;
 
-constexpr double kMillilitre = 1e6;  // per m^3
-constexpr std::array<const char*, kHandCount> kHandNames = {"left", "right"};
 constexpr std::array<const char*, 4> kCommandNames = {"wait", "retract", "relax", "release"};
 
 std::unique_ptr<Running> MakeRunning(const py::object& task, const std::string& level, std::uint64_t seed,
                                      const py::object& patient, int threads, bool has_metrics,
-                                     const std::filesystem::path& folder) {
+                                     const std::filesystem::path& folder, bool is_varied) {
   if (threads < 1 || threads > 256)
     throw Failure({base::ErrorCode::kUsage, "a simulation has 1 to 256 threads"});
   if (threads > 1) ExpectThreadsOfLibraries();
   const SceneSource source = ReadSceneSource(task, folder);
   PatientSource given(patient);
   const py::gil_scoped_release release;
-  auto scene = std::make_shared<const scene::Scene>(Take(FindScene(source, {level, seed, given.Folder()})));
+  auto scene =
+      std::make_shared<const scene::Scene>(Take(FindScene(source, {level, seed, given.Folder(), is_varied})));
   auto simulation = Take(Simulation::Make(scene, {.threads = host::UseThreads(threads)}));
   auto running = std::make_unique<Running>(
       Running{std::move(scene), std::move(simulation), std::move(given), std::nullopt});
@@ -58,9 +58,6 @@ using Row = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 instrument::TrocarJoints ToJoints(const double* at) {
   return {at[0], at[1], at[2], at[3], at[4]};
-}
-void FromJoints(const instrument::TrocarJoints& joints, double* at) {
-  at[0] = joints.pan, at[1] = joints.tilt, at[2] = joints.spin, at[3] = joints.depth, at[4] = joints.jaw;
 }
 
 void CheckNumbers(const Row& row, py::ssize_t count, const char* what) {
@@ -167,120 +164,7 @@ void BindInput(py::module_& module) {
   BindPedal<&scene::HandControls::aspirate>(type, "aspirate", "(2) suction of each hand.");
 }
 
-// --- snapshot
-
-py::object SurfaceName(const Running& running, std::int32_t surface) {
-  if (surface < 0) return py::none();
-  return py::str(running.simulation.Surfaces()[static_cast<std::size_t>(surface)].name);
-}
-py::object ObjectName(const Running& running, std::int32_t object) {
-  if (object < 0) return py::none();
-  return py::str(running.scene->objects[static_cast<std::size_t>(object)].name);
-}
-
-py::dict DescribeInstrument(const Running& running, int hand) {
-  const simulation::InstrumentSnapshot& tool = running.simulation.GetSnapshot().instruments[hand];
-  py::dict out;
-  py::array_t<double> joints(5);
-  FromJoints(tool.joints, joints.mutable_data());
-  out["pose"] = ToMatrix(tool.X_world_tool);
-  out["joints"] = joints;
-  out["force"] = ToArray(tool.force);
-  out["pinch"] = tool.pinch;
-  out["is_grasping"] = tool.is_grasping;
-  out["is_touching"] = tool.is_touching;
-  out["is_touching_tool"] = tool.is_touching_tool;
-  out["surface"] = SurfaceName(running, tool.organ);
-  out["object"] = ObjectName(running, tool.object);
-  return out;
-}
-
-py::dict DescribeTask(const Running& running) {
-  const Snapshot& now = running.simulation.GetSnapshot();
-  const scene::Task& task = *running.scene->task;
-  py::dict out, goals, errors;
-  for (std::size_t i = 0; i < task.goals.size(); ++i) {
-    py::dict goal;
-    goal["is_done"] = now.task.goals[i].is_done;
-    goal["is_open"] = now.task.goals[i].is_open;
-    goal["steps_done"] = now.task.goals[i].steps_done;
-    goal["steps"] = task.goals[i].steps.size();
-    goals[py::str(task.goals[i].name)] = goal;
-  }
-  for (std::size_t i = 0; i < task.errors.size(); ++i)
-    errors[py::str(task.errors[i].name)] = now.task.errors[i];
-  out["phase"] = std::string(scene::PhaseName(now.task.phase));
-  out["is_over"] = now.task.IsOver();
-  out["time"] = now.task.time;
-  out["score"] = scene::CalcShownScore(task, now.task);
-  out["goals"] = goals;
-  out["errors"] = errors;
-  return out;
-}
-
-py::dict DescribeOperation(const Running& running) {
-  const simulation::OperationSnapshot& now = running.simulation.GetSnapshot().operation;
-  const auto& fluids = now.flow.ledger.fluids;
-  py::dict out;
-  const scene::Procedure* procedure = scene::ProcedureOf(running.simulation.GetScene());
-  out["phase"] = std::string(scene::PhaseName(procedure, now.procedure.phase));
-  for (std::size_t row = 0; procedure != nullptr && row < procedure->measures.size(); ++row) {
-    const scene::MeasureRow& measure = procedure->measures[row];
-    const double value = now.procedure.Measure(row);
-    const py::str name{std::string(measure.short_name)};
-    if (measure.is_share) {
-      out[name] = value;
-    } else {
-      out[name] = std::lround(value);
-    }
-  }
-  out["is_gallbladder_free"] = now.is_organ_free;
-  out["is_in_bag"] = now.is_in_bag;
-  out["is_completed"] = now.is_completed;
-  out["errors"] = now.errors;
-  out["critical_errors"] = now.critical_errors;
-  out["clips"] = now.clip_count;
-  out["cuts"] = now.tube_cut_count;
-  out["blood_ml"] = kMillilitre * fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left;
-  out["bile_ml"] = kMillilitre * fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left;
-  out["smoke"] = now.smoke;
-  return out;
-}
-
-py::dict DescribeSnapshot(const Running& running) {
-  const Snapshot& now = running.simulation.GetSnapshot();
-  py::dict out, instruments, organs, objects;
-  for (int hand = 0; hand < kHandCount; ++hand)
-    instruments[kHandNames[hand]] = DescribeInstrument(running, hand);
-  for (std::size_t i = 0; i < now.organs.size(); ++i) {
-    py::dict organ;
-    organ["volume"] = now.organs[i].volume;
-    organ["pressure"] = now.organs[i].pressure;
-    organ["leaked"] = now.organs[i].leaked;
-    organs[py::str(running.simulation.Surfaces()[i].name)] = organ;
-  }
-  for (std::size_t i = 0; i < now.objects.size(); ++i) {
-    const scene::ObjectSnapshot& object = now.objects[i];
-    py::dict entry;
-    entry["pose"] = ToMatrix(object.X_world_object);
-    entry["velocity"] = ToArray(object.velocity);
-    entry["held_by"] = py::make_tuple((object.held_by & 1) != 0, (object.held_by & 2) != 0);
-    entry["touched_by"] = py::make_tuple((object.touched_by & 1) != 0, (object.touched_by & 2) != 0);
-    entry["is_at_rest"] = object.is_at_rest;
-    objects[py::str(running.scene->objects[i].name)] = entry;
-  }
-  out["tick"] = now.tick;
-  out["time"] = now.time;
-  out["instruments"] = instruments;
-  out["organs"] = organs;
-  out["objects"] = objects;
-  out["task"] = running.scene->task ? py::object(DescribeTask(running)) : py::none();
-  out["operation"] = running.scene->operation ? py::object(DescribeOperation(running)) : py::none();
-  out["camera"] = ToMatrix(now.X_world_laparoscope);
-  out["contacts"] = now.contacts;
-  out["residual"] = now.residual;
-  return out;
-}
+// --- what happened
 
 py::list DescribeEvents(const Running& running, std::uint64_t since) {
   const Snapshot& now = running.simulation.GetSnapshot();
@@ -294,8 +178,8 @@ py::list DescribeEvents(const Running& running, std::uint64_t since) {
     entry["tick"] = event.tick;
     entry["hand"] =
         event.hand < 0 ? py::object(py::none()) : py::str(kHandNames[static_cast<std::size_t>(event.hand)]);
-    entry["surface"] = SurfaceName(running, event.organ);
-    entry["object"] = ObjectName(running, event.object);
+    entry["surface"] = SurfaceName(running.simulation, event.organ);
+    entry["object"] = ObjectName(running.simulation, event.object);
     entry["force"] = event.force;
     const surgery::ErrorRow* error =
         scene::FindError(scene::ProcedureOf(running.simulation.GetScene()), event.error);
@@ -391,10 +275,12 @@ void BindRunning(py::module_& module) {
       "One running surgery. A call that finds another one in the middle of its work fails with E-ENV-002.")
       .def(py::init(&MakeRunning), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
            py::arg("seed") = 1, py::arg("patient") = "", py::arg("threads") = 1, py::arg("metrics") = false,
-           py::arg("folder") = "",
+           py::arg("folder") = "", py::arg("varied") = false,
            "`task` is a task's key, \"cholecystectomy\", a file, or a dictionary as such a file holds, whose "
            "relative paths start from `folder`; `patient` a folder, or {\"seed\": 5, \"set\": {...}}. With "
-           "`metrics` each tick is collected for metrics().")
+           "`metrics` each tick is collected for metrics(). With `varied` the seed also decides what a task "
+           "lets "
+           "vary, as in environments.")
       .def_property_readonly("name", [](const Running& r) { return r.scene->name; })
       .def_property_readonly(
           "tick_seconds", [](const Running& r) { return r.scene->tick_seconds; }, "[s]")
@@ -446,7 +332,9 @@ void BindRunning(py::module_& module) {
             r.BeginAttempt();
           },
           "Back to the first tick.")
-      .def("snapshot", &DescribeSnapshot, "What the last tick published, copied: SI units, world frame.")
+      .def(
+          "snapshot", [](const Running& r) { return DescribeSnapshot(r.simulation); },
+          "What the last tick published, copied: SI units, world frame.")
       .def(
           "positions",
           [](const Running& r) { return ToArray(std::span(r.simulation.GetSnapshot().positions)); },
@@ -542,6 +430,9 @@ void BindSimulation(py::module_& module) {
         return out;
       },
       "The delivered tasks by key.");
+  module.def(
+      "set_data_folder", [](const std::filesystem::path& folder) { host::SetDataFolder(folder); },
+      py::arg("folder"), "Where the delivered files are, unless TROCAR_DATA_DIR names another place.");
   module.def(
       "find",
       [](const std::string& name) {

@@ -133,7 +133,7 @@ class Meaning(unittest.TestCase):
 
     def test_the_last_picture_of_an_episode_is_kept(self):
         pool = trocar.make_vec("camera_navigation_0", 2, observation=("state", "picture"), picture_size=(32, 24),
-                               autoreset_mode="SameStep", most_seconds=0.2)
+                               layouts=1, autoreset_mode="SameStep", most_seconds=0.2)
         first, _ = pool.reset(seed=1)
         actions = np.ones((2, pool.model.action_size))
         before, *_ = pool.step(actions)
@@ -156,7 +156,7 @@ class Meaning(unittest.TestCase):
         self.assertEqual(code_of(lambda: pool.recv(1)), "E-ENV-002")
 
     def test_ends_are_told_apart_and_reset_as_declared(self):
-        pool = trocar.make_vec("peg_transfer", 2, autoreset_mode="SameStep", most_seconds=0.2)
+        pool = trocar.make_vec("peg_transfer", 2, layouts=1, autoreset_mode="SameStep", most_seconds=0.2)
         first, _ = pool.reset(seed=1)
         pool.step(np.zeros((2, 10)))
         states, _, terminated, truncated, infos = pool.step(np.zeros((2, 10)))
@@ -304,7 +304,7 @@ class Renamed(trocar.Environment):
 
 class Metrics(unittest.TestCase):
     def test_are_those_of_a_simulation_with_the_same_hands(self):
-        with trocar.make("instrument_navigation", seed=2, metrics=True) as env:
+        with trocar.make("instrument_navigation", seed=2, layouts=1, metrics=True) as env:
             env.reset(seed=2)
             env.step(np.full(env.action_space.shape, 0.5, np.float32))
             env.reset()  # what was before is no part of it
@@ -471,7 +471,7 @@ class BadInput(unittest.TestCase):
 
     def test_settings(self):
         for code, settings in (("E-SCN-003", {"task": "juggling"}), ("E-SCN-003", {"actions": "wishes"}),
-                               ("E-SCN-003", {"weights": {"joy": 1.0}}), ("E-CLI-001", {"layouts": 0}),
+                               ("E-SCN-003", {"weights": {"joy": 1.0}}), ("E-CLI-001", {"layouts": -1}),
                                ("E-CLI-001", {"actions_per_second": 1000.0}), ("E-SCN-003", {"observation": "smell"})):
             with self.subTest(settings=settings):
                 self.assertEqual(code_of(lambda: trocar.make(**{"task": "peg_transfer", **settings})), code)

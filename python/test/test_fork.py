@@ -42,7 +42,7 @@ class Parent:
         self.camera.draw(self.simulation)
         self.states, self.pictures, self.shown = trocar.make(TASK), trocar.make(TASK, **PICTURES), trocar.make(TASK, render_mode="rgb_array")
         self.agents = trocar.make_parallel(TASK)
-        self.pool, self.drawn_pool = trocar.make_vec(TASK, 3, threads=2), trocar.make_vec(TASK, 2, threads=2, **PICTURES)
+        self.pool, self.drawn_pool = trocar.make_vec(TASK, 3, threads=2, render_mode="rgb_array"), trocar.make_vec(TASK, 2, threads=2, **PICTURES)
         for env in (self.states, self.pictures, self.shown, self.agents, self.pool, self.drawn_pool):
             env.reset(seed=1)
         self.shown.render()
@@ -80,6 +80,11 @@ CASES = {
     "VectorEnvironment, send": (lambda p: p.pool.send(zeros(p.pool)), False),
     "VectorEnvironment, step": (lambda p: p.drawn_pool.step(zeros(p.drawn_pool)), False),
     "VectorEnvironment, new": (lambda p: begin(trocar.make_vec(TASK, 2)), True),
+    "Environment, clone": (lambda p: begin(p.states.clone()), True),
+    "VectorEnvironment, render": (lambda p: p.pool.render(), False),
+    "StableBaselinesVecEnv, new": (lambda p: trocar.make_sb3(TASK, 2).reset(), True),
+    "RlGamesVecEnv, new": (lambda p: trocar.make_rl_games(TASK, 2).reset(), True),
+    "CleanRlVectorEnvironment, new": (lambda p: trocar.make_cleanrl(TASK, 2).reset(), True),
     "VectorEnvironment, new, pictures": (lambda p: begin(trocar.make_vec(TASK, 2, **PICTURES)), False),
 }
 

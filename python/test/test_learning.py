@@ -77,7 +77,7 @@ class Learning(unittest.TestCase):
             write_demonstrations(folder + "/set", "--task", "lift_and_grasp", "--seeds", "3:3")
             shown = clone.Demonstrations(folder + "/set")
         states, actions = shown.states[0], shown.actions[0]
-        with trocar.make("lift_and_grasp", seed=3, actions="tip") as environment:
+        with trocar.make("lift_and_grasp", seed=3, layouts=1, actions="tip") as environment:
             self.assertEqual([f["name"] for f in environment.state_fields], [f["name"] for f in shown.fields["state"]])
             self.assertEqual([f["name"] for f in environment.action_fields], [f["name"] for f in shown.fields["action_tip"]])
             state, _ = environment.reset(seed=3)

@@ -97,8 +97,8 @@ def one_at_a_time(cls: type) -> type:
 class EnvironmentModel(Made, _trocar.EnvironmentModel):
     __doc__ = _trocar.EnvironmentModel.__doc__
 
-    def __init__(self, task: Any, *, seed: Any = 1, **settings: Any) -> None:
-        super().__init__(task, seed=seed_of(seed), **settings)
+    def __init__(self, task: Any, *, seed: Any = 1, patient: Any = "", **settings: Any) -> None:
+        super().__init__(task, seed=seed_of(seed), patient=list(patient) if isinstance(patient, tuple) else patient, **settings)
 
 
 class Camera(Made, _trocar.Camera):

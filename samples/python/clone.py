@@ -144,7 +144,8 @@ class Clone:
 
 
 def settings(demonstrations, slack=3):
-    return {"level": demonstrations.level, "actions": "tip", "actions_per_second": 1 / demonstrations.every,
+    # as the demonstrations, which `trocar dataset` takes of the task that people train at
+    return {"layouts": 1, "level": demonstrations.level, "actions": "tip", "actions_per_second": 1 / demonstrations.every,
             "most_seconds": slack * demonstrations.longest}
 
 

@@ -545,6 +545,45 @@ bool RigidWorld::Touches(std::uint32_t tool, std::uint32_t body) const {
   return std::any_of(touched.begin(), touched.end(), [&](const auto& part) { return part[body] != 0; });
 }
 
+void RigidWorld::FindTouches(std::uint32_t tool_index, std::vector<ToolTouch>& touches) const {
+  const Content& content = *content_;
+  const double substep_seconds = content.tick_seconds / content.CountSubsteps();
+  struct Found {
+    int part;
+    ToolTouch touch;
+  };
+  std::vector<Found> found;
+  for (int m = 0; m < content.dispatcher->getNumManifolds(); ++m) {
+    const btPersistentManifold& manifold = *content.dispatcher->getManifoldByIndexInternal(m);
+    for (const bool is_first : {true, false}) {
+      const btCollisionObject* own = is_first ? manifold.getBody0() : manifold.getBody1();
+      const btCollisionObject* other = is_first ? manifold.getBody1() : manifold.getBody0();
+      if (own->getUserIndex2() < 0 || other->getUserIndex2() >= 0 ||
+          own->getUserIndex() != static_cast<int>(tool_index))
+        continue;
+      for (int p = 0; p < manifold.getNumContacts(); ++p) {
+        const btManifoldPoint& point = manifold.getContactPoint(p);
+        if (!(point.getDistance() <= kMargin)) continue;
+        const double sign = is_first ? 1.0 : -1.0;
+        const btVector3 impulse = point.m_appliedImpulse * point.m_normalWorldOnB +
+                                  point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                                  point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+        const btVector3& normal = point.m_normalWorldOnB;
+        found.push_back({own->getUserIndex2(),
+                         {static_cast<std::uint32_t>(other->getUserIndex()),
+                          FromBullet(is_first ? point.getPositionWorldOnB() : point.getPositionWorldOnA()),
+                          sign * Vec3{normal.x(), normal.y(), normal.z()},
+                          sign / substep_seconds * FromBullet(impulse)}});
+      }
+    }
+  }
+  // Bullet's order of pairs comes of all that ever touched; the points of one pair stay in theirs
+  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+    return std::tie(a.touch.body, a.part) < std::tie(b.touch.body, b.part);
+  });
+  for (const Found& one : found) touches.push_back(one.touch);
+}
+
 std::uint64_t RigidWorld::TouchedBodies(std::uint32_t body) const {
   return content_->bodies[body].touches;
 }

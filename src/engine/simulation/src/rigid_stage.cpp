@@ -132,6 +132,39 @@ void RigidStage::FindObstacles(const Scene& scene,
   }
 }
 
+void RigidStage::FindContacts(const Scene& scene,
+                              const std::array<instrument::TrocarJoints, kHandCount>& joints,
+                              const ToolContacts& tools, int hand, std::vector<ToolContact>& contacts) {
+  if (!world_) return;
+  const auto h = static_cast<std::size_t>(hand);
+  std::vector<rigid::ToolTouch> touches;
+  world_->FindTouches(static_cast<std::uint32_t>(hand), touches);
+  for (const rigid::ToolTouch& touch : touches) {
+    contacts.push_back(
+        {touch.point, touch.normal, touch.force, hand, -1, static_cast<std::int32_t>(touch.body)});
+  }
+  ToolCapsule capsules[rigid::kToolPartCount];
+  Pose X[rigid::kToolPartCount];
+  const Pose &X_proxy = tools.Proxy(hand), &X_device = tools.Device(hand);
+  const Pose X_device_proxy = X_device * math::Inverse(X_proxy);
+  FindParts(scene.instruments[h].tool, joints[h].jaw, X_proxy, capsules, X);
+  const double motion = math::Distance(X_proxy.translation, X_device.translation);
+  std::vector<rigid::ToolObstacle> obstacles;
+  world_->FindObstacles(static_cast<std::uint32_t>(hand), X,
+                        kObstacleReach + std::min(motion, kMostObstacleMotion), obstacles);
+  // what never moves presses where the tool is deepest, as in FindObstacles
+  double deepest = 0;
+  ToolContact contact;
+  for (const rigid::ToolObstacle& one : obstacles) {
+    const double clearance = math::Dot(one.normal, one.point - X_device_proxy * one.point) - one.depth;
+    if (!(-clearance > deepest)) continue;
+    deepest = -clearance;
+    contact = {one.point, -1.0 * one.normal, (kObstacleStiffness * clearance) * one.normal, hand, -1,
+               static_cast<std::int32_t>(one.body)};
+  }
+  if (deepest > 0) contacts.push_back(contact);
+}
+
 void RigidStage::UpdateHold(const Scene& scene, int hand, double jaw) {
   const auto h = static_cast<std::size_t>(hand);
   const auto tool = static_cast<std::uint32_t>(hand);

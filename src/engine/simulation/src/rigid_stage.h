@@ -11,6 +11,7 @@
 #include "trocar/rigid/rigid_world.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/snapshot.h"
+#include "trocar/simulation/tool_contact.h"
 #include "trocar/surgery/grasp.h"
 
 namespace trocar::simulation {
@@ -41,6 +42,13 @@ class RigidStage {
   void Step(const scene::Scene& scene,
             const std::array<instrument::TrocarJoints, instrument::kHandCount>& joints,
             const ToolContacts& contacts, const math::Vec3& gravity);
+
+  /// Where the tool of a hand touches things now, those that never move among them.
+  /// \param[out] contacts  added to
+  /// \note Allocates.
+  void FindContacts(const scene::Scene& scene,
+                    const std::array<instrument::TrocarJoints, instrument::kHandCount>& joints,
+                    const ToolContacts& tools, int hand, std::vector<ToolContact>& contacts);
 
   math::Vec3 ForceOn(int hand) const { return forces_[static_cast<std::size_t>(hand)]; }
   /// \param emit  (surgery::FactKind, hand, object): called for each thing that jaws took, let go or lost in this tick

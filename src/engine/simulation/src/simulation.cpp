@@ -202,7 +202,56 @@ void Simulation::Step(const Input& input) noexcept {
   for (const double part : c.tick.stage_seconds) c.snapshot.tick_seconds += part;
 }
 
+// --- another start
+
+void Simulation::Reset(const Input& start) {
+  Reset();
+  Content& c = *content_;
+  const Scene& scene = c.GetScene();
+  for (std::size_t hand = 0; hand < c.world.joints.size(); ++hand) {
+    TROCAR_ASSERT(start.hands[hand].jaw == scene.instruments[hand].home.jaw);
+    c.world.joints[hand] = start.hands[hand];
+  }
+  c.world.camera_holder.Reset(start.laparoscope);
+  c.world.touch.Reset(scene, c.world.joints, c.world.tissue);
+  c.world.rigid.Reset(scene, c.world.joints);
+  Input home = CalcScriptInput(scene, 0.0);
+  home.laparoscope = start.laparoscope;
+  c.ReadInputs(home);
+  c.MoveCamera(home);
+  c.HoldCamera();
+  c.Publish();
+  c.judgement.monitor.BeginFrom(c.snapshot);
+}
+
 // --- what others ask
+
+void Simulation::FindToolContacts(std::vector<ToolContact>& contacts) const {
+  contacts.clear();
+  Content& c = *content_;
+  const surgery::ContactSet& set = c.world.touch.Contacts();
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
+    for (std::size_t i = 0; i < set.springs.size(); ++i) {
+      const surgery::ContactLink& link = set.links[i];
+      if (link.hand != hand) continue;
+      const tissue::ContactSpring& spring = set.springs[i];
+      const double depth = tissue::CalcContactDepth(spring, c.world.tissue.position);
+      if (!(depth > 0.0)) continue;
+      const math::Vec3 force = (-spring.stiffness * depth) * spring.normal;
+      if (link.is_friction) {
+        // its normal contact stands before it, and may have opened in the solve
+        if (!contacts.empty() && contacts.back().hand == hand && contacts.back().surface == link.surface)
+          contacts.back().force += force;
+        continue;
+      }
+      math::Vec3 point;
+      for (std::size_t k = 0; k < 3; ++k)
+        point += spring.weights[k] * c.world.tissue.position[spring.nodes[k]];
+      contacts.push_back({point, -1.0 * spring.normal, force, hand, link.surface, -1});
+    }
+    c.world.rigid.FindContacts(c.GetScene(), c.world.joints, c.world.touch, hand, contacts);
+  }
+}
 
 const Scene& Simulation::GetScene() const {
   return content_->GetScene();

@@ -119,6 +119,12 @@ void TaskMonitor::Reset(const Scene& scene, TaskSnapshot& task) {
   task.errors.resize(scene.task->errors.size());
 }
 
+void TaskMonitor::BeginFrom(const Snapshot& snapshot) noexcept {
+  for (std::size_t hand = 0; hand < kHandCount; ++hand)
+    start_tips_[hand] = snapshot.instruments[hand].X_world_device.translation;
+  X_world_start_view_ = snapshot.X_world_laparoscope;
+}
+
 bool TaskMonitor::HasMoved(const Snapshot& snapshot) const noexcept {
   for (std::size_t hand = 0; hand < kHandCount; ++hand) {
     if (math::Distance(snapshot.instruments[hand].X_world_device.translation, start_tips_[hand]) >

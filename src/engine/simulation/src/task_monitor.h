@@ -22,6 +22,8 @@ struct Finding {
 class TaskMonitor {
  public:
   void Reset(const scene::Scene& scene, scene::TaskSnapshot& task);
+  /// The first movement is one away from where tools and lens are now. After Reset, before the first tick.
+  void BeginFrom(const Snapshot& snapshot) noexcept;
   /// After everything else of a tick has been published.
   /// \note Real-time safe.
   void Update(const scene::Scene& scene, const Snapshot& snapshot, scene::TaskSnapshot& task) noexcept;

@@ -9,6 +9,7 @@
 
 #include "trocar/host/safe_file.h"
 #include "trocar/roles/roles.h"
+#include "trocar/scene/procedure.h"
 
 namespace trocar::dataset {
 namespace {

@@ -53,6 +53,7 @@ double MiddleOf(std::size_t part, std::size_t count) {
 
 ActionLayout::ActionLayout(const scene::Scene& scene, const EnvironmentSettings& settings)
     : kind_(settings.actions),
+      clips_(settings.clips_actions),
       moves_camera_(settings.moves_camera),
       has_assistant_(scene.operation && scene.operation->assistant) {
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -113,6 +114,7 @@ base::Status ActionLayout::Check(std::span<const double> action) const {
     const double value = action[field.first];
     if (!std::isfinite(value))
       return wrong("\"" + field.name + "\" of the action is NaN or infinite; look at what the policy gives");
+    if (clips_) continue;
     if (field.choices == 0
             ? std::abs(value) > 1 + kRounding
             : value < 0 || value >= static_cast<double>(field.choices) || value != std::floor(value)) {
@@ -129,7 +131,7 @@ Motion ActionLayout::Read(std::span<const double> action, scene::Input& input) c
   if (kind_ == ActionKind::kDiscrete) return ReadDiscrete(action, input);
   Motion motion;
   std::size_t next = 0;
-  const auto take = [&] { return std::clamp(action[next++], -1.0, 1.0); };
+  const auto take = [&] { return std::clamp(action[next++], -1.0, 1.0); };  // rounding, or all of it
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto& rates = kind_ == ActionKind::kTip ? kTipRates : kJointRates;
     for (std::size_t i = 0; i < rates.size(); ++i) motion.rates[hand][i] = rates[i] * take();
@@ -165,8 +167,12 @@ Motion ActionLayout::Read(std::span<const double> action, scene::Input& input) c
 Motion ActionLayout::ReadDiscrete(std::span<const double> action, scene::Input& input) const {
   Motion motion;
   std::size_t next = 0;
+  const auto take = [&] {
+    const double most = static_cast<double>(fields_[next].choices) - 1;
+    return static_cast<std::size_t>(std::clamp(std::floor(action[next++]), 0.0, most));
+  };
   for (int hand = 0; hand < kHandCount; ++hand) {
-    auto choice = static_cast<std::size_t>(action[next++]);
+    auto choice = take();
     if (choice == 0) continue;
     --choice;
     if (choice < kMoves) {
@@ -193,13 +199,12 @@ Motion ActionLayout::ReadDiscrete(std::span<const double> action, scene::Input& 
     }
   }
   if (moves_camera_) {
-    if (const auto choice = static_cast<std::size_t>(action[next++]); choice > 0) {
+    if (const auto choice = take(); choice > 0) {
       const std::size_t joint = (choice - 1) / 2;
       motion.camera[joint] = (choice % 2 == 1 ? 1 : -1) * (joint == 3 ? kMaxTipSpeed : kMaxTurn);
     }
   }
-  if (has_assistant_)
-    input.assistant = static_cast<scene::AssistantCommand>(static_cast<int>(action[next++]));
+  if (has_assistant_) input.assistant = static_cast<scene::AssistantCommand>(take());
   return motion;
 }
 

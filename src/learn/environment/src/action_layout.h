@@ -56,6 +56,7 @@ class ActionLayout {
   Motion ReadDiscrete(std::span<const double> action, scene::Input& input) const;
 
   ActionKind kind_;
+  bool clips_ = false;  // what lies out of range
   bool moves_camera_ = false, has_assistant_ = false;
   std::array<std::vector<Pedal>, instrument::kHandCount> pedals_;  // of each hand
   std::array<std::size_t, instrument::kHandCount> tools_{};        // in its tray

@@ -25,7 +25,7 @@ struct Demonstration::Content {
       : ports{simulation.GetScene().instruments[0].p_world_port,
               simulation.GetScene().instruments[1].p_world_port},
         most_seconds(UsualSeconds(simulation.GetScene())),
-        state(simulation),
+        state(simulation, std::span(&simulation.GetScene(), 1)),
         joints(simulation.GetScene(), SettingsOf(simulation.GetScene(), ActionKind::kJoints)),
         tip(simulation.GetScene(), SettingsOf(simulation.GetScene(), ActionKind::kTip)) {}
 

@@ -73,6 +73,7 @@ base::Status Pool::Content::DoReset(std::int32_t id, std::optional<std::uint64_t
   Slot& slot = slots[row];
   if (const auto reset = slot.environment->Reset(seed); !reset) return reset;
   rows.layout[row] = slot.environment->Layout();
+  rows.episode_seed[row] = slot.environment->EpisodeSeed();
   return Observe(id, rows.state, false);
 }
 
@@ -228,6 +229,7 @@ base::Result<std::unique_ptr<Pool>> Pool::Make(std::shared_ptr<EnvironmentModel>
   made.rows.final_state.resize(made.rows.state.size());
   made.rows.reward.resize(count);
   made.rows.layout.resize(count);
+  made.rows.episode_seed.resize(count);
   made.rows.features.resize(count * kFeatureCount);
   for (auto* flags : {&made.rows.terminated, &made.rows.truncated, &made.rows.success, &made.rows.was_reset})
     flags->resize(count);
@@ -340,6 +342,26 @@ base::Status Pool::Receive(std::size_t count, std::vector<std::int32_t>& ids) {
     if (status.ok() && !slot.status.ok()) status = slot.status;
   }
   return status;
+}
+
+base::Result<const Environment*> Pool::Look(std::int32_t id) const {
+  if (const auto checked = content_->CheckProcess(); !checked) return checked.error();
+  const std::lock_guard lock(content_->mutex);
+  const auto chosen = content_->Choose(std::span(&id, 1));
+  if (!chosen.ok()) return chosen.error();
+  return &*content_->slots[static_cast<std::size_t>(id)].environment;
+}
+
+base::Status Pool::SetRanges(std::span<const std::int32_t> ids, const Ranges& ranges) {
+  if (const auto checked = content_->CheckProcess(); !checked) return checked;
+  const std::lock_guard lock(content_->mutex);
+  const auto chosen = content_->Choose(ids);
+  if (!chosen.ok()) return chosen.error();
+  for (const std::int32_t id : *chosen) {
+    Environment& environment = *content_->slots[static_cast<std::size_t>(id)].environment;
+    if (const auto set = environment.SetRanges(ranges); !set) return set;
+  }
+  return {};
 }
 
 std::size_t Pool::AtWork() const {

@@ -9,7 +9,29 @@ constexpr std::array<std::string_view, kFeatureCount> kFeatureNames = {
     "goal", "step", "approach", "completed", "error",         "critical_error", "force",
     "path", "time", "cleared",  "detached",  "critical_view", "blood"};
 
+constexpr std::array<std::string_view, kVariedCount> kVariedNames = {
+    "start_mm", "camera_deg", "mass", "friction", "stiffness", "light", "latency_s"};
+constexpr Ranges kLimits = {{{0, 30}, {0, 30}, {0.1, 10}, {0, 5}, {0.05, 20}, {0, 4}, {0, 1}}};
+
 }  // namespace
+
+std::string_view NameOf(Varied quantity) noexcept {
+  return kVariedNames[static_cast<std::size_t>(quantity)];
+}
+
+Range LimitsOf(Varied quantity) noexcept {
+  return kLimits[static_cast<std::size_t>(quantity)];
+}
+
+Ranges StandardRanges() noexcept {
+  return {{{0, 0}, {0, 0}, {1, 1}, {1, 1}, {1, 1}, {1, 1}, {0, 0}}};
+}
+
+Ranges UsualRanges() noexcept {
+  Ranges ranges = StandardRanges();
+  ranges[static_cast<std::size_t>(Varied::kStart)] = {0, 8};
+  return ranges;
+}
 
 std::string_view NameOf(ActionKind kind) noexcept {
   return kActionNames[static_cast<std::size_t>(kind)];

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "state_layout.h"
 
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 #include "trocar/base/assert.h"
 #include "trocar/scene/procedure.h"
@@ -14,6 +19,84 @@ using simulation::Snapshot;
 
 constexpr double kMillilitre = 1e6;  // per m^3
 constexpr std::size_t kJointCount = 5;
+
+/// Beyond which a scaled state says no more.
+constexpr double kUsualForce = 5;        // [N]
+constexpr double kUsualPressure = 3000;  // [Pa]
+constexpr double kUsualClips = 20;       // in an applier
+constexpr double kUsualCount = 8;        // of clips and cuts
+constexpr double kUsualMeasure = 4;       // of what a procedure counts: ducts and arteries that enter an organ
+constexpr double kUsualFluid = 100;      // [mL]
+constexpr double kRoundPlaces = 0.005;   // round where samples have a place [m]
+constexpr double kRoundWork = 0.015;     // round where something is to be done [m]
+constexpr double kWidestPlace = 0.040;   // a region that is larger is the field [m]
+constexpr double kRoundOrgans = 0.060;   // organs are larger than their landmarks [m]
+
+class Box {
+ public:
+  void Add(const Vec3& place) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low_[axis] = std::min(low_[axis], place[axis]);
+      high_[axis] = std::max(high_[axis], place[axis]);
+    }
+  }
+  PlaceBounds Round(double margin) const {
+    const Vec3 round{margin, margin, margin};
+    return {low_ - round, high_ + round};
+  }
+
+ private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vec3 low_{kFar, kFar, kFar}, high_{-kFar, -kFar, -kFar};
+};
+
+/// Of one place over all samples. \param place_of  a scene's place
+template <typename PlaceOf>
+PlaceBounds BoundsOf(std::span<const scene::Scene> samples, const PlaceOf& place_of) {
+  Box box;
+  for (const scene::Scene& scene : samples) box.Add(place_of(scene));
+  return box.Round(kRoundPlaces);
+}
+
+/// Whether a region is a place to go to and not the whole field.
+bool IsPlace(const scene::Region& region) {
+  return std::max({region.radius, region.half.x, region.half.y, region.half.z}) < kWidestPlace;
+}
+
+/// Where something is to be done.
+Box FindWork(std::span<const scene::Scene> samples) {
+  Box work;
+  for (const scene::Scene& scene : samples) {
+    for (const scene::SceneObject& object : scene.objects) {
+      if (object.Moves()) work.Add(object.body.X_world_body.translation);
+    }
+    if (scene.task) {
+      for (const scene::Region& region : scene.task->regions) {
+        if (IsPlace(region)) work.Add(region.centre);
+      }
+    }
+    if (scene.model) {
+      for (const scene::ModelBand& band : scene.model->bands) work.Add(band.from), work.Add(band.to);
+      for (const scene::ModelSheet& sheet : scene.model->sheets)
+        work.Add(sheet.centre - sheet.half), work.Add(sheet.centre + sheet.half);
+    }
+    for (const patient::Tube& tube : scene.patient.tubes) {
+      if (!scene.model) continue;
+      for (const math::Vec3& point : tube.line.points) work.Add(point);
+    }
+    if (!scene.HasPatient()) continue;
+    for (const patient::Landmark& landmark : scene.patient.landmarks) work.Add(landmark.position);
+  }
+  return work;
+}
+
+/// A tip goes from where it begins to where something is to be done.
+PlaceBounds FindWay(std::span<const scene::Scene> samples, const Box& work, std::size_t hand) {
+  Box box = work;
+  const scene::InstrumentSetup& setup = samples.front().instruments[hand];
+  box.Add(instrument::CalcToolPose(setup.p_world_port, setup.home).translation);
+  return box.Round(samples.front().HasPatient() ? kRoundOrgans : kRoundWork);
+}
 
 /// Writes one number after the other.
 class Writer {
@@ -40,66 +123,122 @@ Vec3 CalcMiddle(const Snapshot& now, const scene::SurfaceInfo& surface) {
 
 }  // namespace
 
-void StateLayout::Add(std::string name, std::size_t count, std::string unit) {
+void StateLayout::Add(std::string name, std::size_t count, std::string unit, double low, double high) {
   fields_.push_back({std::move(name), size_, count, std::move(unit)});
   size_ += count;
+  low_.resize(size_, static_cast<float>(low));
+  high_.resize(size_, static_cast<float>(high));
 }
 
-StateLayout::StateLayout(const simulation::Simulation& simulation) {
-  const scene::Scene& scene = simulation.GetScene();
-  for (const std::string hand : {"left.", "right."}) {
-    Add(hand + "tip", 3, "m");
-    Add(hand + "shaft", 3, "-");  // unit, from the tip back to the trocar
-    Add(hand + "joints", kJointCount, "rad, rad, rad, m, rad");
-    Add(hand + "force", 3, "N");
-    Add(hand + "is_grasping", 1, "-");
-    Add(hand + "is_touching", 1, "-");
-    Add(hand + "tool", 1, "-");
-    Add(hand + "clips_left", 1, "-");
+void StateLayout::AddPlace(std::string name, const PlaceBounds& bounds) {
+  Add(std::move(name), 3, "m", 0, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t at = size_ - 3 + static_cast<std::size_t>(axis);
+    low_[at] = static_cast<float>(bounds.low[axis]);
+    high_[at] = static_cast<float>(bounds.high[axis]);
   }
-  Add("laparoscope.joints", 4, "rad, rad, rad, m");
-  for (const scene::SceneObject& object : scene.objects) {
-    Add("object." + object.name + ".position", 3, "m");
-    Add("object." + object.name + ".rotation", 4, "quaternion w, x, y, z");
-    if (object.Moves()) Add("object." + object.name + ".held", 2, "-");
+}
+
+void StateLayout::AddRow(std::string name, std::string unit, std::span<const Range> ranges) {
+  Add(std::move(name), ranges.size(), std::move(unit), 0, 0);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    low_[size_ - ranges.size() + i] = static_cast<float>(ranges[i].low);
+    high_[size_ - ranges.size() + i] = static_cast<float>(ranges[i].high);
+  }
+}
+
+StateLayout::StateLayout(const simulation::Simulation& simulation, std::span<const scene::Scene> samples) {
+  TROCAR_ASSERT(!samples.empty());
+  const scene::Scene& scene = simulation.GetScene();
+  const Box work = FindWork(samples);
+  const PlaceBounds worked = work.Round(scene.HasPatient() ? kRoundOrgans : kRoundWork);
+  const double turn = std::numbers::pi;
+  const instrument::JointLimits limits;
+  for (int hand = 0; hand < instrument::kHandCount; ++hand) {
+    const std::string name = hand == instrument::kLeft ? "left." : "right.";
+    const scene::InstrumentSetup& setup = scene.instruments[hand];
+    AddPlace(name + "tip", FindWay(samples, work, static_cast<std::size_t>(hand)));
+    Add(name + "shaft", 3, "-", -1, 1);  // unit, from the tip back to the trocar
+    AddRow(name + "joints", "rad, rad, rad, m, rad",
+           std::array<Range, kJointCount>{{{-limits.max_pan, limits.max_pan},
+                                           {-limits.max_tilt, limits.max_tilt},
+                                           {-turn, turn},
+                                           {limits.min_depth, limits.max_depth},
+                                           {0, limits.max_jaw}}});
+    Add(name + "force", 3, "N", -kUsualForce, kUsualForce);
+    Add(name + "is_grasping", 1, "-", 0, 1);
+    Add(name + "is_touching", 1, "-", 0, 1);
+    Add(name + "tool", 1, "-", 0, std::max(1.0, static_cast<double>(setup.tray.size()) - 1));
+    Add(name + "clips_left", 1, "-", 0, kUsualClips);
+  }
+  AddRow("laparoscope.joints", "rad, rad, rad, m",
+         std::array<Range, 4>{{{-limits.max_pan, limits.max_pan},
+                               {-limits.max_tilt, limits.max_tilt},
+                               {-turn, turn},
+                               {0, limits.max_depth}}});
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const scene::SceneObject& object = scene.objects[i];
+    AddPlace("object." + object.name + ".position",
+             object.Moves() ? worked : BoundsOf(samples, [i](const scene::Scene& of) {
+               return of.objects[i].body.X_world_body.translation;
+             }));
+    Add("object." + object.name + ".rotation", 4, "quaternion w, x, y, z", -1, 1);
+    if (object.Moves()) Add("object." + object.name + ".held", 2, "-", 0, 1);
   }
   if (scene.task) {
-    for (const scene::Region& region : scene.task->regions) Add("region." + region.name + ".centre", 3, "m");
+    for (std::size_t i = 0; i < scene.task->regions.size(); ++i) {
+      AddPlace("region." + scene.task->regions[i].name + ".centre",
+               BoundsOf(samples, [i](const scene::Scene& of) { return of.task->regions[i].centre; }));
+    }
     for (const scene::Goal& goal : scene.task->goals) {
-      Add("goal." + goal.name + ".done", 1, "-");
-      Add("goal." + goal.name + ".is_open", 1, "-");
+      Add("goal." + goal.name + ".done", 1, "-", 0, 1);
+      Add("goal." + goal.name + ".is_open", 1, "-", 0, 1);
     }
   }
   if (scene.model) {
-    for (const scene::ModelBand& band : scene.model->bands) Add("band." + band.name + ".is_whole", 1, "-");
+    for (std::size_t i = 0; i < scene.model->bands.size(); ++i) {
+      const std::string name = "band." + scene.model->bands[i].name;
+      AddPlace(name + ".from",
+               BoundsOf(samples, [i](const scene::Scene& of) { return of.model->bands[i].from; }));
+      AddPlace(name + ".to",
+               BoundsOf(samples, [i](const scene::Scene& of) { return of.model->bands[i].to; }));
+      Add(name + ".is_whole", 1, "-", 0, 1);
+    }
+    for (std::size_t i = 0; i < scene.model->sheets.size(); ++i) {
+      const scene::ModelSheet& sheet = scene.model->sheets[i];
+      AddPlace("sheet." + sheet.name + ".circle_centre",
+               BoundsOf(samples, [i](const scene::Scene& of) { return of.model->sheets[i].centre; }));
+      Add("sheet." + sheet.name + ".circle_radius", 1, "m", 0, 0.05);
+    }
   }
   for (const scene::SurfaceInfo& surface : simulation.Surfaces())
-    Add("surface." + surface.name + ".middle", 3, "m");
+    AddPlace("surface." + surface.name + ".middle", worked);
   for (std::size_t i = 0; i < simulation.GetSnapshot().organs.size(); ++i)
-    Add("surface." + simulation.Surfaces()[i].name + ".pressure", 1, "Pa");
+    Add("surface." + simulation.Surfaces()[i].name + ".pressure", 1, "Pa", 0, kUsualPressure);
   if (scene.operation || scene.model) {
-    Add("clips", 1, "-");
-    Add("cuts", 1, "-");
-    Add("strands_intact", 1, "-");  // share
+    Add("clips", 1, "-", 0, kUsualCount);
+    Add("cuts", 1, "-", 0, kUsualCount);
+    Add("strands_intact", 1, "-", 0, 1);  // share
   }
   if (const scene::Procedure* procedure = scene::ProcedureOf(scene)) {
-    for (const scene::MeasureRow& measure : procedure->measures) Add(std::string(measure.short_name), 1, "-");
+    for (const scene::MeasureRow& measure : procedure->measures)
+      Add(std::string(measure.short_name), 1, "-", 0, measure.is_share ? 1 : kUsualMeasure);
     if (!procedure->criteria.empty()) {
-      Add("critical_view", procedure->criteria.size(), "-");
-      Add("critical_view_seen", procedure->sights.size(), "-");
+      Add("critical_view", procedure->criteria.size(), "-", 0, scene::ViewScore::kWhole);
+      Add("critical_view_seen", procedure->sights.size(), "-", 0, 1);
     }
-    Add("phase", procedure->phases.size(), "-");
+    Add("phase", procedure->phases.size(), "-", 0, 1);
   }
   if (scene.operation) {
     const scene::Procedure* procedure = scene.operation->procedure;
     const std::string organ(procedure != nullptr ? procedure->organ_name : "organ");
-    Add(organ + "_is_free", 1, "-");
-    Add(organ + "_is_in_bag", 1, "-");
-    Add("blood", 1, "mL");
-    Add("bile", 1, "mL");
-    Add("smoke", 1, "-");
+    Add(organ + "_is_free", 1, "-", 0, 1);
+    Add(organ + "_is_in_bag", 1, "-", 0, 1);
+    Add("blood", 1, "mL", 0, kUsualFluid);
+    Add("bile", 1, "mL", 0, kUsualFluid);
+    Add("smoke", 1, "-", 0, 1);
   }
-  Add("time", 1, "-");  // share of the episode's
+  Add("time", 1, "-", 0, 1);  // share of the episode's
 }
 
 void StateLayout::Write(const simulation::Simulation& simulation, double time_share,
@@ -140,7 +279,12 @@ void StateLayout::Write(const simulation::Simulation& simulation, double time_sh
     }
   }
   if (scene.model) {
-    for (const std::uint8_t is_whole : operation.band_is_whole) out.Put(is_whole);
+    for (std::size_t i = 0; i < scene.model->bands.size(); ++i) {
+      out.Put(scene.model->bands[i].from);
+      out.Put(scene.model->bands[i].to);
+      out.Put(operation.band_is_whole[i]);
+    }
+    for (const scene::ModelSheet& sheet : scene.model->sheets) out.Put(sheet.centre), out.Put(sheet.circle);
   }
   for (const scene::SurfaceInfo& surface : simulation.Surfaces()) out.Put(CalcMiddle(now, surface));
   for (const simulation::OrganSnapshot& organ : now.organs) out.Put(organ.pressure);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <span>
 
 #include "reward.h"
 #include "trocar/agent/surgeon.h"
@@ -67,7 +69,7 @@ TEST(Environment, SeedsChooseLayouts) {
   Environment environment = std::move(*Environment::Make(model));
   std::vector<float> one(model->StateSize()), other(model->StateSize());
   ASSERT_TRUE(environment.Reset(1).ok());
-  const int layout = environment.Layout();
+  const std::uint64_t layout = environment.Layout();
   environment.Observe(one);
   std::uint64_t seed = 2;
   do {
@@ -78,6 +80,72 @@ TEST(Environment, SeedsChooseLayouts) {
   ASSERT_TRUE(environment.Reset(1).ok());
   environment.Observe(other);
   EXPECT_EQ(one, other);
+}
+
+// Every seed has its own layout and start; the row of episodes that nobody names has, too.
+TEST(Environment, EverySeedIsAStartOfItsOwn) {
+  const auto model = MakeModel({.task = "peg_transfer"});
+  Environment environment = std::move(*Environment::Make(model)),
+              other = std::move(*Environment::Make(model));
+  std::vector<float> state(model->StateSize()), again(state.size());
+  std::set<std::vector<float>> starts;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    ASSERT_TRUE(environment.Reset(seed).ok());
+    EXPECT_EQ(environment.EpisodeSeed(), seed);
+    EXPECT_EQ(environment.Layout(), seed);
+    environment.Observe(state);
+    starts.insert(state);
+    ASSERT_TRUE(environment.Reset().ok());
+    environment.Observe(state);
+    starts.insert(state);
+    ASSERT_TRUE(other.Reset(environment.EpisodeSeed()).ok());
+    other.Observe(again);
+    EXPECT_EQ(state, again);
+  }
+  EXPECT_EQ(starts.size(), 40u);
+}
+
+TEST(Environment, IsSavedWithWhatItHasDrawn) {
+  const auto model = MakeModel({.task = "lift_and_grasp", .actions = ActionKind::kTip});
+  Environment environment = std::move(*Environment::Make(model)),
+              other = std::move(*Environment::Make(model));
+  Ranges ranges = UsualRanges();
+  ranges[static_cast<std::size_t>(Varied::kLatency)] = {0.03, 0.2};
+  ranges[static_cast<std::size_t>(Varied::kFriction)] = {0.8, 1.2};
+  ASSERT_TRUE(environment.SetRanges(ranges).ok());
+  ASSERT_TRUE(environment.Reset(4).ok());
+  ASSERT_TRUE(other.Reset(9).ok());
+  math::Random random(3);
+  for (int i = 0; i < 6; ++i) ASSERT_TRUE(environment.Step(DrawAction(*model, random)).ok());
+  std::vector<std::byte> bytes, once_more;
+  environment.Save(bytes);
+  ASSERT_TRUE(other.Restore(bytes).ok());
+  other.Save(once_more);
+  EXPECT_EQ(bytes, once_more);
+  auto clone = environment.Clone();
+  ASSERT_TRUE(clone.ok());
+  for (int i = 0; i < 6; ++i) {
+    const std::vector<double> action = DrawAction(*model, random);
+    const auto a = environment.Step(action), b = other.Step(action), c = clone->Step(action);
+    ASSERT_TRUE(a.ok() && b.ok() && c.ok());
+    EXPECT_EQ(a->reward, b->reward);
+    EXPECT_EQ(a->reward, c->reward);
+  }
+  // and the episodes after it
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(environment.Reset().ok() && other.Reset().ok() && clone->Reset().ok());
+    EXPECT_EQ(environment.Drawn(), other.Drawn());
+    EXPECT_EQ(environment.GetSimulation().Hash(), other.GetSimulation().Hash());
+    EXPECT_EQ(environment.GetSimulation().Hash(), clone->GetSimulation().Hash());
+  }
+  // what is damaged changes nothing
+  const std::uint64_t before = environment.GetSimulation().Hash();
+  for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 50) {
+    const auto refused = environment.Restore(std::span(bytes).first(length));
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, base::ErrorCode::kStateInvalid);
+  }
+  EXPECT_EQ(environment.GetSimulation().Hash(), before);
 }
 
 TEST(Environment, TipActionMovesTheTipByThatMuch) {
@@ -142,7 +210,8 @@ TEST(Environment, CutsWhatLiesBeyondABoundByRounding) {
 
 // A surgeon's step changes no bit of what the surgeon does, and the action that it is said to amount to does the same.
 TEST(Environment, IsPlayedByASurgeon) {
-  const auto model = MakeModel({.task = "lift_and_grasp", .actions = ActionKind::kTip});
+  // begins where the task's scene does
+  const auto model = MakeModel({.task = "lift_and_grasp", .layouts = 1, .actions = ActionKind::kTip});
   Environment played = std::move(*Environment::Make(model)), repeated = std::move(*Environment::Make(model));
   ASSERT_TRUE(played.Reset(1).ok() && repeated.Reset(1).ok());
   const auto scene = std::make_shared<const scene::Scene>(played.GetSimulation().GetScene());
@@ -188,7 +257,11 @@ TEST(Environment, RefusesWrongSettings) {
     return made.ok() ? base::ErrorCode::kNone : made.error().code;
   };
   EXPECT_EQ(code({.task = "juggling"}), base::ErrorCode::kUnknownName);
-  EXPECT_EQ(code({.layouts = 0}), base::ErrorCode::kUsage);
+  EXPECT_EQ(code({.layouts = -1}), base::ErrorCode::kUsage);
+  EXPECT_EQ(code({.models = 5000}), base::ErrorCode::kUsage);
+  Ranges ranges = UsualRanges();
+  ranges[static_cast<std::size_t>(Varied::kMass)] = {2, 1};
+  EXPECT_EQ(code({.ranges = ranges}), base::ErrorCode::kUsage);
   EXPECT_EQ(code({.actions_per_second = std::nan("")}), base::ErrorCode::kUsage);
   EXPECT_EQ(code({.most_seconds = -1}), base::ErrorCode::kUsage);
 }

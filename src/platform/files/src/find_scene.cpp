@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/files/find_scene.h"
 
+#include <system_error>
 #include <utility>
 
 #include "scene_reader.h"
 #include "trocar/files/operation_level_file.h"
 #include "trocar/files/scene_file.h"
+#include "trocar/host/data_folder.h"
 #include "trocar/procedures/find_procedure.h"
 
 namespace trocar::files {
@@ -21,6 +23,22 @@ base::Result<scene::Scene> FindScene(const std::string& name_or_path, const Task
                        path.error().message + "; or the operation \"" + procedures::kUsualProcedure + "\""};
   }
   return ReadTask(*path, choice);
+}
+
+base::Result<std::filesystem::path> FindSceneFile(const std::string& name_or_path) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(name_or_path, ignored)) return std::filesystem::path(name_or_path);
+  const auto data = host::FindDataFolder();
+  if (!data.ok()) return data.error();
+  const std::filesystem::path operation = *data / "scenes" / (name_or_path + ".json");
+  if (std::filesystem::is_regular_file(operation, ignored)) {
+    const auto document = host::JsonDocument::Read(operation);
+    if (!document.ok()) return document.error();
+    if (document->Root().Has("operation")) return operation;
+  }
+  auto path = FindTask(name_or_path);
+  if (path.ok() || path.error().code != base::ErrorCode::kUnknownName) return path;
+  return base::Error{path.error().code, path.error().message + "; or the operation \"cholecystectomy\""};
 }
 
 base::Result<scene::Scene> ParseScene(const std::string& text, const std::filesystem::path& source,

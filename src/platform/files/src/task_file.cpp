@@ -2,19 +2,17 @@
 #include "trocar/files/task_file.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <map>
 #include <system_error>
 #include <utility>
 
 #include "field_ranges.h"
 #include "ideal_path.h"
 #include "scene_reader.h"
+#include "task_parameters.h"
 #include "task_rules.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/json.h"
 #include "trocar/host/safe_file.h"
-#include "trocar/math/random.h"
 
 namespace trocar::files {
 namespace {
@@ -46,50 +44,69 @@ double ReadBestScore(const JsonView& root, const std::vector<std::string>& level
   return scores.Number(level, range::kLevelScore);
 }
 
-/// Values of the parameters at a level, in alphabetical order; what is random comes from the seed.
-std::map<std::string, double> CalcParameters(const JsonView& root, const std::vector<std::string>& levels,
-                                             const TaskChoice& choice) {
-  std::map<std::string, double> values;
-  if (!root.Has("parameters")) return values;
-  const JsonView parameters = root.Object("parameters");
-  math::Random random(choice.seed);
-  for (const std::string& name : parameters.Keys()) {
-    const JsonView view = parameters.Object(name);
-    view.AllowOnly({"about", "value", "by_level", "spread"});
-    double value = 0;
-    if (view.Has("value") == view.Has("by_level")) {
-      view.Complain("a parameter has either value or by_level", ErrorCode::kSceneInvalid);
-    } else if (view.Has("value")) {
-      value = view.Number("value", range::kParameter);
-    } else {
-      const JsonView by_level = view.Object("by_level");
-      for (const std::string& level : levels)
-        (void)by_level.Number(level, range::kParameter);  // each level needs its number
-      value = by_level.Number(choice.level, range::kParameter);
-    }
-    const double spread = view.NumberOr("spread", 0.0, range::kSpread);
-    values[name] = value + random.Uniform(-spread, spread);
-  }
-  return values;
-}
-
-void ReplaceAll(std::string& text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-    text.replace(at, what.size(), by);
-}
-
-/// Puts numbers in the place of "{name}" and "-{name}".
-void Substitute(const std::map<std::string, double>& values, std::string& text) {
-  for (const auto& [name, value] : values) {
-    char number[40];
-    std::snprintf(number, sizeof number, "%.17g", value);
-    ReplaceAll(text, "\"{" + name + "}\"", number);
-    std::snprintf(number, sizeof number, "%.17g", -value);
-    ReplaceAll(text, "\"-{" + name + "}\"", number);
-  }
-}
-
 }  // namespace
+
+// --- a task's text, read once
+
+struct TaskForm::Content {
+  std::filesystem::path source;
+  std::string text;  // without blanks
+  std::string level;
+  std::vector<std::string> levels;
+  TaskParameters parameters;
+};
+
+TaskForm::TaskForm(std::unique_ptr<const Content> content) : content_(std::move(content)) {}
+TaskForm::TaskForm(TaskForm&&) noexcept = default;
+TaskForm& TaskForm::operator=(TaskForm&&) noexcept = default;
+TaskForm::~TaskForm() = default;
+
+base::Result<TaskForm> TaskForm::Parse(const std::string& text, const fs::path& source,
+                                       const std::string& level) {
+  auto content = std::make_unique<Content>();
+  content->source = source;
+  content->level = level;
+  const auto written = host::JsonDocument::Parse(text, source.string());
+  if (!written.ok()) return written.error();
+  const JsonView form = written->Root();
+  if (form.Text("format") != "trocar-task") form.Complain("format must be \"trocar-task\"");
+  content->levels = ReadLevels(form);
+  if (std::find(content->levels.begin(), content->levels.end(), level) == content->levels.end()) {
+    std::string known;
+    for (const auto& each : content->levels) known += (known.empty() ? "" : ", ") + each;
+    form.Complain("there is no level \"" + level + "\"; known are " + known, ErrorCode::kUnknownName);
+  }
+  content->parameters = ReadTaskParameters(form, content->levels, level);
+  if (const auto status = written->Check(); !status.ok()) return status.error();
+  content->text = WithoutBlanks(text);
+  return TaskForm(std::move(content));
+}
+
+base::Result<scene::Scene> TaskForm::MakeScene(std::uint64_t seed, bool is_varied,
+                                               const fs::path& patient_folder) const {
+  const Content& c = *content_;
+  auto document = host::JsonDocument::Parse(
+      SubstituteParameters(c.text, c.parameters.Draw(seed, is_varied)), c.source.string());
+  if (!document.ok()) return document.error();
+  const JsonView root = document->Root();
+  root.AllowOnly({"format", "version", "name", "about", "levels", "level_scores", "parameters", "shuffle",
+                  "scene", "regions", "rules", "ideal_path"});
+  if (root.Integer("version") != 1) root.Complain("version must be 1");
+  const std::string name = root.Text("name"), about = root.Text("about");
+  auto scene = ReadSceneFields(*document, root.Object("scene"), c.source.parent_path(), patient_folder);
+  if (!scene.ok()) return scene.error();
+  scene->name = name;
+  scene->seed = seed;
+  scene::Task task = ReadTaskRules(root, *scene);
+  ReadIdealPath(root, *scene, task);
+  task.best_score = ReadBestScore(root, c.levels, c.level);
+  if (const auto status = document->Check(); !status.ok()) return status.error();
+  task.name = name;
+  task.about = about;
+  task.level = c.level;
+  scene->task = std::move(task);
+  return scene;
+}
 
 base::Result<scene::Scene> ReadTask(const fs::path& path, const TaskChoice& choice) {
   auto text = host::ReadFile(path);
@@ -98,41 +115,9 @@ base::Result<scene::Scene> ReadTask(const fs::path& path, const TaskChoice& choi
 }
 
 base::Result<scene::Scene> ParseTask(std::string text, const fs::path& source, const TaskChoice& choice) {
-  // twice: what the parameters are, then the whole with their numbers in place
-  auto written = host::JsonDocument::Parse(text, source.string());
-  if (!written.ok()) return written.error();
-  const JsonView form = written->Root();
-  if (form.Text("format") != "trocar-task") form.Complain("format must be \"trocar-task\"");
-  const auto levels = ReadLevels(form);
-  if (std::find(levels.begin(), levels.end(), choice.level) == levels.end()) {
-    std::string known;
-    for (const auto& level : levels) known += (known.empty() ? "" : ", ") + level;
-    form.Complain("there is no level \"" + choice.level + "\"; known are " + known, ErrorCode::kUnknownName);
-  }
-  const auto values = CalcParameters(form, levels, choice);
-  if (const auto status = written->Check(); !status.ok()) return status.error();
-  Substitute(values, text);
-
-  auto document = host::JsonDocument::Parse(text, source.string());
-  if (!document.ok()) return document.error();
-  const JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "name", "about", "levels", "level_scores", "parameters", "scene",
-                  "regions", "rules", "ideal_path"});
-  if (root.Integer("version") != 1) root.Complain("version must be 1");
-  const std::string name = root.Text("name"), about = root.Text("about");
-  auto scene = ReadSceneFields(*document, root.Object("scene"), source.parent_path(), choice.patient_folder);
-  if (!scene.ok()) return scene.error();
-  scene->name = name;
-  scene->seed = choice.seed;
-  scene::Task task = ReadTaskRules(root, *scene);
-  ReadIdealPath(root, *scene, task);
-  task.best_score = ReadBestScore(root, levels, choice.level);
-  if (const auto status = document->Check(); !status.ok()) return status.error();
-  task.name = name;
-  task.about = about;
-  task.level = choice.level;
-  scene->task = std::move(task);
-  return scene;
+  const auto form = TaskForm::Parse(text, source, choice.level);
+  if (!form.ok()) return form.error();
+  return form->MakeScene(choice.seed, choice.is_varied, choice.patient_folder);
 }
 
 base::Result<std::vector<TaskEntry>> ListTasks() {

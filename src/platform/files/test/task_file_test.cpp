@@ -90,6 +90,44 @@ TEST_F(TaskFile, LevelAndSeedChooseTheParameters) {
   EXPECT_EQ(easy->seed, 5u);
 }
 
+TEST_F(TaskFile, WhatVariesIsDrawnBesideWhatIsStandardised) {
+  std::string text = kTask;
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    text.replace(at, what.size(), by);
+  };
+  // a new parameter stands before the old one in the alphabet
+  replace(
+      R"("x": {"value": 3, "spread": 2})",
+      R"("a": {"value": 0, "vary": 4}, "b": {"value": 1}, "c": {"value": 2}, "x": {"value": 3, "spread": 2})");
+  replace(R"("at_mm": ["{x}", "-{x}", -136])",
+          R"("at_mm": ["{a} + {x}", "2*{b}-{c} - {x}", " - 0.5*{c} - 135 "])");
+  replace(R"("scene": {)", R"("shuffle": [[["b"], ["c"]]], "scene": {)");
+  const auto place = [&](std::uint64_t seed, bool is_varied) {
+    const auto scene = Read(text, {.level = "easy", .seed = seed, .is_varied = is_varied});
+    EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().Text());
+    return scene.ok() ? scene->objects[0].body.X_world_body.translation : math::Vec3{};
+  };
+  bool is_shuffled = false, is_kept = false;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto before = Read(kTask, {.level = "easy", .seed = seed});
+    ASSERT_TRUE(before.ok());
+    const math::Vec3 old = before->objects[0].body.X_world_body.translation, standard = place(seed, false),
+                     varied = place(seed, true);
+    // to the bit: neither "a" nor sums with 0 change what was
+    EXPECT_EQ(standard.x, old.x);
+    EXPECT_EQ(standard.z, 0.001 * -136);
+    EXPECT_NEAR(varied.x, standard.x, 0.004);
+    EXPECT_NE(varied.x, standard.x);
+    EXPECT_EQ(varied, place(seed, true));
+    const bool has_changed = std::abs(varied.z - 0.001 * -135.5) < 1e-12;  // c is 1 then, and b is 2
+    EXPECT_NEAR(varied.y, standard.y + (has_changed ? 0.003 : 0.0), 1e-12);
+    (has_changed ? is_shuffled : is_kept) = true;
+  }
+  EXPECT_TRUE(is_shuffled && is_kept);
+}
+
 TEST_F(TaskFile, IsReadAsASceneToo) {
   ASSERT_TRUE(host::WriteFile(folder_.Path() / "task.json", kTask).ok());
   const auto scene = ReadScene(folder_.Path() / "task.json");
@@ -106,6 +144,12 @@ struct Bad {
 TEST_F(TaskFile, BadOnesAreRefusedWithPathAndRemedy) {
   using base::ErrorCode;
   const Bad kBad[] = {
+      {R"("levels")", R"("shuffle": [[["x"], ["nobody"]]], "levels")", ErrorCode::kSceneInvalid, {"nobody"}},
+      {R"("levels")",
+       R"("shuffle": [[["x"], ["x", "size"]]], "levels")",
+       ErrorCode::kSceneInvalid,
+       {"equally many"}},
+      {R"("spread": 2)", R"("spread": 2, "vary": -1)", ErrorCode::kJsonField, {"parameters.x", "vary"}},
       {R"("tool": "maryland", "port_mm": [-70)",
        R"("tool": "tongs", "port_mm": [-70)",
        ErrorCode::kUnknownName,

@@ -10,10 +10,25 @@
 namespace trocar::host {
 namespace fs = std::filesystem;
 
+namespace {
+
+fs::path& DeliveredFolder() {
+  static fs::path folder;
+  return folder;
+}
+
+}  // namespace
+
+void SetDataFolder(const fs::path& folder) {
+  DeliveredFolder() = folder;
+}
+
 base::Result<fs::path> FindDataFolder() {
   std::vector<fs::path> places;
   if (const char* named = std::getenv("TROCAR_DATA_DIR"); named != nullptr && *named != '\0') {
     places.emplace_back(named);  // whoever names a folder wants that one
+  } else if (!DeliveredFolder().empty()) {
+    places.push_back(DeliveredFolder());
   } else {
     places.push_back(FindInstallationFolder() / "share/trocar");
     places.push_back(FindProgramFolder());

@@ -55,6 +55,14 @@ struct ToolObstacle {
   double depth = 0;   ///< of the tool's surface in the body [m]; negative: they are this far apart
 };
 
+/// Where a tool touches a body that Bullet moves or that it leans on.
+struct ToolTouch {
+  std::uint32_t body = 0;
+  math::Vec3 point;   ///< on the body, world frame [m]
+  math::Vec3 normal;  ///< unit, out of the body
+  math::Vec3 force;   ///< on the tool, in the last part of the last Step [N]
+};
+
 class RigidWorld {
  public:
   /// \param gravity  [m/s^2]
@@ -97,6 +105,11 @@ class RigidWorld {
   math::Vec3 ForceOn(std::uint32_t tool) const;
   /// Whether any part of the tool touched a body in the last Step.
   bool Touches(std::uint32_t tool, std::uint32_t body) const;
+
+  /// Points at which a tool touches bodies, by body and part of the tool.
+  /// \param[out] touches  added to
+  /// \note Allocates.
+  void FindTouches(std::uint32_t tool, std::vector<ToolTouch>& touches) const;
 
   /// Bit of each of the first 64 bodies that a body touched at the end of the last Step.
   std::uint64_t TouchedBodies(std::uint32_t body) const;

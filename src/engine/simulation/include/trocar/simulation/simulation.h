@@ -19,6 +19,7 @@
 #include "trocar/simulation/model_description.h"
 #include "trocar/simulation/operation_result.h"
 #include "trocar/simulation/snapshot.h"
+#include "trocar/simulation/tool_contact.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/local_patch.h"
 
@@ -79,6 +80,11 @@ class Simulation {
   void StepWorld(const scene::Input& input) noexcept;
   /// Back to the first tick.
   void Reset();
+  /// Back to the first tick with hands and laparoscope elsewhere; a task's clock runs from their first movement from there.
+  /// \param start  hands, with their jaws as the scene has them, and laparoscope; within their limits. The rest is not used
+  /// \note A state that is saved later holds where they are, not where they began: Restore it after a Reset to the same
+  ///     start, or the clock of a task that nobody has begun may start at once.
+  void Reset(const scene::Input& start);
 
   const scene::Scene& GetScene() const;
   /// Organs, then tubes; constant.
@@ -90,6 +96,12 @@ class Simulation {
   /// How the operation stands; nothing where the scene is none.
   /// \note Allocates.
   std::optional<OperationResult> GetOperationResult() const;
+
+  /// Where the tools touch tissue and things after the last tick: the left hand's first. What jaws hold is not among them, nor
+  /// the patient's neighbours, nor where one tool touches the other.
+  /// \param[out] contacts  replaced
+  /// \note Allocates. Changes nothing.
+  void FindToolContacts(std::vector<ToolContact>& contacts) const;
 
   /// All that decides the future, as bytes with format, model and checksum, for a file, another process or Restore.
   /// \param[out] bytes  replaced; its memory is used again

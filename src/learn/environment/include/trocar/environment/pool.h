@@ -46,7 +46,8 @@ struct PoolRows {
   std::vector<double> features;                              ///< (count, kFeatureCount)
   std::vector<std::uint8_t> terminated, truncated, success;  ///< (count)
   std::vector<std::uint8_t> was_reset;                       ///< (count) this row begins an episode
-  std::vector<std::int32_t> layout;                          ///< (count) of the episode of `state`
+  std::vector<std::uint64_t> layout;        ///< (count) Environment::Layout() of the episode of `state`
+  std::vector<std::uint64_t> episode_seed;  ///< (count) of it
 };
 
 /// Send and Receive may be called from one thread at a time. The results do not depend on the number of threads.
@@ -84,6 +85,13 @@ class Pool {
   /// \return kEnvironmentState where fewer are at work; an environment's own error
   base::Status Receive(std::size_t count, std::vector<std::int32_t>& ids);
   std::size_t AtWork() const;
+  /// One of the pool's environments, to look at until it is sent to work again.
+  /// \return kUsage where there is none of that number, kEnvironmentState while it is at work
+  base::Result<const Environment*> Look(std::int32_t id) const;
+  /// What the seeds of episodes that begin from now on draw from.
+  /// \param ids  as in Reset
+  /// \return kUsage for a range out of its limits, kEnvironmentState while one is at work
+  base::Status SetRanges(std::span<const std::int32_t> ids, const Ranges& ranges);
 
  private:
   struct Content;

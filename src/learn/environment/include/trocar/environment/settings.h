@@ -51,19 +51,55 @@ using Features = std::array<double, kFeatureCount>;
 /// Weights that reward reaching goals and getting nearer to them, and cost time and errors.
 Features DefaultWeights() noexcept;
 
+/// Quantity that the seed of an episode draws from a range.
+enum class Varied : std::uint8_t {
+  kStart,      ///< how far each tip begins from where the task has it [mm]
+  kCamera,     ///< how far the laparoscope begins turned aside, about its trocar [deg]
+  kMass,       ///< of things, in the task's [-]
+  kFriction,   ///< of things, in the task's [-]
+  kStiffness,  ///< of tissue, in the task's [-]
+  kLight,      ///< power of the head light in pictures, in the usual one [-]
+  kLatency,    ///< from an action to the hands' motion [s]
+  kCount
+};
+inline constexpr std::size_t kVariedCount = static_cast<std::size_t>(Varied::kCount);
+/// "start_mm", "camera_deg", "mass", "friction", "stiffness", "light", "latency_s"
+std::string_view NameOf(Varied quantity) noexcept;
+
+struct Range {
+  double low = 0, high = 0;
+  friend bool operator==(const Range&, const Range&) = default;
+};
+/// Indexed by Varied.
+using Ranges = std::array<Range, kVariedCount>;
+/// In which a quantity's range has to lie.
+Range LimitsOf(Varied quantity) noexcept;
+/// Nothing varies.
+Ranges StandardRanges() noexcept;
+/// The tips begin up to 8 mm from where the task has them.
+Ranges UsualRanges() noexcept;
+
 struct EnvironmentSettings {
   std::string task = "peg_transfer";  ///< key of a delivered task or operation, or a file of either
   std::string level = "normal";       ///< of a task or an operation
-  std::filesystem::path patient;      ///< in place of the scene's, unless it is empty
-  std::uint64_t seed = 1;  ///< of the task's random layout; an episode's seed chooses among `layouts`
-  /// Layouts that episodes are drawn from: those of `seed`, `seed` + 1, ... Each has a model in memory, shared by all
-  /// environments of a pool. 1 to 4096.
-  int layouts = 1;
+  std::vector<std::filesystem::path> patients;  ///< in place of the scene's; of several a seed chooses one
+  /// Of the row of episodes where no reset names one, and of the first of `layouts`.
+  std::uint64_t seed = 1;
+  /// 0: every seed of an episode has a layout of its own, drawn from all that the task lets vary; of tissue, which takes long
+  /// to make, one of `models`. Else standardised layouts, as people train at: those of `seed`, `seed` + 1, ..., among which
+  /// an episode's seed chooses. Each has a model in memory, shared by all environments of a pool. At most 4096.
+  int layouts = 0;
+  /// With `layouts` 0, models of tissue that are kept, each of another layout: 1 to 4096, or 0 for 8 of a task's tissue and one
+  /// of each patient.
+  int models = 0;
+  /// What a seed varies beside the layout; nothing said: UsualRanges(), with standardised layouts StandardRanges().
+  std::optional<Ranges> ranges;
   ActionKind actions = ActionKind::kJoints;
   double actions_per_second = 10;  ///< 0.5 to 120; an action lasts a whole number of ticks
   /// After which an episode is truncated [s]; 0: the task's own limit and 30 s, 1800 s for an operation.
   double most_seconds = 0;
-  bool moves_camera = false;  ///< the laparoscope is part of the action; tasks that are about it set this
+  bool moves_camera = false;   ///< the laparoscope is part of the action; tasks that are about it set this
+  bool clips_actions = false;  ///< what lies out of range is cut to it; else it is refused
   Features weights = DefaultWeights();
   /// JSON of a task or an operation that stands in no file; `task` is then its name in messages, and relative paths inside
   /// start from that name's folder. Empty: `task` is looked for.

@@ -17,6 +17,10 @@ namespace trocar::files {
 /// \return kUnknownName where there is no such thing or level; else as ReadTask
 base::Result<scene::Scene> FindScene(const std::string& name_or_path, const TaskChoice& choice = {});
 
+/// Where something to do stands: what FindScene reads.
+/// \return kUnknownName where there is no such thing
+base::Result<std::filesystem::path> FindSceneFile(const std::string& name_or_path);
+
 /// An operation, a task, or a scene to look at, from text that need not stand in a file.
 /// \param source  its name in messages; relative paths inside start from its folder
 base::Result<scene::Scene> ParseScene(const std::string& text, const std::filesystem::path& source,
