@@ -7,6 +7,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,7 +37,7 @@ struct CentrePage {
   ExamPage exam;
   std::string busy;      ///< what is being done; empty: nothing
   double progress = -1;  ///< of that, 0 to 1; < 0: not known
-  std::string notice;    ///< of what waits for the store; empty: nothing waits
+  std::string notice;    ///< of what is being measured or waits for the store; empty: nothing
   bool is_help_open = false, is_who_open = false;
   std::uint64_t version = 0;  ///< another number: the shown page is another
 };
@@ -103,7 +104,15 @@ class CentrePresenter {
   void ChooseCourse(const std::string& course);
   void StartStep(const StepName& step);
   void ChooseGroup(const std::string& group);
+  // what an instructor changes of groups
+  void MakeGroup(const std::string& name);
+  void JoinGroup(const std::string& who);
+  void LeaveGroup(const std::string& pseudonym);
+  void AssignCourse(const std::string& course, const std::string& due);
   void OpenExamFile(const std::filesystem::path& file);
+  void SealExam(const std::string& name, const std::string& task, const std::string& level,
+                const std::filesystem::path& file);
+  void MakeKeys(const std::filesystem::path& file, const std::string& passphrase);
   void StartExam();
   /// The exam's recording has ended.
   void EndExam(const ExamSitting& sitting, const std::filesystem::path& recording);
@@ -124,10 +133,14 @@ class CentrePresenter {
   void Read();
   void ReadHistory(const HistoryQuery& query);
   void ReadReview();
+  void ReadExamChoices();
+  void ChangeGroup(std::function<base::Status(const Access&)> change, const std::string& group,
+                   const std::string& done);
   void ReadRole();
   void UseResult(const JudgedAttempt& judged);
   void SetExaminee();
   void FollowFiling();
+  void ShowPending(const FilingStatus& status);
   void Fail(const base::Error& error);
   void Refresh(bool is_other);
 
@@ -138,6 +151,7 @@ class CentrePresenter {
   CentrePage page_;
   store::Attempt shown_;  // of the result page
   std::filesystem::path expected_;
+  std::map<std::filesystem::path, HistoryPage::Pending> pending_;  // that have been read
   bool is_trainee_ = false;  // who works here is one
   std::atomic<double> share_{-1};
   std::atomic<bool> is_given_up_{false}, is_done_{false};

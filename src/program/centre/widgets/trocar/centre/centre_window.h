@@ -35,6 +35,8 @@ class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {
   CentreWindow(const Access& access, int threads, AttemptFiling* filing, CentreServices services);
   ~CentreWindow() override;
 
+  /// Whether a person can still see it: GTK forgets a window that was closed.
+  bool IsOpen() const { return is_open_; }
   CentrePresenter& Presenter() { return *presenter_; }
   /// The filing has news. From any thread.
   void Wake() { news_.emit(); }
@@ -76,6 +78,7 @@ class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {
   Gtk::ProgressBar progress_;
   std::uint64_t shown_version_ = 0;
   std::optional<base::Error> failure_;
+  bool is_open_ = true;
   Glib::Dispatcher news_;
   std::unique_ptr<CentrePresenter> presenter_;
 };

@@ -57,7 +57,6 @@ struct CommandButton {
   const char* label = "";
   const char* tip = "";
   bool is_toggle = false, is_primary = false;
-  bool is_linked = false;  ///< joined to its neighbours that are, too
   int least_width = 0;     ///< holds each of its labels [pixels]
 };
 
