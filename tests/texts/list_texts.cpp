@@ -37,6 +37,7 @@
 #include "trocar/presenter/replay_commands.h"
 #include "trocar/presenter/settings_form.h"
 #include "trocar/presenter/simulator_commands.h"
+#include "trocar/presenter/operation_guide.h"
 #include "trocar/presenter/tutorial.h"
 #include "trocar/report/agreement.h"
 #include "trocar/scene/event.h"
@@ -306,6 +307,7 @@ int main(int count, char** arguments) {
     Print(entry.about);
   }
   for (const std::string_view text : presenter::TutorialTexts()) Print(text);
+  for (const std::string_view text : presenter::OperationStepTexts()) Print(text);
   for (const char* direction : editor::PatientDirections()) Print(direction);
   // what a long work is doing
   for (const char* what : {"Reading", "Seeking", "Drawing", "reading labels", "looking at the labels",

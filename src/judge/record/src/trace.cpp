@@ -15,7 +15,6 @@
 #include "trocar/math/elementary.h"
 #include "trocar/record/replay.h"
 #include "trocar/simulation/attempt_end.h"
-#include "trocar/training/metric_settings.h"
 
 namespace trocar::record {
 namespace {
@@ -100,7 +99,6 @@ struct TraceBuilder::Content {
   std::vector<int> clip_tubes;  // surface, or -1
   std::vector<roles::StrandRole> strand_roles;
   std::vector<std::size_t> going_on;  // of trace.facts
-  training::MetricSettings limits;
   std::array<std::optional<std::size_t>, instrument::kHandCount> pressing;  // of trace.events
 
   bool IsEmpty() const { return trace.Ticks() == 0; }
@@ -241,8 +239,8 @@ void TraceBuilder::Content::AddForces(const Snapshot& now) {
         known.force = force;
         known.position = trace.hands[hand].back().tip;
       }
-      if (force < limits.release_share * limits.error_force) pressing[hand].reset();
-    } else if (force > limits.error_force) {
+      if (force < training::kErrorForceRelease * training::kErrorForce) pressing[hand].reset();
+    } else if (force > training::kErrorForce) {
       training::AttemptEvent entry;
       entry.time = TimeOf(now.tick);
       entry.kind = training::kExcessForceOfTask;

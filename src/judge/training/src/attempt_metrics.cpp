@@ -45,8 +45,6 @@ base::Status CheckSettings(const MetricSettings& settings) {
       return RefuseMetrics(
           "noise steps, speeds, durations, distances and the force threshold must be at least 0");
   }
-  if (!(settings.error_force >= settings.force_threshold))
-    return RefuseMetrics("error_force must be at least force_threshold");
   if (settings.sparc.pad_level < 0 || settings.sparc.pad_level > kMaxPadLevel ||
       !IsPositive(settings.sparc.cutoff_hz) || !IsNotNegative(settings.sparc.amplitude_limit))
     return RefuseMetrics(

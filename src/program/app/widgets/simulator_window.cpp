@@ -232,6 +232,8 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   if (presenter_->HasGuides())
     overlay.trails = 
         presenter::MakeGuides(control.GetScene(), control.Surfaces(), control.Strands(), *work.snapshot);
+  if (auto mark = presenter::MarkOperationStep(presenter_->NextOperationStep(), work.snapshot->X_world_laparoscope))
+    overlay.trails.push_back(std::move(*mark));
   picture_.SetOverlay(std::move(overlay));
   picture_.queue_render();
   HearFrame(*work.snapshot);
@@ -275,7 +277,7 @@ void SimulatorWindow::Show(const presenter::SimulatorPage& page) {
   mode_.set_text(page.mode);
   mode_.set_visible(!page.is_rehearsal_open);  // it speaks of hands
   gui::SetTextOrHide(progress_, page.progress);
-  gui::SetTextOrHide(tutorial_, page.tutorial);
+  gui::SetTextOrHide(tutorial_, page.tutorial.empty() ? page.next_step : page.tutorial);
   tutorial_task_.set_visible(page.is_tutorial_done);
   chooser_.set_visible(page.is_task_list_open);
   recordings_.set_visible(page.is_recording_list_open);

@@ -44,7 +44,7 @@ std::vector<Gtk::Widget*> Columns::Shown() const {
 std::vector<int> Columns::FindWidths(const std::vector<Gtk::Widget*>& shown, int width) const {
   std::vector<int> widths;
   int used = 0, expanding = 0;
-  for (const Gtk::Widget* child : shown) {
+  for (Gtk::Widget* child : shown) {
     widths.push_back(Measure(*child, Gtk::Orientation::HORIZONTAL, -1).minimum);
     used += widths.back() + (widths.size() > 1 ? spacing_ : 0);
     expanding += child->compute_expand(Gtk::Orientation::HORIZONTAL) ? 1 : 0;

@@ -252,6 +252,13 @@ void SimulatorPresenter::FollowTutorial(const simulation::Snapshot& snapshot) {
   Refresh();
 }
 
+OperationStep SimulatorPresenter::NextOperationStep() const {
+  if (control_ == nullptr || !HasGuides() || tutorial_.IsOn() || control_->IsDemonstration() || is_attempt_over_)
+    return {};
+  if (!control_->GetScene().operation || control_->GetScene().task) return {};
+  return FindOperationStep(control_->GetScene(), control_->Strands(), control_->Now(), operation_end_.Reached());
+}
+
 // questions
 
 bool SimulatorPresenter::MustAsk(Action action) const {
@@ -303,6 +310,8 @@ void SimulatorPresenter::RefreshFirstMeeting() {
   page_.is_panel_open = settings_.has_panel && control_ != nullptr && !IsExam();
   page_.tutorial = page_.failure ? "" : tutorial_.Text(bindings_);
   page_.is_tutorial_done = !page_.tutorial.empty() && tutorial_.IsDone();
+  const std::string_view next = page_.failure ? std::string_view() : NextOperationStep().text;
+  page_.next_step = next.empty() ? "" : bindings_.Fill(host::Translate(next));
   page_.progress = control_ == nullptr || page_.failure
                        ? ""
                        : DescribeProgress(control_->GetScene(), control_->Now(), operation_end_);

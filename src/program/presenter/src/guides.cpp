@@ -85,17 +85,6 @@ std::optional<double> MeetBall(const Vec3& from, const Vec3& way, const Vec3& ce
   return std::max(0.0, along - std::sqrt(radius * radius - off2));
 }
 
-Trail MakeRing(const Vec3& centre, const Vec3& normal, double radius, Material material) {
-  const math::Quaternion turn = math::RotationBetween({0, 0, 1}, normal);
-  Trail ring{{}, material, kRingWidth};
-  for (int i = 0; i <= kRingSteps; ++i) {
-    const double angle = 2 * M_PI * i / kRingSteps;
-    ring.points.push_back(centre +
-                          math::Rotate(turn, Vec3{radius * std::cos(angle), radius * std::sin(angle), 0}));
-  }
-  return ring;
-}
-
 /// Which goal is worked on: one that has begun, else the first that may be.
 std::ptrdiff_t FindGoal(const scene::TaskSnapshot& now) {
   std::ptrdiff_t chosen = -1;
@@ -136,6 +125,17 @@ void AddDepthLine(const scene::Scene& scene, std::span<const scene::SurfaceInfo>
 }
 
 }  // namespace
+
+Trail MakeRing(const Vec3& centre, const Vec3& normal, double radius, Material material) {
+  const math::Quaternion turn = math::RotationBetween({0, 0, 1}, normal);
+  Trail ring{{}, material, kRingWidth};
+  for (int i = 0; i <= kRingSteps; ++i) {
+    const double angle = 2 * M_PI * i / kRingSteps;
+    ring.points.push_back(centre +
+                          math::Rotate(turn, Vec3{radius * std::cos(angle), radius * std::sin(angle), 0}));
+  }
+  return ring;
+}
 
 std::optional<double> FindDistanceAhead(const scene::Scene& scene,
                                         std::span<const scene::SurfaceInfo> surfaces,

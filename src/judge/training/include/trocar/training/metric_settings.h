@@ -26,9 +26,6 @@ struct MetricSettings {
   double idle_window = 0.2;      ///< over which that speed is taken, so that noise is not motion [s], > 0
   double idle_duration = 0.5;    ///< if it lasts at least so long [s], >= 0
   double force_threshold = 3.0;  ///< above it tissue is at risk [N], >= 0
-  /// Above it, a force in a task is an error: twice the threshold, and far from what experts need (the greatest force of 400
-  /// attempts at object transport by the scripted expert is 2.6 N, deviation 0.4 N: validity.json) [N], >= force_threshold
-  double error_force = 6.0;
   double hard_contact_depth = 0.002;  ///< a tool that is pressed deeper touches hard [m], >= 0
   double release_share = 0.9;  ///< the next excess counts after the value fell below this part [-], in (0, 1]
   double regrasp_time = 2.0;   ///< a grasp so soon after letting go is a regrasp [s], >= 0

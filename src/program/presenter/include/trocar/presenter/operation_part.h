@@ -48,6 +48,7 @@ class OperationEnd {
              const simulation::Snapshot& now) noexcept;
   /// Tick by tick, or as often as pictures are drawn. \return the reason for as long as it holds
   Reason See(const simulation::Snapshot& now) noexcept;
+  assessment::Milestone Reached() const noexcept { return watch_.Reached(); }
   /// [s], infinite without a limit
   double TimeLimit() const noexcept { return time_limit_; }
   /// Since the attempt began [s].

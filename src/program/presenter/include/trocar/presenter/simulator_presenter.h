@@ -18,6 +18,7 @@
 #include "trocar/presenter/hints.h"
 #include "trocar/presenter/home.h"
 #include "trocar/presenter/key_bindings.h"
+#include "trocar/presenter/operation_guide.h"
 #include "trocar/presenter/operation_part.h"
 #include "trocar/presenter/options.h"
 #include "trocar/presenter/read_outs.h"
@@ -41,6 +42,7 @@ struct SimulatorPage {
   std::string mode;      ///< what mouse and keys do now
   std::string progress;  ///< of the task or the operation: time, goals or phase, what comes next
   std::string tutorial;  ///< what is to be done now; empty: it is off
+  std::string next_step;  ///< of an operation: what comes next, with tool and key; empty: no help is wanted or there is none
   bool is_tutorial_done = false;  ///< all its steps: its task can be begun as an attempt
   std::string question;  ///< before something is thrown away; empty: none
   HomePage home;
@@ -224,6 +226,8 @@ class SimulatorPresenter {
   const Options& GetOptions() const { return options_; }
   const SimulatorPage& Page() const { return page_; }
   bool HasGuides() const { return settings_.has_guides && IsGuided(); }
+  /// What comes next in the operation that is shown; nothing where it is none, or without guides.
+  OperationStep NextOperationStep() const;
 
  private:
   bool Meets(SimulatorNeeds needs) const;
