@@ -31,6 +31,8 @@
 #include "trocar/host/partial_path.h"
 #include "trocar/host/printable_output.h"
 #include "trocar/host/translate.h"
+#include "trocar/host/user_folder.h"
+#include "trocar/presenter/film_job.h"
 #include "trocar/presenter/options.h"
 #include "trocar/scene/scene.h"
 
@@ -98,7 +100,7 @@ class Program {
     }
 
     if (const auto data = host::FindDataFolder(); data.ok()) {
-      gui::ApplyLook(*data);
+      gui::ApplyLook(*data, command_.options.is_high_contrast);
     } else {
       host::Log(host::LogLevel::kWarning, data.error().Text());
     }
@@ -225,6 +227,15 @@ class Program {
       });
       application_->add_window(*replay_);
       replay_->present();
+    };
+    services.draw_moment = [threads = Threads()](const std::filesystem::path& recording, double time,
+                                                 const std::function<bool()>& goes_on)
+        -> base::Result<std::filesystem::path> {
+      const std::filesystem::path picture =
+          host::FindCacheFolder() / "moments" / (recording.stem().string() + ".png");
+      const auto drawn = presenter::DrawMoment(recording, time, picture, threads, goes_on);
+      if (!drawn.ok()) return drawn.error();
+      return picture;
     };
     auto made =
         std::make_unique<centre::CentreWindow>(access_, Threads(), filing_.get(), std::move(services));

@@ -317,6 +317,22 @@ void CentrePresenter::UseResult(const JudgedAttempt& judged) {
     return [this, page, id = judged.attempt.recording_id] {
       if (shown_.recording_id == id) page_.result = *page;
       ReadReview();
+      ShowMoment();
+    };
+  });
+}
+
+/// A picture beside what is to be done better first.
+void CentrePresenter::ShowMoment() {
+  if (!draw_moment_ || !page_.result || !page_.result->first_time || !page_.result->moment.empty()) return;
+  Ask(host::Translate("Drawing the moment"), [this, draw = draw_moment_, recording = page_.result->recording,
+                                              time = page_.result->begin + *page_.result->first_time,
+                                              id = shown_.recording_id]() -> Apply {
+    const auto drawn = draw(recording, time, [this] { return !is_given_up_.load(); });
+    // a picture that cannot be drawn is no reason for a message: the button beside it opens the replay
+    if (!drawn.ok()) host::Log(host::LogLevel::kWarning, drawn.error().Text());
+    return [this, id, picture = drawn.ok() ? *drawn : std::filesystem::path()] {
+      if (shown_.recording_id == id && page_.result) page_.result->moment = picture;
     };
   });
 }

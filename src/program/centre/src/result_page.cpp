@@ -75,19 +75,25 @@ std::string WhyOfScore(const report::AttemptReport& r) {
 }
 
 /// What to do better first: the worst error, or else what the coach puts first, or else what is unfinished.
-std::string FindFirst(const JudgedAttempt& judged, const ResultPage& page) {
+void FindFirst(const JudgedAttempt& judged, ResultPage& page) {
   const auto worst = std::max_element(
       page.errors.begin(), page.errors.end(),
       [](const ResultPage::ErrorRow& a, const ResultPage::ErrorRow& b) { return a.tone < b.tone; });
-  if (worst != page.errors.end() && worst->tone == Tone::kBad) return worst->what;
-  if (!page.advice.empty()) return page.advice.front().sentence;
-  if (worst != page.errors.end()) return worst->what;
-  if (!judged.attempt.is_completed && !judged.report.goals.empty()) {
-    for (const report::GoalRow& goal : judged.report.goals) {
-      if (!goal.time) return host::TranslateWith("Finish: {1}", {host::TranslateComposed(goal.name)});
-    }
+  const bool has_errors = worst != page.errors.end();
+  if (has_errors && (worst->tone == Tone::kBad || page.advice.empty())) {
+    page.first = worst->what, page.first_time = worst->time;
+    return;
   }
-  return "";
+  if (!page.advice.empty()) {
+    page.first = page.advice.front().sentence, page.first_time = page.advice.front().time;
+    return;
+  }
+  if (judged.attempt.is_completed) return;
+  for (const report::GoalRow& goal : judged.report.goals) {
+    if (goal.time) continue;
+    page.first = host::TranslateWith("Finish: {1}", {host::TranslateComposed(goal.name)});
+    return;
+  }
 }
 
 void AddTiles(const JudgedAttempt& judged, ResultPage& page) {
@@ -220,7 +226,7 @@ ResultPage MakeResultPage(const JudgedAttempt& judged, const Access* access) {
     page.advice.push_back({host::TranslateComposed(advice.sentence), host::Translate(advice.why),
                            host::Translate(advice.practise), advice.exercise, advice.time});
   AddErrors(r, page);
-  page.first = FindFirst(judged, page);
+  FindFirst(judged, page);
   AddMetrics(judged, access, page);
   page.drawings = {report::DrawTimeline(r), report::DrawPaths(r, report::PathView::kFromFront),
                    report::DrawPaths(r, report::PathView::kFromHead)};

@@ -37,6 +37,7 @@ CentreWindow::CentreWindow(const Access& access, int threads, AttemptFiling* fil
   MakeWho();
   presenter_ = std::make_unique<CentrePresenter>(access, threads, static_cast<CentreScreen&>(*this), filing,
                                                  [this] { news_.emit(); });
+  presenter_->SetDrawMoment(services_.draw_moment);
   result_->Use(*presenter_);
   history_->Use(*presenter_);
   courses_->Use(*presenter_);

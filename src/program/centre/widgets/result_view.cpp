@@ -11,6 +11,7 @@
 namespace trocar::centre {
 namespace {
 
+constexpr int kMomentWidth = 320, kMomentHeight = 200;  // [pixels]
 constexpr int kTextWidth = 420, kPlotWidth = 640, kGap = 14;  // [pixels]
 constexpr double kWidePlot = 600;  // a drawing that stands alone in its row [pixels]
 
@@ -94,6 +95,17 @@ void ResultView::ShowHead(const ResultPage& page, Gtk::Box& into) {
   if (!page.debriefing.empty()) banner->append(MakeText(page.debriefing, "value"));
   if (!page.first.empty())
     banner->append(MakeText(host::TranslateWith("Better first: {1}", {page.first}), "key-text"));
+  if (!page.moment.empty()) {
+    auto* moment = Gtk::make_managed<Gtk::Picture>();
+    moment->set_filename(page.moment.string());
+    moment->set_alternative_text(page.first);
+    moment->set_can_shrink(true);
+    moment->set_size_request(kMomentWidth, kMomentHeight);
+    moment->set_halign(Gtk::Align::START);
+    moment->set_margin_top(6);
+    moment->add_css_class("thumbnail");
+    banner->append(*moment);
+  }
   into.append(*banner);
   auto* tiles = Gtk::make_managed<Gtk::FlowBox>();
   tiles->set_selection_mode(Gtk::SelectionMode::NONE);

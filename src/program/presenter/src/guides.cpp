@@ -21,6 +21,7 @@ constexpr double kLineWidth = 0.0007, kRingWidth = 0.0009;   // m
 constexpr double kFootRadius = 0.0035, kHoldRadius = 0.005;  // m
 constexpr double kNextMargin = 0.004, kPlaceRadius = 0.006;  // m
 constexpr double kFootLift = 0.0006;                         // above what it lies on [m]
+constexpr double kNear = 0.003, kTouchRadius = 0.003;        // about to touch; of the ring that says so [m]
 constexpr double kNearest = 0.0015;                          // nearer, the tip touches it [m]
 constexpr double kClosedJaw = 0.06, kDash = 0.004;           // rad, m
 constexpr int kRingSteps = 24;
@@ -116,9 +117,15 @@ void AddDepthLine(const scene::Scene& scene, std::span<const scene::SurfaceInfo>
                        ? math::Rotate(snapshot.X_world_laparoscope.rotation,
                                       CalcSightLine(snapshot.X_world_laparoscope, tip))
                        : Vec3{0, 0, -1};
-  const auto distance = FindDistanceAhead(scene, surfaces, strands, snapshot, tip, way);
-  if (!distance || *distance < kNearest) return;
   const Material colour = kHandColours[static_cast<std::size_t>(hand)];
+  const Vec3 to_eye = math::Rotate(snapshot.X_world_laparoscope.rotation, Vec3{0, 0, 1});
+  if (snapshot.instruments[static_cast<std::size_t>(hand)].is_touching) {
+    trails.push_back(MakeRing(tip, to_eye, kTouchRadius, Material::kMark));
+    return;
+  }
+  const auto distance = FindDistanceAhead(scene, surfaces, strands, snapshot, tip, way);
+  if (distance && *distance < kNear) trails.push_back(MakeRing(tip, to_eye, kTouchRadius, colour));
+  if (!distance || *distance < kNearest) return;
   for (double at = 0; at < *distance; at += 2 * kDash)
     trails.push_back({{tip + at * way, tip + std::min(at + kDash, *distance) * way}, colour, kLineWidth});
   trails.push_back(MakeRing(tip + (*distance - kFootLift) * way, way, kFootRadius, colour));

@@ -79,6 +79,10 @@ class CentrePresenter {
   /// Sets who works here from now on. \param text  name or pseudonym; empty: nobody in particular
   void BeSomebody(const std::string& text);
   const Access& GetAccess() const { return access_; }
+  /// Draws a moment of a recording, on a thread beside the window's. \return the picture's file
+  using DrawMoment = std::function<base::Result<std::filesystem::path>(
+      const std::filesystem::path& recording, double time, const std::function<bool()>& goes_on)>;
+  void SetDrawMoment(DrawMoment draw) { draw_moment_ = std::move(draw); }
   /// Told the pseudonym when somebody else works here.
   void SignalPerson(std::function<void(const std::string&)> on_person) { on_person_ = std::move(on_person); }
 
@@ -133,6 +137,7 @@ class CentrePresenter {
   void Read();
   void ReadHistory(const HistoryQuery& query);
   void ReadReview();
+  void ShowMoment();
   void ReadExamChoices();
   void ChangeGroup(std::function<base::Status(const Access&)> change, const std::string& group,
                    const std::string& done);
@@ -158,6 +163,7 @@ class CentrePresenter {
   std::deque<Request> waiting_;
   std::function<void(const std::string&)> on_person_;
   std::function<void()> on_done_;
+  DrawMoment draw_moment_;
   gui::BackgroundJob<Apply> job_;
 };
 

@@ -45,7 +45,9 @@ struct ResultPage {
   std::string verdict;  ///< in words
   Tone tone = Tone::kPlain;
   std::string outcome, debriefing;
-  std::string first;  ///< what to do better first, a sentence; empty where nothing stands out
+  std::optional<double> first_time;  ///< of the moment that shows it, since the attempt's first tick [s]
+  std::filesystem::path moment;      ///< picture of it; empty before it is drawn
+  std::string first;                 ///< what to do better first, a sentence; empty where nothing stands out
   std::vector<Tile> tiles;
   std::vector<ThresholdRow> thresholds;
   std::vector<AdviceRow> advice;

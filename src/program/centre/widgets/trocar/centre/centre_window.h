@@ -27,6 +27,7 @@ struct CentreServices {
   std::function<void(const Start&)> start;
   std::function<void(const std::string& task, const std::string& level)> start_task;
   std::function<void(const std::filesystem::path& recording, double time)> replay;
+  CentrePresenter::DrawMoment draw_moment;
 };
 
 class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {

@@ -40,7 +40,7 @@ struct NextStep {
 NextStep FindNextStep(const scene::Task& task, const simulation::Snapshot& snapshot);
 
 /// From each tip a line to what lies below it (in a box: downwards; in a patient: the way of the wheel, along the line of sight),
-/// with a ring where it meets it; a ring round jaws that hold; a ring round the next thing, and round the places for it.
+/// with a ring where it meets it; a ring round a tip that is about to touch, and another colour once it does; a ring round jaws that hold; a ring round the next thing, and round the places for it.
 std::vector<view::Trail> MakeGuides(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
                                     std::span<const scene::StrandInfo> strands,
                                     const simulation::Snapshot& snapshot);
