@@ -98,7 +98,7 @@ struct TraceBuilder::Content {
   std::uint64_t first_tick = 0, missed = 0, known_events = 0, known_task_errors = 0;
   std::vector<int> clip_tubes;  // surface, or -1
   std::vector<roles::StrandRole> strand_roles;
-  std::vector<std::size_t> going_on;  // of trace.facts
+  std::vector<std::size_t> going_on;                                        // of trace.facts
   std::array<std::optional<std::size_t>, instrument::kHandCount> pressing;  // of trace.events
 
   bool IsEmpty() const { return trace.Ticks() == 0; }

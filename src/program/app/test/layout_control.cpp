@@ -13,7 +13,8 @@
 namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
-constexpr const char* kLong = "A text that is far longer than the place that it was given in this little window";
+constexpr const char* kLong =
+    "A text that is far longer than the place that it was given in this little window";
 
 int Count(Gtk::Window& window, const char* what) {
   int count = 0;
@@ -105,7 +106,8 @@ int main(int argc, char** argv) {
           const auto amiss = trocar::gui::FindMisfits(*good, kWidth, kHeight);
           std::printf("bad: %d cut, %d off; good: %zu amiss of %zu widgets; folds %d, stacks %d\n", cut, off,
                       amiss.size(), trocar::gui::CountSeen(*good), good->Folds(), good->Stacks());
-          for (const auto& one : amiss) std::printf("%s: %s %d\n", one.what.c_str(), one.widget.c_str(), one.excess);
+          for (const auto& one : amiss)
+            std::printf("%s: %s %d\n", one.what.c_str(), one.widget.c_str(), one.excess);
           status = cut == 1 && off >= 1 && amiss.empty() && good->Folds() && good->Stacks() ? 0 : 1;
           application->quit();
         },

@@ -16,9 +16,9 @@ constexpr std::size_t kFewestPages = 16, kFewestWidgets = 12;
 
 /// Words of English that are no Spanish ones, in lower case.
 const std::set<std::string> kEnglish = {
-    "the",   "of",   "and",  "with",  "you",   "your", "what",  "this",  "that",   "which", "from",    "for",
-    "click", "hold", "hand", "task",  "press", "none", "no-one", "until", "is",    "are",   "where",   "who",
-    "open",  "save", "new",  "level", "seed",  "time", "score", "errors", "start", "close", "patient", "to"};
+    "the",   "of",   "and",  "with",  "you",   "your", "what",   "this",   "that",  "which", "from",    "for",
+    "click", "hold", "hand", "task",  "press", "none", "no-one", "until",  "is",    "are",   "where",   "who",
+    "open",  "save", "new",  "level", "seed",  "time", "score",  "errors", "start", "close", "patient", "to"};
 
 /// Names that are English in every language: of people, programs, files and commands.
 bool IsName(const std::string& text) {
@@ -71,9 +71,9 @@ int main(int argc, char** argv) {
       }
       for (const auto& misfit : page["misfits"]) {
         ++faults;
-        std::printf("%s: %s, %d pixels: \"%s\" %s\n", title.c_str(), misfit["what"].get<std::string>().c_str(),
-                    misfit["pixels"].get<int>(), misfit["text"].get<std::string>().c_str(),
-                    misfit["widget"].get<std::string>().c_str());
+        std::printf("%s: %s, %d pixels: \"%s\" %s\n", title.c_str(),
+                    misfit["what"].get<std::string>().c_str(), misfit["pixels"].get<int>(),
+                    misfit["text"].get<std::string>().c_str(), misfit["widget"].get<std::string>().c_str());
       }
       for (const auto& text : page["texts"]) {
         const auto words = FindEnglish(text.get<std::string>());

@@ -151,7 +151,8 @@ class Program {
       row.attempt = result.attempt, row.recording = result.recording;
       presenter.OpenResultOf(row);
     };
-    services.be_somebody = [this](const std::optional<std::string>& text) -> base::Result<presenter::Somebody> {
+    services.be_somebody =
+        [this](const std::optional<std::string>& text) -> base::Result<presenter::Somebody> {
       if (text) {
         auto pseudonym = centre::FindPseudonym(access_, *text);
         if (!pseudonym.ok()) return pseudonym.error();
@@ -228,9 +229,9 @@ class Program {
       application_->add_window(*replay_);
       replay_->present();
     };
-    services.draw_moment = [threads = Threads()](const std::filesystem::path& recording, double time,
-                                                 const std::function<bool()>& goes_on)
-        -> base::Result<std::filesystem::path> {
+    services.draw_moment = [threads = Threads()](
+                               const std::filesystem::path& recording, double time,
+                               const std::function<bool()>& goes_on) -> base::Result<std::filesystem::path> {
       const std::filesystem::path picture =
           host::FindCacheFolder() / "moments" / (recording.stem().string() + ".png");
       const auto drawn = presenter::DrawMoment(recording, time, picture, threads, goes_on);
@@ -247,7 +248,8 @@ class Program {
 
   /// The one that is open, or a new one.
   centre::CentreWindow& OpenCentre() {
-    if (auto* first = dynamic_cast<centre::CentreWindow*>(window_.get()); first != nullptr && first->IsOpen()) {
+    if (auto* first = dynamic_cast<centre::CentreWindow*>(window_.get());
+        first != nullptr && first->IsOpen()) {
       first->present();
       return *first;
     }
@@ -304,8 +306,10 @@ class Program {
     add("courses", centre::PageKind::kCourses);
     add("group", centre::PageKind::kGroup);
     add("exam", centre::PageKind::kExam);
-    pages.push_back({"who", [this] { centre_->Presenter().Do(centre::CentreAction::kWho); },
-                     [this]() -> Gtk::Window* { return centre_.get(); }, {}});
+    pages.push_back({"who",
+                     [this] { centre_->Presenter().Do(centre::CentreAction::kWho); },
+                     [this]() -> Gtk::Window* { return centre_.get(); },
+                     {}});
     pages.push_back({"result",
                      [this] {
                        const auto& rows = centre_->Presenter().Page().history.rows;

@@ -230,9 +230,10 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   view::Overlay overlay;
   overlay.X_world_camera = control.CalcView(*work.snapshot);
   if (presenter_->HasGuides())
-    overlay.trails = 
+    overlay.trails =
         presenter::MakeGuides(control.GetScene(), control.Surfaces(), control.Strands(), *work.snapshot);
-  if (auto mark = presenter::MarkOperationStep(presenter_->NextOperationStep(), work.snapshot->X_world_laparoscope))
+  if (auto mark =
+          presenter::MarkOperationStep(presenter_->NextOperationStep(), work.snapshot->X_world_laparoscope))
     overlay.trails.push_back(std::move(*mark));
   picture_.SetOverlay(std::move(overlay));
   picture_.queue_render();
@@ -469,7 +470,9 @@ std::vector<LayoutCheck::Page> SimulatorWindow::LayoutPages() {
   const auto add = [&](const char* name, std::function<void()> open, std::function<bool()> is_there = {}) {
     pages.push_back({name, std::move(open), [this] { return this; }, std::move(is_there)});
   };
-  const auto has_scene = [this] { return presenter_->Control() != nullptr && !presenter_->Page().is_home_open; };
+  const auto has_scene = [this] {
+    return presenter_->Control() != nullptr && !presenter_->Page().is_home_open;
+  };
   add("home", [this] { presenter_->OpenHome(); });
   add("tasks", [this] { presenter_->OpenTaskList(); });
   add("patients", [this] { presenter_->OpenPatientList(); });
@@ -483,22 +486,31 @@ std::vector<LayoutCheck::Page> SimulatorWindow::LayoutPages() {
     presenter_->Do(Action::kToggleHelp);
     presenter_->OpenRehearsal();
   });
-  add("tutorial", [this] {
-    presenter_->CloseRehearsal();
-    presenter_->Choose(presenter::HomeChoice::kTutorial);
-  }, has_scene);
-  add("task", [this] {
-    presenter_->StartTutorialTask();
-    if (!presenter_->Page().is_panel_open) presenter_->Do(Action::kTogglePanel);
-  }, has_scene);
-  add("question", [this] {
-    if (presenter_->Control()->IsPaused()) presenter_->Do(Action::kTogglePause);
-  }, [this] {
-    // an attempt that is worth a question
-    if (presenter_->Page().question.empty() && presenter_->Control()->Now().time > kWorthAQuestion)
-      presenter_->Do(Action::kToggleTutorial);
-    return !presenter_->Page().question.empty();
-  });
+  add(
+      "tutorial",
+      [this] {
+        presenter_->CloseRehearsal();
+        presenter_->Choose(presenter::HomeChoice::kTutorial);
+      },
+      has_scene);
+  add(
+      "task",
+      [this] {
+        presenter_->StartTutorialTask();
+        if (!presenter_->Page().is_panel_open) presenter_->Do(Action::kTogglePanel);
+      },
+      has_scene);
+  add(
+      "question",
+      [this] {
+        if (presenter_->Control()->IsPaused()) presenter_->Do(Action::kTogglePause);
+      },
+      [this] {
+        // an attempt that is worth a question
+        if (presenter_->Page().question.empty() && presenter_->Control()->Now().time > kWorthAQuestion)
+          presenter_->Do(Action::kToggleTutorial);
+        return !presenter_->Page().question.empty();
+      });
   add("devices", [this] {
     presenter_->Answer(false);
     OpenDevices();

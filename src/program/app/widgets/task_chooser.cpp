@@ -27,7 +27,8 @@ TaskChooser::TaskChooser() : gui::ListCard(kListWidth) {
   label->add_css_class("name");
   seed_.set_adjustment(Gtk::Adjustment::create(1, 0, kMostSeed, 1, 10));
   gui::SetAccessibleName(seed_, host::Translate("Variant of the task"));
-  seed_.set_tooltip_text(host::Translate("Moves what a task leaves open; the same number gives the same task"));
+  seed_.set_tooltip_text(
+      host::Translate("Moves what a task leaves open; the same number gives the same task"));
   patients_.signal_clicked().connect([this] { signal_patients_.emit(); });
   AddFoot({label, &seed_, &patients_});
 }

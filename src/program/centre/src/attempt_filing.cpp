@@ -409,7 +409,8 @@ FilingStatus AttemptFiling::Status() const {
                               note == content_->notes.end() ? "" : note->second.attempt.trainee,
                               status.progress});
   }
-  for (const Content::Waiting& one : content_->waiting) status.pending.push_back({one.recording, one.person, -1});
+  for (const Content::Waiting& one : content_->waiting)
+    status.pending.push_back({one.recording, one.person, -1});
   std::sort(status.pending.begin() + (content_->measured ? 1 : 0), status.pending.end(),
             [](const PendingAttempt& a, const PendingAttempt& b) {
               return a.recording.filename() > b.recording.filename();

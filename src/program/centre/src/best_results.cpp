@@ -55,16 +55,16 @@ base::Result<HomeResults> LoadHomeResults(const Access& access) {
   if (!course.ok()) return course.error();
   for (const CoursePage::Step& step : course->page.steps) {
     if (step.key != course->page.next) continue;
-    results.leads.next = NextAndLast::Step{
-        {course->page.course, step.key}, course->page.name, step.name, step.task, step.due};
+    results.leads.next =
+        NextAndLast::Step{{course->page.course, step.key}, course->page.name, step.name, step.task, step.due};
   }
   const auto history = LoadHistory(access, {access.person, {}, {}});
   if (!history.ok()) return history.error();
   if (!history->rows.empty()) {
     const HistoryPage::Row& row = history->rows.front();
     results.leads.last = NextAndLast::Result{
-        row.task, row.outcome + (row.score.empty() ? "" : ", " + row.score) + ", " + row.time, row.attempt.task,
-        row.attempt, row.recording};
+        row.task, row.outcome + (row.score.empty() ? "" : ", " + row.score) + ", " + row.time,
+        row.attempt.task, row.attempt, row.recording};
   }
   return results;
 }

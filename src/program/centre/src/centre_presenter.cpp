@@ -130,7 +130,8 @@ void CentrePresenter::ShowPending(const FilingStatus& status) {
       if (const auto summary = record::ReadSummary(one.recording); summary.ok()) {
         row.when = report::FormatDate(summary->description.started);
         row.task = TaskNameOf(assessment::TaskKeyOf(summary->description.name));
-        if (!summary->description.level.empty()) row.task += ", " + host::Translate(summary->description.level);
+        if (!summary->description.level.empty())
+          row.task += ", " + host::Translate(summary->description.level);
       } else {
         row.task = one.recording.filename().string();
       }
@@ -325,16 +326,16 @@ void CentrePresenter::UseResult(const JudgedAttempt& judged) {
 /// A picture beside what is to be done better first.
 void CentrePresenter::ShowMoment() {
   if (!draw_moment_ || !page_.result || !page_.result->first_time || !page_.result->moment.empty()) return;
-  Ask(host::Translate("Drawing the moment"), [this, draw = draw_moment_, recording = page_.result->recording,
-                                              time = page_.result->begin + *page_.result->first_time,
-                                              id = shown_.recording_id]() -> Apply {
-    const auto drawn = draw(recording, time, [this] { return !is_given_up_.load(); });
-    // a picture that cannot be drawn is no reason for a message: the button beside it opens the replay
-    if (!drawn.ok()) host::Log(host::LogLevel::kWarning, drawn.error().Text());
-    return [this, id, picture = drawn.ok() ? *drawn : std::filesystem::path()] {
-      if (shown_.recording_id == id && page_.result) page_.result->moment = picture;
-    };
-  });
+  Ask(host::Translate("Drawing the moment"),
+      [this, draw = draw_moment_, recording = page_.result->recording,
+       time = page_.result->begin + *page_.result->first_time, id = shown_.recording_id]() -> Apply {
+        const auto drawn = draw(recording, time, [this] { return !is_given_up_.load(); });
+        // a picture that cannot be drawn is no reason for a message: the button beside it opens the replay
+        if (!drawn.ok()) host::Log(host::LogLevel::kWarning, drawn.error().Text());
+        return [this, id, picture = drawn.ok() ? *drawn : std::filesystem::path()] {
+          if (shown_.recording_id == id && page_.result) page_.result->moment = picture;
+        };
+      });
 }
 
 void CentrePresenter::ReadReview() {
@@ -529,8 +530,9 @@ void CentrePresenter::JoinGroup(const std::string& who) {
 
 void CentrePresenter::LeaveGroup(const std::string& pseudonym) {
   const std::string group = page_.group.group;
-  ChangeGroup([group, pseudonym](const Access& access) { return centre::LeaveGroup(access, group, pseudonym); },
-              group, host::TranslateWith("{1} has left the group.", {NameOf(access_, pseudonym)}));
+  ChangeGroup(
+      [group, pseudonym](const Access& access) { return centre::LeaveGroup(access, group, pseudonym); },
+      group, host::TranslateWith("{1} has left the group.", {NameOf(access_, pseudonym)}));
 }
 
 void CentrePresenter::AssignCourse(const std::string& course, const std::string& due) {

@@ -31,8 +31,8 @@ base::Result<std::vector<ExamChoice>> ListExamChoices() {
   return choices;
 }
 
-base::Result<ExamPage> SealExamFile(const std::string& name, const std::string& task, const std::string& level,
-                                    const std::filesystem::path& file) {
+base::Result<ExamPage> SealExamFile(const std::string& name, const std::string& task,
+                                    const std::string& level, const std::filesystem::path& file) {
   assessment::ExamSettings settings;
   settings.name = name;
   (task == kOperation ? settings.operation : settings.task) = task;

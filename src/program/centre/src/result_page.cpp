@@ -60,15 +60,16 @@ std::string WhyOfScore(const report::AttemptReport& r) {
   const auto done = static_cast<std::size_t>(std::count_if(
       r.goals.begin(), r.goals.end(), [](const report::GoalRow& goal) { return goal.time.has_value(); }));
   if (!r.goals.empty())
-    parts.push_back(host::TranslateWith("{1} of {2} goals", {std::to_string(done), std::to_string(r.goals.size())}));
+    parts.push_back(
+        host::TranslateWith("{1} of {2} goals", {std::to_string(done), std::to_string(r.goals.size())}));
   if (!r.is_completed) {
     parts.push_back(host::Translate("not finished: no points for time"));
   } else if (r.task_seconds) {
     parts.push_back(host::TranslateWith("in {1}", {report::FormatClock(*r.task_seconds)}));
   }
   if (r.penalty > 0)
-    parts.push_back(host::TranslateWith("errors took {1} off",
-                                        {ScoreText(r.penalty, r.facts.best_score.has_value())}));
+    parts.push_back(
+        host::TranslateWith("errors took {1} off", {ScoreText(r.penalty, r.facts.best_score.has_value())}));
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
   return text;

@@ -2,9 +2,12 @@
 // What is measured while an attempt is played is what its replay comes to, in every number.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <thread>
@@ -41,8 +44,10 @@ void ExpectSame(const JudgedAttempt& live, const JudgedAttempt& replayed) {
   ASSERT_EQ(a.size(), b.size());
   ASSERT_GT(a.size(), 20u);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].metric + a[i].hand + a[i].phase + a[i].tool, b[i].metric + b[i].hand + b[i].phase + b[i].tool);
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(a[i].value), std::bit_cast<std::uint64_t>(b[i].value)) << a[i].metric;
+    EXPECT_EQ(a[i].metric + a[i].hand + a[i].phase + a[i].tool,
+              b[i].metric + b[i].hand + b[i].phase + b[i].tool);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(a[i].value), std::bit_cast<std::uint64_t>(b[i].value))
+        << a[i].metric;
   }
   EXPECT_EQ(live.attempt.score, replayed.attempt.score);
   EXPECT_EQ(live.attempt.is_completed, replayed.attempt.is_completed);
@@ -82,6 +87,44 @@ TEST(LiveAttempt, ComesToTheReplaysNumbers) {
 
 TEST(SlowLiveAttempt, ComesToTheReplaysNumbersInTwoHundredAttempts) {
   CompareAttempts(200, test::kUntilOver);
+}
+
+// An operation of twenty minutes: a tick may wait for the fold some microseconds, and a person for the result five seconds.
+TEST(SlowLiveAttempt, CostsLittleInATickAndAtTheEnd) {
+  const auto path = files::FindTask("peg_transfer");
+  ASSERT_TRUE(path.ok());
+  const auto scene = std::make_shared<const scene::Scene>(*files::ReadTask(*path));
+  const auto simulation = simulation::Simulation::Make(scene);
+  ASSERT_TRUE(simulation.ok());
+  AttemptFold fold(*simulation, Milestone::kStart, Milestone::kCompleted);
+  simulation::Snapshot now = simulation->GetSnapshot();
+  const auto ticks = static_cast<std::uint64_t>(20 * 60 / scene->tick_seconds);
+  using Clock = std::chrono::steady_clock;
+  double worst = 0;
+  const auto begin = Clock::now();
+  for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
+    now.tick = tick;
+    const double t = static_cast<double>(tick) * scene->tick_seconds;
+    for (auto& instrument : now.instruments) {
+      // reaching to and fro, as hands do
+      instrument.X_world_tool.translation = {0.03 * std::sin(2 * t), 0.02 * std::sin(3.1 * t),
+                                             -0.1 + 0.02 * std::sin(t)};
+      instrument.force = {0, 0, 2 + std::sin(5 * t)};
+    }
+    const auto before = Clock::now();
+    fold.Add(now, {});
+    worst = std::max(worst, std::chrono::duration<double>(Clock::now() - before).count());
+  }
+  const double each =
+      std::chrono::duration<double>(Clock::now() - begin).count() / static_cast<double>(ticks);
+  const auto end = Clock::now();
+  const auto played = fold.Calc();
+  const double last = std::chrono::duration<double>(Clock::now() - end).count();
+  ASSERT_TRUE(played.ok()) << played.error().Text();
+  std::printf("%llu ticks: %.2f us each, %.0f us at worst; %.2f s at the end\n",
+              static_cast<unsigned long long>(ticks), 1e6 * each, 1e6 * worst, last);
+  EXPECT_LT(each, 50e-6);
+  EXPECT_LT(last, 5.0);
 }
 
 // A control: a tick that was not seen is found.

@@ -290,7 +290,8 @@ TEST_P(Pages, HomeKnowsTheNextStepAndTheLastResult) {
   EXPECT_EQ(home->leads.last->task, "peg_transfer");
   access_.person.clear();
   home = LoadHomeResults(access_);
-  EXPECT_FALSE(home->leads.last.has_value() || home->leads.next.has_value()) << "everybody's last is nobody's";
+  EXPECT_FALSE(home->leads.last.has_value() || home->leads.next.has_value())
+      << "everybody's last is nobody's";
 }
 
 TEST_P(Pages, CourseMapOpensStepsAsTheyAreDone) {
@@ -436,8 +437,9 @@ TEST_F(Result, OfAnUnfinishedAttemptMeetsNothingAndHasOneTimeAndAScoreWithItsRea
   EXPECT_THAT(tile("Score").note, HasSubstr("goals"));
   EXPECT_FALSE(page.first.empty()) << "there is something to do better: to finish";
   const ResultPage whole = MakeResultPage(JudgeFile("whole.trocar"), nullptr);
-  EXPECT_TRUE(std::any_of(whole.thresholds.begin(), whole.thresholds.end(), [](const auto& row) { return row.is_met; }))
-      << "the control: a completed one meets what it meets";
+  EXPECT_TRUE(std::any_of(whole.thresholds.begin(), whole.thresholds.end(), [](const auto& row) {
+    return row.is_met;
+  })) << "the control: a completed one meets what it meets";
 }
 
 TEST_F(Result, OfACourseStepIsJudgedByIt) {

@@ -46,11 +46,11 @@ void ExamView::Show(const CentrePage& shown) {
 
 Gtk::Box& ExamView::MakeInvitation() {
   Gtk::Box& card = MakeCard(host::Translate("No exam is open"));
-  card.append(
-      MakeText(host::Translate("An examiner seals the settings of an exam. Open that file here; what is sat under it "
-                               "is recorded, and the certificate says what it came to and nothing of anybody's "
-                               "competence."),
-               "value"));
+  card.append(MakeText(
+      host::Translate("An examiner seals the settings of an exam. Open that file here; what is sat under it "
+                      "is recorded, and the certificate says what it came to and nothing of anybody's "
+                      "competence."),
+      "value"));
   card.set_hexpand(true);
   card.set_valign(Gtk::Align::START);
   Gtk::Button& button = MakeButton(
@@ -65,9 +65,10 @@ Gtk::Box& ExamView::MakeSealing(const ExamPage& page) {
   Gtk::Box& card = MakeCard(host::Translate("Seal a new exam"));
   card.set_hexpand(true);
   card.set_valign(Gtk::Align::START);
-  card.append(MakeText(host::Translate("What is left open is drawn by chance and kept secret. The file beside the "
-                                       "exam is published before, so that everybody can check afterwards."),
-                       "value"));
+  card.append(
+      MakeText(host::Translate("What is left open is drawn by chance and kept secret. The file beside the "
+                               "exam is published before, so that everybody can check afterwards."),
+               "value"));
   auto* name = Gtk::make_managed<Gtk::Entry>();
   name->set_placeholder_text(host::Translate("Name of the exam"));
   gui::SetAccessibleName(*name, host::Translate("Name of the exam"));
@@ -81,7 +82,8 @@ Gtk::Box& ExamView::MakeSealing(const ExamPage& page) {
   const auto fill = [tasks, levels, choices = page.choices] {
     std::vector<Glib::ustring> shown;
     if (tasks->get_selected() < choices.size()) {
-      for (const std::string& level : choices[tasks->get_selected()].levels) shown.push_back(host::Translate(level));
+      for (const std::string& level : choices[tasks->get_selected()].levels)
+        shown.push_back(host::Translate(level));
     }
     levels->set_model(Gtk::StringList::create(shown));
     levels->set_visible(!shown.empty());
@@ -93,8 +95,9 @@ Gtk::Box& ExamView::MakeSealing(const ExamPage& page) {
       [this, name, tasks, levels, choices = page.choices] {
         if (tasks->get_selected() >= choices.size()) return;
         const ExamChoice& choice = choices[tasks->get_selected()];
-        const std::string level =
-            levels->get_selected() < choice.levels.size() ? choice.levels[levels->get_selected()] : std::string();
+        const std::string level = levels->get_selected() < choice.levels.size()
+                                      ? choice.levels[levels->get_selected()]
+                                      : std::string();
         ChooseSealed(name->get_text().raw(), choice.key, level);
       },
       "primary");
@@ -111,9 +114,10 @@ Gtk::Box& ExamView::MakeKeys() {
   Gtk::Box& card = MakeCard(host::Translate("The centre's keys"));
   card.set_hexpand(true);
   card.set_valign(Gtk::Align::START);
-  card.append(MakeText(host::Translate("Made once. The private key signs certificates and stays secret; the public one "
-                                       "is published, and anybody checks certificates with it."),
-                       "value"));
+  card.append(MakeText(
+      host::Translate("Made once. The private key signs certificates and stays secret; the public one "
+                      "is published, and anybody checks certificates with it."),
+      "value"));
   auto* passphrase = Gtk::make_managed<Gtk::PasswordEntry>();
   passphrase->property_placeholder_text() = host::Translate("Passphrase that protects the private key");
   passphrase->set_show_peek_icon(true);

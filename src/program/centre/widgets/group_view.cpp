@@ -35,7 +35,8 @@ void GroupView::Show(const CentrePage& shown) {
   }
   all->append(head);
   if (page.group.empty()) {
-    all->append(MakeText(host::Translate("There is no group yet. Make one, and put people into it."), "value"));
+    all->append(
+        MakeText(host::Translate("There is no group yet. Make one, and put people into it."), "value"));
     all->append(MakeNewGroup());
     append(MakePage(*all));
     return;
@@ -57,7 +58,8 @@ void GroupView::Show(const CentrePage& shown) {
     for (const GroupPage::Cell& cell : member.cells)
       table->AddText(cell.text.empty() ? "–" : cell.text, cell.text.empty() ? "fine" : StyleOf(cell.tone));
     Gtk::Button& leave = MakeButton(
-        host::Translate("Take out"), [this, who = member.pseudonym] { presenter_->LeaveGroup(who); }, "small");
+        host::Translate("Take out"), [this, who = member.pseudonym] { presenter_->LeaveGroup(who); },
+        "small");
     leave.set_tooltip_text(host::Translate("Out of this group; attempts stay whose they are"));
     table->Add(leave);
     table->EndRow();
@@ -96,11 +98,12 @@ Gtk::Box& GroupView::MakeNewGroup() {
 }
 
 Gtk::Box& GroupView::MakeNewMember() {
-  return MakeForm(host::Translate("A new member"),
-                  host::Translate("A name or a pseudonym. Who is not known yet becomes a trainee with a pseudonym; the "
-                                  "name stays in a protected file on this computer."),
-                  host::Translate("Name or pseudonym"), host::Translate("Put in"),
-                  [this](const std::string& who) { presenter_->JoinGroup(who); });
+  return MakeForm(
+      host::Translate("A new member"),
+      host::Translate("A name or a pseudonym. Who is not known yet becomes a trainee with a pseudonym; the "
+                      "name stays in a protected file on this computer."),
+      host::Translate("Name or pseudonym"), host::Translate("Put in"),
+      [this](const std::string& who) { presenter_->JoinGroup(who); });
 }
 
 Gtk::Box& GroupView::MakeAssignment(const GroupPage& page) {

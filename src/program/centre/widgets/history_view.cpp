@@ -27,13 +27,14 @@ void HistoryView::Show(const CentrePage& shown) {
     for (const HistoryPage::Pending& one : page.pending) {
       Gtk::Label& what = MakeText(one.when + "  ·  " + one.task, "value");
       what.set_hexpand(true);
-      card.append(gui::MakeRow(
-          10, {&what, &MakeLine(one.is_measured_now ? host::Translate("being measured") : host::Translate("waits"),
-                                "name")}));
+      card.append(gui::MakeRow(10, {&what, &MakeLine(one.is_measured_now ? host::Translate("being measured")
+                                                                         : host::Translate("waits"),
+                                                     "name")}));
     }
-    card.append(MakeText(host::Translate("They ended with the program, or were not measured while they were played. "
-                                         "They enter by themselves."),
-                         "fine"));
+    card.append(
+        MakeText(host::Translate("They ended with the program, or were not measured while they were played. "
+                                 "They enter by themselves."),
+                 "fine"));
     all->append(card);
   }
   auto* columns = Gtk::make_managed<gui::Columns>(kGap);

@@ -11,7 +11,7 @@
 namespace trocar::centre {
 namespace {
 
-constexpr int kMomentWidth = 320, kMomentHeight = 200;  // [pixels]
+constexpr int kMomentWidth = 320, kMomentHeight = 200;        // [pixels]
 constexpr int kTextWidth = 420, kPlotWidth = 640, kGap = 14;  // [pixels]
 constexpr double kWidePlot = 600;  // a drawing that stands alone in its row [pixels]
 
@@ -182,7 +182,9 @@ void ResultView::ShowNumbers(const ResultPage& page, Gtk::Box& into) {
       table->AddText(row.is_met    ? host::Translate("✓ met")
                      : row.is_open ? host::Translate("– not finished")
                                    : host::Translate("✗ missed"),
-                     row.is_met ? "good" : row.is_open ? "name" : "caution");
+                     row.is_met    ? "good"
+                     : row.is_open ? "name"
+                                   : "caution");
       table->AddText(row.name, "value", true);
       table->AddText(row.value);
       table->AddText(row.limit);

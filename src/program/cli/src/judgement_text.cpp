@@ -54,7 +54,10 @@ void PrintVerdict(const assessment::Verdict& verdict) {
   std::vector<std::vector<std::string>> rows = {{"", "metric", "reached", "needed", "for"}};
   for (const auto& one : verdict.metrics) {
     const auto& threshold = one.threshold;
-    rows.push_back({Translate(one.is_met ? Mark("met") : one.is_open ? Mark("not finished") : Mark("MISSED")), ShownKey(threshold.of),
+    rows.push_back({Translate(one.is_met    ? Mark("met")
+                              : one.is_open ? Mark("not finished")
+                                            : Mark("MISSED")),
+                    ShownKey(threshold.of),
                     one.value ? FormatMetric(threshold.of.metric, *one.value) : Translate("not defined"),
                     FormatBound(threshold), Translate(NameOf(threshold.purpose))});
   }

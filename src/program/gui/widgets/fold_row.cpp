@@ -96,7 +96,8 @@ void FoldRow::Fold(int width, int height) {
     total += NaturalWidth(*child.widget, height) + kSpacing;
     shown.push_back(&child);
   }
-  std::stable_sort(shown.begin(), shown.end(), [](const Child* a, const Child* b) { return a->order > b->order; });
+  std::stable_sort(shown.begin(), shown.end(),
+                   [](const Child* a, const Child* b) { return a->order > b->order; });
   for (Child* child : shown) {
     // what nobody misses leaves no button behind
     const int room = child->order == kSpare || !HasFolded() ? width : width - NaturalWidth(more_, height);

@@ -24,7 +24,8 @@ std::string NameOf(Gtk::Widget& widget) {
 }
 
 bool IsSeen(Gtk::Widget& widget) {
-  return widget.get_mapped() && widget.get_child_visible() && widget.get_width() > 0 && widget.get_height() > 0;
+  return widget.get_mapped() && widget.get_child_visible() && widget.get_width() > 0 &&
+         widget.get_height() > 0;
 }
 
 using Visit = std::function<void(Gtk::Widget&, const std::string& path, const Room& room)>;
@@ -46,8 +47,8 @@ void Walk(Gtk::Widget& widget, Gtk::Window& window, const std::string& path, Roo
 }
 
 void WalkWindow(Gtk::Window& window, const Visit& visit) {
-  const Room room{0, 0, static_cast<double>(window.get_width()), static_cast<double>(window.get_height()), false,
-                  false};
+  const Room room{
+      0, 0, static_cast<double>(window.get_width()), static_cast<double>(window.get_height()), false, false};
   Walk(window, window, "", room, visit);
 }
 
@@ -76,11 +77,10 @@ std::vector<Misfit> FindMisfits(Gtk::Window& window, int width, int height) {
     double x = 0, y = 0;
     if (!widget.translate_coordinates(window, 0, 0, x, y)) return;
     double beyond = 0;
-    if (!room.scrolls_across)
-      beyond = std::max({beyond, room.left - x, x + widget.get_width() - room.right});
-    if (!room.scrolls_down)
-      beyond = std::max({beyond, room.top - y, y + widget.get_height() - room.bottom});
-    if (beyond > kSlack) misfits.push_back({"off the window", path, text, static_cast<int>(std::lround(beyond))});
+    if (!room.scrolls_across) beyond = std::max({beyond, room.left - x, x + widget.get_width() - room.right});
+    if (!room.scrolls_down) beyond = std::max({beyond, room.top - y, y + widget.get_height() - room.bottom});
+    if (beyond > kSlack)
+      misfits.push_back({"off the window", path, text, static_cast<int>(std::lround(beyond))});
   });
   return misfits;
 }

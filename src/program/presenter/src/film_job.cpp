@@ -81,7 +81,8 @@ base::Status DrawMoment(const fs::path& recording, double time, const fs::path& 
                         const std::function<bool()>& goes_on) {
   auto read = record::ReadRecording(recording);
   if (!read.ok()) return read.error();
-  const auto tick = static_cast<std::uint64_t>(std::max(0.0, std::round(time / read->description.tick_seconds)));
+  const auto tick =
+      static_cast<std::uint64_t>(std::max(0.0, std::round(time / read->description.tick_seconds)));
   record::ReplaySettings settings;
   settings.threads = threads;
   settings.index = record::IndexPathOf(recording);
@@ -95,8 +96,8 @@ base::Status DrawMoment(const fs::path& recording, double time, const fs::path& 
   if (!context.ok()) return context.error();
   auto target = render::OffscreenTarget::Make(kMomentWidth, kMomentHeight);
   if (!target.ok()) return target.error();
-  auto view = view::LaparoscopeView::Make(simulation.GetScene(), simulation.Surfaces(), simulation.GetSnapshot(),
-                                          simulation.Strands());
+  auto view = view::LaparoscopeView::Make(simulation.GetScene(), simulation.Surfaces(),
+                                          simulation.GetSnapshot(), simulation.Strands());
   if (!view.ok()) return view.error();
   view->Update(simulation.GetSnapshot());
   target->Bind();

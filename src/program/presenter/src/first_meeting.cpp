@@ -86,11 +86,11 @@ void SimulatorPresenter::FindLeads() {
   };
   if (leads_.next)
     next_lead_ = HomeLead{host::TranslateWith("Next in {1}", {leads_.next->course}),
-                               leads_.next->title + (leads_.next->due.empty() ? "" : "  ·  " + leads_.next->due),
-                               picture(leads_.next->task)};
+                          leads_.next->title + (leads_.next->due.empty() ? "" : "  ·  " + leads_.next->due),
+                          picture(leads_.next->task)};
   if (leads_.last)
     result_lead_ = HomeLead{host::TranslateWith("Last result: {1}", {leads_.last->title}),
-                                 leads_.last->outcome, picture(leads_.last->task)};
+                            leads_.last->outcome, picture(leads_.last->task)};
 }
 
 /// What could not be opened is said on the home page, which leads on.
@@ -209,8 +209,8 @@ void SimulatorPresenter::ToggleLeftHanded() {
 void SimulatorPresenter::ToggleTutorial() {
   if (!tutorial_.IsOn()) return BeginTutorial();
   tutorial_.Leave();
-  Announce(bindings_.Fill(
-      host::Translate("The tutorial goes on where you left it. What you do now is no attempt; {reset} begins one.")));
+  Announce(bindings_.Fill(host::Translate(
+      "The tutorial goes on where you left it. What you do now is no attempt; {reset} begins one.")));
 }
 
 void SimulatorPresenter::BeginTutorial() {
@@ -253,10 +253,12 @@ void SimulatorPresenter::FollowTutorial(const simulation::Snapshot& snapshot) {
 }
 
 OperationStep SimulatorPresenter::NextOperationStep() const {
-  if (control_ == nullptr || !HasGuides() || tutorial_.IsOn() || control_->IsDemonstration() || is_attempt_over_)
+  if (control_ == nullptr || !HasGuides() || tutorial_.IsOn() || control_->IsDemonstration() ||
+      is_attempt_over_)
     return {};
   if (!control_->GetScene().operation || control_->GetScene().task) return {};
-  return FindOperationStep(control_->GetScene(), control_->Strands(), control_->Now(), operation_end_.Reached());
+  return FindOperationStep(control_->GetScene(), control_->Strands(), control_->Now(),
+                           operation_end_.Reached());
 }
 
 // questions

@@ -49,7 +49,8 @@ double DistanceFrom(const RigidShape& shape, const Vec3& p) {
   const double across = std::hypot(p.x, p.y);
   switch (shape.kind) {
     case RigidShape::Kind::kBox: {
-      const Vec3 out{std::fabs(p.x) - shape.size.x, std::fabs(p.y) - shape.size.y, std::fabs(p.z) - shape.size.z};
+      const Vec3 out{std::fabs(p.x) - shape.size.x, std::fabs(p.y) - shape.size.y,
+                     std::fabs(p.z) - shape.size.z};
       const Vec3 beyond{std::max(out.x, 0.0), std::max(out.y, 0.0), std::max(out.z, 0.0)};
       return math::Norm(beyond) + std::min(std::max({out.x, out.y, out.z}), 0.0);
     }
@@ -214,7 +215,8 @@ NextStep FindNextStep(const scene::Task& task, const simulation::Snapshot& snaps
 }
 
 std::vector<Trail> MakeGuides(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
-                              std::span<const scene::StrandInfo> strands, const simulation::Snapshot& snapshot) {
+                              std::span<const scene::StrandInfo> strands,
+                              const simulation::Snapshot& snapshot) {
   std::vector<Trail> trails;
   for (int hand = 0; hand < instrument::kHandCount; ++hand) {
     AddDepthLine(scene, surfaces, strands, snapshot, hand, trails);

@@ -22,7 +22,8 @@ std::string ModeTemplate(const Situation& situation) {
         "The script holds both hands  ·  {demonstration} takes over  ·  {run} pauses  ·  {help} all keys");
   if (situation.is_laparoscope_held && situation.is_camera_task)
     return host::Translate(
-        "Laparoscope: mouse looks round  ·  wheel in and out  ·  {left-hand}, {right-hand}: a hand  ·  Esc frees the "
+        "Laparoscope: mouse looks round  ·  wheel in and out  ·  {left-hand}, {right-hand}: a hand  ·  Esc "
+        "frees the "
         "mouse  ·  {help} all keys");
   if (situation.is_laparoscope_held)
     return host::Translate(

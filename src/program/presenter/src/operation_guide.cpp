@@ -41,16 +41,20 @@ enum Text {
 // in the order of Text; keys are put in by KeyBindings::Fill
 constexpr std::string_view kTexts[kTextCount] = {
     "{assistant}: the assistant takes the fundus and lifts it.",
-    "Left hand ({left-hand}): take the gallbladder's neck, {close-jaws}, and draw it out to the patient's right.",
+    "Left hand ({left-hand}): take the gallbladder's neck, {close-jaws}, and draw it out to the patient's "
+    "right.",
     "Right hand ({right-hand}): the hook, {next-tool}.",
-    "Hook under a fibre of the triangle, lift it off, {cut}: clear fat and fibres until the liver is seen behind. Stay on "
+    "Hook under a fibre of the triangle, lift it off, {cut}: clear fat and fibres until the liver is seen "
+    "behind. Stay on "
     "the gallbladder.",
     "Free the lowest third of the gallbladder from the liver with the hook.",
     "Free duct and artery all round: fibre by fibre, close to the gallbladder.",
-    "Show the front: turn the neck until duct, artery and liver between them are seen from the front, for a second.",
+    "Show the front: turn the neck until duct, artery and liver between them are seen from the front, for a "
+    "second.",
     "Show the back: turn the neck the other way, until the same is seen from behind, for a second.",
     "Right hand ({right-hand}): the clip applier, {next-tool}.",
-    "Clip duct and artery: jaws right round it, {close-jaws}. Two clips towards the patient, one towards the gallbladder.",
+    "Clip duct and artery: jaws right round it, {close-jaws}. Two clips towards the patient, one towards the "
+    "gallbladder.",
     "Right hand ({right-hand}): the scissors, {next-tool}.",
     "Cut duct and artery between the clips, {close-jaws}.",
     "Take the gallbladder off its bed with the hook, from the neck upwards, fibre by fibre.",
@@ -58,7 +62,8 @@ constexpr std::string_view kTexts[kTextCount] = {
     "Put the gallbladder into the bag's mouth, and open the jaws that hold it.",
     "Draw the bag out: back along its shaft, through the port."};
 
-bool HasTool(const scene::Scene& scene, const simulation::Snapshot& now, instrument::Hand hand, ToolKind kind) {
+bool HasTool(const scene::Scene& scene, const simulation::Snapshot& now, instrument::Hand hand,
+             ToolKind kind) {
   const auto& tray = scene.instruments[hand].tray;
   const std::size_t place = now.operation.tools[hand];
   return place < tray.size() ? tray[place].kind == kind : scene.instruments[hand].tool.kind == kind;
@@ -135,15 +140,15 @@ OperationStep FindOperationStep(const scene::Scene& scene, std::span<const scene
     if (!HasTool(scene, now, instrument::kRight, ToolKind::kHook) &&
         HasToolInTray(scene, instrument::kRight, ToolKind::kHook))
       return Say(kTakeHook);
-    return Say(kTakeOffBed,
-               FindFibre(strands, now, std::array{StrandRole::kBed, StrandRole::kPeritoneum}));
+    return Say(kTakeOffBed, FindFibre(strands, now, std::array{StrandRole::kBed, StrandRole::kPeritoneum}));
   }
   if (!operation.is_in_bag)
     return Say(HasTool(scene, now, instrument::kRight, ToolKind::kBag) ? kPutInBag : kTakeBag);
   return Say(kDrawOut);
 }
 
-std::optional<view::Trail> MarkOperationStep(const OperationStep& step, const math::Pose& X_world_laparoscope) {
+std::optional<view::Trail> MarkOperationStep(const OperationStep& step,
+                                             const math::Pose& X_world_laparoscope) {
   if (!step.target) return std::nullopt;
   // seen as a circle
   return MakeRing(*step.target, math::Rotate(X_world_laparoscope.rotation, Vec3{0, 0, 1}), kTargetRadius,

@@ -129,7 +129,8 @@ void AddRun(CLI::App& app, Options& options) {
                  "Size of texts in per cent (default: as the desktop has it)")
       ->check(CLI::Range(50, 400));
   app.add_flag("--high-contrast", options.is_high_contrast,
-               "White on black, with lines round what can be pressed (also where the desktop's theme has high contrast)");
+               "White on black, with lines round what can be pressed (also where the desktop's theme has "
+               "high contrast)");
   app.add_option("--check-layout", options.layout,
                  "Open every page, write what is cut off or off the screen in this JSON file, and quit");
   app.add_flag("--demonstration", options.is_demonstration,

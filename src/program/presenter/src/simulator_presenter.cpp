@@ -208,7 +208,8 @@ void SimulatorPresenter::ToggleForceFeedback() {
 
 /// Esc: no force, no pointer, no card over the picture, nothing that is prepared.
 void SimulatorPresenter::ReleaseAll() {
-  const bool is_free = preparing_ == nullptr && !screen_->IsPointerTaken() && !page_.is_help_open && !HasCard();
+  const bool is_free =
+      preparing_ == nullptr && !screen_->IsPointerTaken() && !page_.is_help_open && !HasCard();
   if (preparing_ != nullptr) preparing_->is_cancelled = true;
   if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
   // one thing after the other: whoever has nothing else to leave leaves full screen

@@ -28,7 +28,8 @@ constexpr std::string_view kTexts[kTutorialSteps] = {
     "Press {other-hand}: the mouse takes the other hand; this one keeps its place and its grip.",
     "Hold {hold-laparoscope} and move the mouse: the laparoscope looks round. Let {hold-laparoscope} go "
     "again.",
-    "Take a ring: jaws open; move until the tip lies over the ring's rim in the picture; turn the wheel away from "
+    "Take a ring: jaws open; move until the tip lies over the ring's rim in the picture; turn the wheel away "
+    "from "
     "you: the tip goes in behind that spot and stops at the rim; close. Then open them: it falls.",
     "Press {run}: everything stands still. Press it again to go on."};
 
@@ -112,7 +113,8 @@ std::string Tutorial::Text(const KeyBindings& bindings) const {
   const std::string leave = bindings.Fill(host::Translate("   ({tutorial} leaves the tutorial)"));
   if (IsDone())
     return host::TranslateWith(
-        "Done: these are all the controls. {1} or the button below begins the task, as an attempt that is kept: "
+        "Done: these are all the controls. {1} or the button below begins the task, as an attempt that is "
+        "kept: "
         "the bright ring shows what comes next.{2}",
         {bindings.Fill("{reset}"), leave});
   return host::TranslateWith("{1} of {2}:  {3}{4}",

@@ -35,7 +35,9 @@ struct Bench {
     EXPECT_TRUE(read.ok()) << read.error().Text();
     return Make(*read);
   }
-  std::vector<view::Trail> Guides() const { return MakeGuides(*scene, simulation.Surfaces(), simulation.Strands(), snapshot); }
+  std::vector<view::Trail> Guides() const {
+    return MakeGuides(*scene, simulation.Surfaces(), simulation.Strands(), snapshot);
+  }
 };
 
 int CountMarks(const std::vector<view::Trail>& trails) {
@@ -47,12 +49,14 @@ int CountMarks(const std::vector<view::Trail>& trails) {
 TEST(Guides, DropFromTheTipToTheBoard) {
   Bench bench = Bench::OfTask("peg_transfer");
   const Vec3 tip{0.004, 0.02, -0.100};
-  const auto distance =
-      FindDistanceAhead(*bench.scene, bench.simulation.Surfaces(), bench.simulation.Strands(), bench.snapshot, tip, {0, 0, -1});
+  const auto distance = FindDistanceAhead(*bench.scene, bench.simulation.Surfaces(),
+                                          bench.simulation.Strands(), bench.snapshot, tip, {0, 0, -1});
   ASSERT_TRUE(distance.has_value());
   EXPECT_NEAR(*distance, tip.z - kBoardTop, 1e-9);
-  EXPECT_FALSE(FindDistanceAhead(*bench.scene, {}, {}, bench.snapshot, tip, {0, 0, 1}).has_value()) << "upwards";
-  EXPECT_FALSE(FindDistanceAhead(*bench.scene, {}, {}, bench.snapshot, {0.4, 0, -0.1}, {0, 0, -1}).has_value())
+  EXPECT_FALSE(FindDistanceAhead(*bench.scene, {}, {}, bench.snapshot, tip, {0, 0, 1}).has_value())
+      << "upwards";
+  EXPECT_FALSE(
+      FindDistanceAhead(*bench.scene, {}, {}, bench.snapshot, {0.4, 0, -0.1}, {0, 0, -1}).has_value())
       << "beside the board";
   // the lowest point of a hand's line lies on the board, below the tip
   bench.snapshot.instruments[instrument::kLeft].X_world_tool.translation = tip;
@@ -117,8 +121,8 @@ TEST(Guides, MeetTissueWhereTheWheelLeads) {
   // down the laparoscope's axis there is an organ: the answer is the nearest vertex' distance, to a triangle's size
   const math::Pose& X = bench.snapshot.X_world_laparoscope;
   const Vec3 way = math::Rotate(X.rotation, Vec3{0, 0, -1});
-  const auto distance =
-      FindDistanceAhead(*bench.scene, bench.simulation.Surfaces(), bench.simulation.Strands(), bench.snapshot, X.translation, way);
+  const auto distance = FindDistanceAhead(*bench.scene, bench.simulation.Surfaces(),
+                                          bench.simulation.Strands(), bench.snapshot, X.translation, way);
   ASSERT_TRUE(distance.has_value());
   const Vec3 met = X.translation + *distance * way;
   double nearest = 1;

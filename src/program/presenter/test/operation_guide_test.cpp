@@ -24,8 +24,8 @@ struct Table {
   Milestone reached = Milestone::kStart;
 
   Table() {
-    for (const ToolKind kind : {ToolKind::kGrasper, ToolKind::kHook, ToolKind::kClipApplier, ToolKind::kScissors,
-                                ToolKind::kBag}) {
+    for (const ToolKind kind :
+         {ToolKind::kGrasper, ToolKind::kHook, ToolKind::kClipApplier, ToolKind::kScissors, ToolKind::kBag}) {
       instrument::Tool tool;
       tool.kind = kind;
       scene.instruments[kRight].tray.push_back(tool);
@@ -40,7 +40,8 @@ struct Table {
   }
   void Take(ToolKind kind) {
     for (std::size_t i = 0; i < scene.instruments[kRight].tray.size(); ++i) {
-      if (scene.instruments[kRight].tray[i].kind == kind) now.operation.tools[kRight] = static_cast<std::uint8_t>(i);
+      if (scene.instruments[kRight].tray[i].kind == kind)
+        now.operation.tools[kRight] = static_cast<std::uint8_t>(i);
     }
   }
   OperationStep Next() const { return FindOperationStep(scene, strands, now, reached); }

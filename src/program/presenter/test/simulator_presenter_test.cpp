@@ -672,8 +672,10 @@ TEST_F(Presenter, HomeRemembersWhoOneIsAndLeadsOn) {
   presenter_->BeSomebody("Anna Berg");
   EXPECT_EQ(LoadWindowSettings(options.settings).settings.person, "T-AAAAAA") << "never the name";
   centre::HomeResults results;
-  results.leads.next = centre::NextAndLast::Step{{"basic-skills", "camera"}, "Basic skills", "Camera", "peg_transfer", ""};
-  results.leads.last = centre::NextAndLast::Result{"Peg transfer", "passed", "peg_transfer", {}, "/a/b.trocar"};
+  results.leads.next =
+      centre::NextAndLast::Step{{"basic-skills", "camera"}, "Basic skills", "Camera", "peg_transfer", ""};
+  results.leads.last =
+      centre::NextAndLast::Result{"Peg transfer", "passed", "peg_transfer", {}, "/a/b.trocar"};
   presenter_->ShowBest(results);
   ASSERT_TRUE(screen_.page.home.next && screen_.page.home.result);
   EXPECT_EQ(screen_.page.home.next->title, "Next in Basic skills");

@@ -36,7 +36,7 @@ class AttemptKeeper {
 
  private:
   std::optional<AttemptKeeping> keeping_;
-  AttemptWatch watch_;  // of the attempt that is recorded
+  AttemptWatch watch_;        // of the attempt that is recorded
   mutable std::mutex mutex_;  // of what follows, where Status may look
   std::unique_ptr<record::Recorder> recorder_;
   std::optional<record::RecorderStatus> last_;

@@ -70,7 +70,8 @@ inline constexpr double kErrorForce = 6.0;  // [N]
 inline constexpr double kErrorForceRelease = 0.9;
 /// Kind and text of that error; its force is the greatest until it was let go.
 inline constexpr const char* kExcessForceOfTask = "excess_force_on_board";
-inline constexpr const char* kExcessForceOfTaskText = "A tool pressed or pulled far harder than tissue bears.";
+inline constexpr const char* kExcessForceOfTaskText =
+    "A tool pressed or pulled far harder than tissue bears.";
 
 /// A fact that went on for a while: the same kind, hand and part in ticks that follow each other.
 struct FactSpan {

@@ -21,17 +21,17 @@ namespace trocar::centre {
 /// An attempt that has ended and is not in the store yet.
 struct PendingAttempt {
   std::filesystem::path recording;
-  std::string person;     ///< pseudonym; may be empty
-  double progress = -1;   ///< share that has been measured; < 0: it waits
+  std::string person;    ///< pseudonym; may be empty
+  double progress = -1;  ///< share that has been measured; < 0: it waits
 };
 
 struct FilingStatus {
-  std::size_t measuring = 0;           ///< attempts that are being measured, or wait for it
-  std::size_t measured = 0;            ///< since nothing waited
-  double progress = 0;                 ///< of the one that is being measured, 0 to 1
+  std::size_t measuring = 0;            ///< attempts that are being measured, or wait for it
+  std::size_t measured = 0;             ///< since nothing waited
+  double progress = 0;                  ///< of the one that is being measured, 0 to 1
   std::vector<PendingAttempt> pending;  ///< those attempts, the next one first
-  std::size_t waiting = 0;             ///< attempts in the spool
-  std::optional<base::Error> failure;  ///< why they wait, or why the last could not be kept
+  std::size_t waiting = 0;              ///< attempts in the spool
+  std::optional<base::Error> failure;   ///< why they wait, or why the last could not be kept
 };
 
 /// An attempt that has been measured.

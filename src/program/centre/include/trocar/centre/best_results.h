@@ -42,10 +42,10 @@ struct NextAndLast {
     std::string due;            ///< may be empty
   };
   struct Result {
-    std::string title;    ///< "Peg transfer, normal"
-    std::string outcome;  ///< "passed, 87.4 %, 1:52"
-    std::string task;     ///< key, for its picture
-    store::Attempt attempt;  ///< without metrics
+    std::string title;                ///< "Peg transfer, normal"
+    std::string outcome;              ///< "passed, 87.4 %, 1:52"
+    std::string task;                 ///< key, for its picture
+    store::Attempt attempt;           ///< without metrics
     std::filesystem::path recording;  ///< empty where it is not on this computer
   };
   std::optional<Step> next;

@@ -157,7 +157,7 @@ class CentrePresenter {
   store::Attempt shown_;  // of the result page
   std::filesystem::path expected_;
   std::map<std::filesystem::path, HistoryPage::Pending> pending_;  // that have been read
-  bool is_trainee_ = false;  // who works here is one
+  bool is_trainee_ = false;                                        // who works here is one
   std::atomic<double> share_{-1};
   std::atomic<bool> is_given_up_{false}, is_done_{false};
   std::deque<Request> waiting_;

@@ -32,7 +32,7 @@ struct ExamPage {
   std::filesystem::path recording;      ///< of the exam that was sat; empty before
   std::filesystem::path certificate;    ///< that was issued; empty before
   bool is_passed = false;
-  std::string finding;  ///< of the certificate, in words
+  std::string finding;              ///< of the certificate, in words
   std::vector<ExamChoice> choices;  ///< of an exam to seal
 };
 
@@ -41,8 +41,8 @@ base::Result<std::vector<ExamChoice>> ListExamChoices();
 /// Draws a secret seed and seals the settings; what passes are the delivered thresholds of task and level, where there are.
 /// \param file  of the exam, for its examiner alone; beside it lies what is published before
 /// \return the page of the sealed exam; the seal's error
-base::Result<ExamPage> SealExamFile(const std::string& name, const std::string& task, const std::string& level,
-                                    const std::filesystem::path& file);
+base::Result<ExamPage> SealExamFile(const std::string& name, const std::string& task,
+                                    const std::string& level, const std::filesystem::path& file);
 
 /// Makes a centre's pair of keys: FILE.key stays secret, FILE.pub is published.
 /// \return as assessment::MakeKeys

@@ -40,10 +40,10 @@ struct HistoryPage {
   };
   HistoryQuery query;
   std::string who;
-  std::vector<Task> tasks;  ///< to choose from
+  std::vector<Task> tasks;       ///< to choose from
   std::vector<Pending> pending;  ///< the next one first
   std::vector<Row> rows;         ///< the newest first
-  std::string next;         ///< empty after the last page
+  std::string next;              ///< empty after the last page
   /// Of one task at the level of its newest attempt; empty for all tasks.
   std::string level;
   std::vector<report::Drawing> drawings;  ///< learning curve and CUSUM

@@ -53,8 +53,8 @@ base::Result<JudgedAttempt> JudgeRecording(const std::filesystem::path& path, co
 
 /// Judges an attempt that this program has measured while it was played. All numbers are those of JudgeRecording.
 /// \param path  of its recording, which is whole
-base::Result<JudgedAttempt> JudgePlayed(const std::filesystem::path& path, const assessment::AttemptFold& fold,
-                                        const JudgeSettings& settings);
+base::Result<JudgedAttempt> JudgePlayed(const std::filesystem::path& path,
+                                        const assessment::AttemptFold& fold, const JudgeSettings& settings);
 
 /// Attempt as far as it is known without playing the recording again: no metrics, no verdict.
 base::Result<store::Attempt> DescribeRecording(const std::filesystem::path& path, const std::string& person,

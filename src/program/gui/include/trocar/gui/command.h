@@ -57,7 +57,7 @@ struct CommandButton {
   const char* label = "";
   const char* tip = "";
   bool is_toggle = false, is_primary = false;
-  int least_width = 0;     ///< holds each of its labels [pixels]
+  int least_width = 0;  ///< holds each of its labels [pixels]
 };
 
 /// How a button looks now; the window's presenter says it.

@@ -37,7 +37,8 @@ class CommandBar : public Gtk::WindowHandle {
       if (row.button.side == ButtonSide::kStart) start.push_back(&row);
       if (row.button.side == ButtonSide::kEnd) end.push_back(&row);
     }
-    for (std::size_t i = std::max<std::size_t>(end.size(), 2) - 2; i < end.size(); ++i) orders[end[i]] = order++;
+    for (std::size_t i = std::max<std::size_t>(end.size(), 2) - 2; i < end.size(); ++i)
+      orders[end[i]] = order++;
     for (const Row* row : start) orders[row] = row->button.is_primary ? 0 : order++;
     for (std::size_t i = std::max<std::size_t>(end.size(), 2) - 2; i-- > 0;) orders[end[i]] = order++;
     for (const Row* row : start) line_.Append(Make(*row), orders[row]);
@@ -93,7 +94,8 @@ class CommandBar : public Gtk::WindowHandle {
     for (const Entry& entry : entries_) {
       if (!line_.IsFolded(*entry.button)) continue;
       const bool is_checked = entry.toggle != nullptr && entry.toggle->get_active();
-      auto* button = Gtk::make_managed<Gtk::Button>((is_checked ? "\u2713 " : "") + entry.button->get_label());
+      auto* button =
+          Gtk::make_managed<Gtk::Button>((is_checked ? "\u2713 " : "") + entry.button->get_label());
       button->set_sensitive(entry.button->get_sensitive());
       button->signal_clicked().connect([this, row = entry.row] {
         line_.CloseMore();

@@ -47,9 +47,9 @@ base::Result<Film> MakeFilm(const FilmRequest& request, gui::JobProgress& progre
 /// \param picture  PNG that is written
 /// \return the recording's or the picture's error, kCancelled
 /// \note Takes an OpenGL context of its own on the calling thread.
-base::Status DrawMoment(const std::filesystem::path& recording, double time, const std::filesystem::path& picture,
-                        int threads, const std::function<bool()>& goes_on);
-
+base::Status DrawMoment(const std::filesystem::path& recording, double time,
+                        const std::filesystem::path& picture, int threads,
+                        const std::function<bool()>& goes_on);
 
 /// Where pictures and clips go that nobody named a file for: the user's folder for pictures, "Trocar" in it.
 /// \param pictures  of the desktop; empty: host::FindUserDataFolder()/pictures

@@ -30,7 +30,8 @@ std::optional<double> FindDistanceAhead(const scene::Scene& scene,
 inline constexpr double kLongestGuide = 0.20;  // [m]
 
 /// A ring that is drawn over the scene. \param normal  unit
-view::Trail MakeRing(const math::Vec3& centre, const math::Vec3& normal, double radius, render::Material material);
+view::Trail MakeRing(const math::Vec3& centre, const math::Vec3& normal, double radius,
+                     render::Material material);
 
 /// The thing that the next step of the task is about, and where it is to go once it is in the jaws.
 struct NextStep {

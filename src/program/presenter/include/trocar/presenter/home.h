@@ -32,14 +32,14 @@ struct HomeLead {
 };
 
 struct HomePage {
-  std::string who;                     ///< "Anna Berg", "Nobody in particular"
-  std::string patient;                 ///< who is operated on: "the built-in patient"
-  std::string last_title = "";         ///< "Go on" where something is open, else "Once more": it begins anew
-  std::string last;                    ///< of it: "Peg transfer, normal"; empty: nothing was trained
-  std::string tutorial;                ///< "Start", "Go on: 3 of 10", "Again"
+  std::string who;              ///< "Anna Berg", "Nobody in particular"
+  std::string patient;          ///< who is operated on: "the built-in patient"
+  std::string last_title = "";  ///< "Go on" where something is open, else "Once more": it begins anew
+  std::string last;             ///< of it: "Peg transfer, normal"; empty: nothing was trained
+  std::string tutorial;         ///< "Start", "Go on: 3 of 10", "Again"
   std::optional<HomeLead> next, result;  ///< of kNextStep and kLastResult; nothing where there is none
-  bool is_tutorial_suggested = false;  ///< nothing has been trained here yet
-  std::optional<base::Error> problem;  ///< what could not be opened; the page leads on
+  bool is_tutorial_suggested = false;    ///< nothing has been trained here yet
+  std::optional<base::Error> problem;    ///< what could not be opened; the page leads on
 };
 
 struct HomeEntry {

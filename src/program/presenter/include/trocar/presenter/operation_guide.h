@@ -15,7 +15,8 @@
 namespace trocar::presenter {
 
 struct OperationStep {
-  std::string_view text;  ///< with placeholders for keys; translated where it is shown; empty: nothing comes next
+  std::string_view
+      text;  ///< with placeholders for keys; translated where it is shown; empty: nothing comes next
   std::optional<math::Vec3> target;  ///< where, world frame [m]
 };
 
@@ -30,6 +31,7 @@ OperationStep FindOperationStep(const scene::Scene& scene, std::span<const scene
                                 const simulation::Snapshot& now, assessment::Milestone reached);
 
 /// A ring where the step is to be done; nothing without a target.
-std::optional<view::Trail> MarkOperationStep(const OperationStep& step, const math::Pose& X_world_laparoscope);
+std::optional<view::Trail> MarkOperationStep(const OperationStep& step,
+                                             const math::Pose& X_world_laparoscope);
 
 }  // namespace trocar::presenter

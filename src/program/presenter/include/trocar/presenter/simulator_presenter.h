@@ -42,9 +42,10 @@ struct SimulatorPage {
   std::string mode;      ///< what mouse and keys do now
   std::string progress;  ///< of the task or the operation: time, goals or phase, what comes next
   std::string tutorial;  ///< what is to be done now; empty: it is off
-  std::string next_step;  ///< of an operation: what comes next, with tool and key; empty: no help is wanted or there is none
+  std::string
+      next_step;  ///< of an operation: what comes next, with tool and key; empty: no help is wanted or there is none
   bool is_tutorial_done = false;  ///< all its steps: its task can be begun as an attempt
-  std::string question;  ///< before something is thrown away; empty: none
+  std::string question;           ///< before something is thrown away; empty: none
   HomePage home;
   TaskPage tasks;
   std::string opening;  ///< what is prepared beside the window; empty: nothing that takes long
