@@ -144,7 +144,7 @@ void PatientListCard::AddPatient(const presenter::PatientEntry& patient) {
   auto* choose = Gtk::make_managed<Gtk::Button>(host::Translate("Choose"));
   choose->set_tooltip_text(patient.name);
   gui::SetAccessibleName(*choose, host::TranslateWith("Choose {1}", {patient.name}));
-  choose->set_sensitive(!patient.problem && !is_chosen);
+  choose->set_sensitive(!patient.problem);
   choose->signal_clicked().connect([this, folder = patient.folder] {
     desk_.Choose(folder);
     Show();
