@@ -12,6 +12,7 @@
 namespace trocar::centre {
 namespace {
 
+constexpr std::size_t kMostRecent = 3;  // results that nobody has asked for
 constexpr double kLead = 2;  // before an error, so that one sees how it came [s]
 
 PageKind KindOf(CentreAction action) {
@@ -95,16 +96,12 @@ void CentrePresenter::FollowFiling() {
     ShowPending(status);
     for (FiledAttempt& filed : filing_->TakeFiled()) {
       const bool is_expected = filed.recording == expected_;
+      // it may be there before the window that asks for it hears that the attempt is over
+      if (!is_expected) recent_.push_back(filed);
+      if (recent_.size() > kMostRecent) recent_.pop_front();
       // who reads another result goes on reading it
       if (!is_expected && page_.kind == PageKind::kResult) continue;
-      if (is_expected) expected_.clear();
-      if (filed.judged) {
-        UseResult(*filed.judged);
-      } else if (filed.failure && is_expected) {
-        page_.kind = PageKind::kHistory;
-        Read();
-        Fail(*filed.failure);
-      }
+      UseFiled(filed, is_expected);
     }
     if (!expected_.empty() && !job_.IsRunning()) page_.progress = status.progress;
   }
@@ -147,6 +144,17 @@ void CentrePresenter::ShowPending(const FilingStatus& status) {
   if (std::equal(shown.begin(), shown.end(), pending.begin(), pending.end(), is_same)) return;
   page_.history.pending = std::move(pending);
   if (page_.kind == PageKind::kHistory) ++page_.version;
+}
+
+void CentrePresenter::UseFiled(const FiledAttempt& filed, bool is_expected) {
+  if (is_expected) expected_.clear();
+  if (filed.judged) {
+    UseResult(*filed.judged);
+  } else if (filed.failure && is_expected) {
+    page_.kind = PageKind::kHistory;
+    Read();
+    Fail(*filed.failure);
+  }
 }
 
 void CentrePresenter::Fail(const base::Error& error) {
@@ -305,6 +313,9 @@ void CentrePresenter::ExpectResult(const std::filesystem::path& recording) {
   page_.review = {};
   page_.kind = PageKind::kResult;
   Refresh(true);
+  const auto known = std::find_if(recent_.begin(), recent_.end(),
+                                  [&](const FiledAttempt& one) { return one.recording == recording; });
+  if (known != recent_.end()) UseFiled(*known, true);
 }
 
 void CentrePresenter::UseResult(const JudgedAttempt& judged) {
