@@ -2,7 +2,6 @@
 #include "trocar/gui/columns.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace trocar::gui {
 namespace {
@@ -42,17 +41,23 @@ std::vector<Gtk::Widget*> Columns::Shown() const {
 }
 
 std::vector<int> Columns::FindWidths(const std::vector<Gtk::Widget*>& shown, int width) const {
-  std::vector<int> widths;
-  int used = 0, expanding = 0;
+  std::vector<Size> sizes;
+  int used = 0, expanding = 0, wish = 0;
   for (Gtk::Widget* child : shown) {
-    widths.push_back(Measure(*child, Gtk::Orientation::HORIZONTAL, -1).minimum);
-    used += widths.back() + (widths.size() > 1 ? spacing_ : 0);
+    sizes.push_back(Measure(*child, Gtk::Orientation::HORIZONTAL, -1));
+    used += sizes.back().minimum + (sizes.size() > 1 ? spacing_ : 0);
+    wish += sizes.back().natural - sizes.back().minimum;
     expanding += child->compute_expand(Gtk::Orientation::HORIZONTAL) ? 1 : 0;
   }
   if (used > width) return {};
-  const int left = width - used;
-  for (std::size_t i = 0; i < shown.size() && expanding > 0; ++i) {
-    if (shown[i]->compute_expand(Gtk::Orientation::HORIZONTAL)) widths[i] += left / expanding;
+  // what is left over goes to whoever would like more, in proportion; and what nobody needs, to whoever takes it
+  const int left = width - used, given = std::min(left, wish);
+  std::vector<int> widths;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const auto more = static_cast<double>(sizes[i].natural - sizes[i].minimum);
+    widths.push_back(sizes[i].minimum + (wish > 0 ? static_cast<int>(more * given / wish) : 0));
+    if (expanding > 0 && shown[i]->compute_expand(Gtk::Orientation::HORIZONTAL))
+      widths.back() += (left - given) / expanding;
   }
   return widths;
 }
