@@ -107,7 +107,8 @@ void SimulatorWindow::MakeOverlay() {
   overlay_.add_overlay(failure_card_);
   for (Gtk::Widget* card : cards) {
     card->set_visible(false);
-    gui::AddOverCard(overlay_, *card);
+    Gtk::ScrolledWindow& scroller = gui::AddOverCard(overlay_, *card);
+    if (card == &help_) help_scroller_ = &scroller;
   }
 }
 
@@ -323,6 +324,7 @@ void SimulatorWindow::FocusCard(const presenter::SimulatorPage& page) {
                       : page.is_task_list_open    ? static_cast<Gtk::Widget*>(&chooser_)
                       : page.is_patient_list_open ? static_cast<Gtk::Widget*>(&patients_)
                       : page.is_key_list_open     ? static_cast<Gtk::Widget*>(&keys_)
+                      : page.is_help_open         ? static_cast<Gtk::Widget*>(&help_)
                                                   : nullptr;
   if (card == focused_card_) return;
   focused_card_ = card;
@@ -334,8 +336,13 @@ void SimulatorWindow::FocusCard(const presenter::SimulatorPage& page) {
   Glib::signal_timeout().connect_once(
       [this, card] {
         if (card != focused_card_ || !card->get_visible()) return;
-        card == &home_ ? home_.FocusFirst()
-                       : static_cast<void>(card->child_focus(Gtk::DirectionType::TAB_FORWARD));
+        if (card == &home_) {
+          home_.FocusFirst();
+        } else if (card == &help_) {
+          help_scroller_->grab_focus();  // so that it scrolls with the keyboard, too
+        } else {
+          card->child_focus(Gtk::DirectionType::TAB_FORWARD);
+        }
       },
       0);
 }

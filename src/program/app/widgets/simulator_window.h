@@ -118,6 +118,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   Picture picture_;
   Panel panel_;
   Gtk::Box help_;  // of the keys as they are now
+  Gtk::ScrolledWindow* help_scroller_ = nullptr;
   std::optional<std::pair<presenter::KeyLayout, presenter::KeyBindings::Own>> shown_help_;
   Gtk::Widget* focused_card_ = nullptr;
   bool is_open_ = true;

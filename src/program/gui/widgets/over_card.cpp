@@ -5,7 +5,7 @@
 
 namespace trocar::gui {
 
-void AddOverCard(Gtk::Overlay& overlay, Gtk::Widget& card) {
+Gtk::ScrolledWindow& AddOverCard(Gtk::Overlay& overlay, Gtk::Widget& card) {
   auto* scroller = Gtk::make_managed<Gtk::ScrolledWindow>();
   scroller->set_policy(Gtk::PolicyType::AUTOMATIC, Gtk::PolicyType::AUTOMATIC);
   scroller->set_propagate_natural_width(true);
@@ -17,6 +17,7 @@ void AddOverCard(Gtk::Overlay& overlay, Gtk::Widget& card) {
       [scroller, &card] { scroller->set_visible(card.get_visible()); });
   scroller->set_child(card);
   overlay.add_overlay(*scroller);
+  return *scroller;
 }
 
 void FitToScreen(Gtk::Window& window, int width, int height) {

@@ -8,7 +8,8 @@ namespace trocar::gui {
 
 /// Lays a card over a picture, in the middle; it is seen while it is visible.
 /// \param card  outlives the overlay's content
-void AddOverCard(Gtk::Overlay& overlay, Gtk::Widget& card);
+/// \return what scrolls, which takes the keyboard's arrows and pages where the card has nothing to choose
+Gtk::ScrolledWindow& AddOverCard(Gtk::Overlay& overlay, Gtk::Widget& card);
 
 /// A window's size at first: no larger than the screen.
 void FitToScreen(Gtk::Window& window, int width, int height);
