@@ -33,6 +33,7 @@
 #include "trocar/instrument/tool.h"
 #include "trocar/presenter/home.h"
 #include "trocar/presenter/key_bindings.h"
+#include "trocar/presenter/operation_guide.h"
 #include "trocar/presenter/replay_commands.h"
 #include "trocar/presenter/settings_form.h"
 #include "trocar/presenter/simulator_commands.h"
@@ -310,6 +311,7 @@ int main(int count, char** arguments) {
     Print(entry.about);
   }
   for (const std::string_view text : presenter::TutorialTexts()) Print(text);
+  for (const std::string_view text : presenter::OperationStepTexts()) Print(text);
   for (const char* direction : editor::PatientDirections()) Print(direction);
   // what a long work is doing
   for (const char* what : {"Reading", "Seeking", "Drawing", "reading labels", "looking at the labels",

@@ -8,6 +8,7 @@
 #include "import_worker.h"
 #include "trocar/base/assert.h"
 #include "trocar/host/printable.h"
+#include "trocar/host/translate.h"
 
 namespace trocar::images {
 namespace {
@@ -71,25 +72,26 @@ bool IsSane(const ImportReply& reply, const ImportLimits& limits) {
          reply.code <= static_cast<int>(ErrorCode::kImportOutOfMemory);
 }
 
+/// A message's pattern, for translators: file, what was wrong, and what mends it.
 const char* FindRemedy(ErrorCode code) {
   switch (code) {
     case ErrorCode::kImageSliceMissing:
-      return "name the folder of the slices";
+      return host::Mark("{1}: {2}; name the folder of the slices");
     case ErrorCode::kImageTooLarge:
-      return "crop or resample it, or allow more memory";
+      return host::Mark("{1}: {2}; crop or resample it, or allow more memory");
     case ErrorCode::kImageUnsupported:
-      return "convert it, for instance with 3D Slicer, to DICOM, NIfTI or NRRD";
+      return host::Mark("{1}: {2}; convert it, for instance with 3D Slicer, to DICOM, NIfTI or NRRD");
     case ErrorCode::kImageGeometryInvalid:
-      return "correct the header, or export it again";
+      return host::Mark("{1}: {2}; correct the header, or export it again");
     case ErrorCode::kImagePathUnsafe:
-      return "put header and data into one folder";
+      return host::Mark("{1}: {2}; put header and data into one folder");
     case ErrorCode::kImportOutOfMemory:
-      return "it is damaged, or too large for this computer";
+      return host::Mark("{1}: {2}; it is damaged, or too large for this computer");
     case ErrorCode::kImportCrashed:
     case ErrorCode::kImportTimedOut:
-      return "the file is damaged or made to do harm; get it again";
+      return host::Mark("{1}: {2}; the file is damaged or made to do harm; get it again");
     default:
-      return "get the file again";
+      return host::Mark("{1}: {2}; get the file again");
   }
 }
 
@@ -219,7 +221,8 @@ base::Status ImportPool::Decode(const ImportFile& file, const ImportFile* data_f
 
 Error NameFile(const fs::path& path, const Error& error) {
   if (error.code == ErrorCode::kImportProgramMissing) return error;
-  return {error.code, host::Printable(path.string()) + ": " + error.message + "; " + FindRemedy(error.code)};
+  const std::string_view remedy = std::string_view(FindRemedy(error.code)).substr(std::string_view("{1}: {2}; ").size());
+  return {error.code, host::Printable(path.string()) + ": " + error.message + "; " + std::string(remedy)};
 }
 
 }  // namespace trocar::images

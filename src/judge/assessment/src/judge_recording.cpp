@@ -6,8 +6,6 @@
 
 #include "trocar/assessment/preparation.h"
 #include "trocar/record/replay.h"
-#include "trocar/record/trace.h"
-#include "trocar/training/attempt_metrics.h"
 
 namespace trocar::assessment {
 namespace {
@@ -68,19 +66,17 @@ std::string TaskKeyOf(const std::string& name) {
 
 base::Result<PlayedAttempt> PlayAttempt(Replay& replay, Milestone from, Milestone until,
                                         const ReplaySettings& settings) {
+  AttemptFold fold(replay.GetSimulation(), from, until);
+  return PlayAttempt(replay, fold, settings);
+}
+
+base::Result<PlayedAttempt> PlayAttempt(Replay& replay, AttemptFold& fold, const ReplaySettings& settings) {
   const Recording& recording = replay.GetRecording();
   const auto count = static_cast<double>(std::max<std::size_t>(1, recording.inputs.size()));
-  record::TraceBuilder builder(replay.GetSimulation());
-  builder.Add(replay.GetSimulation().GetSnapshot());
-  MilestoneWatch watch(scene::ProcedureOf(replay.GetSimulation().GetScene()));
-  watch.Begin(from);
-  const bool is_part = until != Milestone::kCompleted;
-  while (!replay.IsAtEnd() && !(is_part && watch.HasReached(until))) {
+  while (!replay.IsAtEnd() && !fold.IsOver()) {
     const std::uint64_t done = replay.Tick() - recording.FirstTick();
     replay.Step();
-    const simulation::Snapshot& now = replay.GetSimulation().GetSnapshot();
-    builder.Add(now, recording.inputs[done].controls);
-    watch.See(now);
+    fold.Add(replay.GetSimulation().GetSnapshot(), recording.inputs[done].controls);
     if (settings.progress && done % kProgressTicks == 0 &&
         !settings.progress(static_cast<double>(done) / count)) {
       return Error{ErrorCode::kCancelled,
@@ -93,14 +89,7 @@ base::Result<PlayedAttempt> PlayAttempt(Replay& replay, Milestone from, Mileston
         "the recording does not replay to the states that were recorded, so there is nothing to judge; "
         "trocar replay --verify says where it differs"};
   }
-  PlayedAttempt played;
-  played.trace = builder.Calc();
-  auto metrics = training::CalcAttemptMetrics(played.trace);
-  if (!metrics.ok()) return metrics.error();
-  played.result.metrics = std::move(*metrics);
-  if (is_part) played.trace.outcome.is_completed = watch.HasReached(until);
-  played.result.is_completed = played.trace.outcome.is_completed;
-  return played;
+  return fold.Calc();
 }
 
 base::Result<Attempt> MakeAttempt(Recording recording, const ReplaySettings& settings) {

@@ -143,7 +143,9 @@ Verdict Judge(const Proficiency& proficiency, const AttemptResult& attempt) {
   verdict.is_safe = true;
   verdict.is_passed = attempt.is_completed;
   for (const Threshold& threshold : proficiency.thresholds) {
-    ThresholdVerdict one{threshold, std::nullopt, threshold.passes_undefined, 0};
+    ThresholdVerdict one;
+    one.threshold = threshold;
+    one.is_met = threshold.passes_undefined;
     if (const double* value = Find(attempt.metrics, threshold.of)) {
       one.value = *value;
       one.margin = threshold.better == Better::kLower ? threshold.value - *value : *value - threshold.value;
@@ -152,6 +154,10 @@ Verdict Judge(const Proficiency& proficiency, const AttemptResult& attempt) {
     if (!one.is_met) {
       verdict.is_passed = false;
       if (threshold.purpose == Purpose::kSafety) verdict.is_safe = false;
+    } else if (!attempt.is_completed) {
+      // whoever stops after one of twelve goals was not quick, and has made few errors for that reason alone
+      one.is_met = false;
+      one.is_open = true;
     }
     verdict.metrics.push_back(std::move(one));
   }

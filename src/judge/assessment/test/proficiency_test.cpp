@@ -62,6 +62,12 @@ TEST(Judge, TellsUnsafeFromSlow) {
 TEST(Judge, PassesNothingThatWasNotCompleted) {
   const Proficiency proficiency = MakeProficiencyOf({AtMost("time", 48, Purpose::kTime)});
   EXPECT_FALSE(Judge(proficiency, MakeResult(10, 0, false)).is_passed);
+  const auto unfinished = Judge(proficiency, MakeResult(10, 0, false)).metrics[0];
+  EXPECT_FALSE(unfinished.is_met) << "quick for having stopped";
+  EXPECT_TRUE(unfinished.is_open);
+  const auto slow = Judge(proficiency, MakeResult(60, 0, false)).metrics[0];
+  EXPECT_FALSE(slow.is_met);
+  EXPECT_FALSE(slow.is_open) << "what is missed already stays missed";
   EXPECT_TRUE(Judge(MakeProficiencyOf({}), MakeResult(10, 0)).is_passed) << "completing is all that is asked";
 }
 

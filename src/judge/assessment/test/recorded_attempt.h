@@ -22,7 +22,10 @@ struct RecordedAttempt {
   std::string surgeon = "expert";
   std::uint64_t surgeon_seed = 1;
   std::uint64_t ticks = kUntilOver;  // at most; it ends with the task
-  std::function<void(std::uint64_t tick, record::Recorder&)> after_tick;
+  std::function<void(std::uint64_t tick, record::Recorder&)> after_tick{};
+  /// Whoever looks on while it is played: before the first tick, and after each.
+  std::function<void(const simulation::Simulation&)> before_first{};
+  std::function<void(const simulation::Snapshot&, const scene::Input&)> see{};
 };
 
 /// Makes the scene that the description names, lets the surgeon play it, and records that.
@@ -38,10 +41,12 @@ inline void RecordAttempt(const std::filesystem::path& path, const record::Descr
   settings.waits = true;
   auto recorder = record::Recorder::Start(path, description, *simulation, settings);
   ASSERT_TRUE(recorder.ok()) << recorder.error().Text();
+  if (attempt.before_first) attempt.before_first(*simulation);
   for (std::uint64_t tick = 0; tick < attempt.ticks && !simulation->GetSnapshot().task.IsOver(); ++tick) {
     const auto input = (*surgeon)->Act(simulation->GetSnapshot());
     simulation->Step(input);
     (*recorder)->Add(input, *simulation);
+    if (attempt.see) attempt.see(simulation->GetSnapshot(), input);
     if (attempt.after_tick) attempt.after_tick(tick, **recorder);
   }
   ASSERT_TRUE((*recorder)->Finish(*simulation).ok());

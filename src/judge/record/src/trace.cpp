@@ -56,7 +56,6 @@ training::CameraSample SampleCamera(const math::Pose& X_world_laparoscope) {
           math::Asin(std::clamp(lean, -1.0, 1.0))};
 }
 
-/// Whether an event is that of closing a clip: around something, or around nothing.
 /// Facts of a kind that goes on are one span if no more than this lies between them [s].
 constexpr double kFactPause = 0.1;
 
@@ -91,13 +90,14 @@ struct TraceBuilder::Content {
     training::FluidSample fluids;
     bool is_completed = false;
     scene::TaskPhase phase = scene::TaskPhase::kNone;
-    double score = 0, task_time = 0;  // of the task; [s]
+    double score = 0, penalty = 0, task_time = 0;  // of the task, as shown; [s]
   } last;
   std::uint64_t first_tick = 0, missed = 0, known_events = 0, known_task_errors = 0;
   const scene::Procedure* procedure = nullptr;  // of static storage
   std::vector<int> clip_tubes;                  // surface, or -1
   std::vector<roles::StrandRole> strand_roles;
-  std::vector<std::size_t> going_on;  // of trace.facts
+  std::vector<std::size_t> going_on;                                        // of trace.facts
+  std::array<std::optional<std::size_t>, instrument::kHandCount> pressing;  // of trace.events
 
   bool IsEmpty() const { return trace.Ticks() == 0; }
   double TimeOf(std::uint64_t tick) const { return static_cast<double>(tick - first_tick) * trace.dt; }
@@ -108,6 +108,7 @@ struct TraceBuilder::Content {
   void AddEvents(const Snapshot& now);
   void AddEvent(const Snapshot& now, const scene::Event& event, std::vector<std::int32_t>& found);
   void AddBrokenRules(const Snapshot& now, const std::vector<std::int32_t>& found);
+  void AddForces(const Snapshot& now);
   void AddFacts(const Snapshot& now);
   void AddClips(const Snapshot& now);
   void AddJudgement(const Snapshot& now);
@@ -228,6 +229,33 @@ void TraceBuilder::Content::AddBrokenRules(const Snapshot& now, const std::vecto
   known_task_errors = now.task.error_count;
 }
 
+/// Of a task: in an operation its judge finds what is pulled too hard.
+void TraceBuilder::Content::AddForces(const Snapshot& now) {
+  for (std::size_t hand = 0; hand < pressing.size(); ++hand) {
+    const double force = trace.hands[hand].back().force;
+    if (pressing[hand]) {
+      training::AttemptEvent& known = trace.events[*pressing[hand]];
+      if (force > known.force) {
+        known.force = force;
+        known.position = trace.hands[hand].back().tip;
+      }
+      if (force < training::kErrorForceRelease * training::kErrorForce) pressing[hand].reset();
+    } else if (force > training::kErrorForce) {
+      training::AttemptEvent entry;
+      entry.time = TimeOf(now.tick);
+      entry.kind = training::kExcessForceOfTask;
+      entry.hand = static_cast<int>(hand);
+      entry.force = force;
+      entry.position = trace.hands[hand].back().tip;
+      entry.is_error = true;
+      entry.severity = cholecystectomy::Severity::kMinor;
+      entry.text = training::kExcessForceOfTaskText;
+      pressing[hand] = trace.events.size();
+      trace.events.push_back(std::move(entry));
+    }
+  }
+}
+
 int TraceBuilder::Content::TubeAt(const Vec3& p, const std::vector<Vec3>& positions) const {
   int nearest = -1;
   double least = std::numeric_limits<double>::infinity();
@@ -298,6 +326,7 @@ void TraceBuilder::Content::AddEvents(const Snapshot& now) {
   }
   known_events = now.event_count;
   if (task) AddBrokenRules(now, found);
+  if (task && !trace.is_operation) AddForces(now);
   if (now.tick > first_tick) AddFacts(now);
   AddClips(now);
 }
@@ -327,6 +356,12 @@ void TraceBuilder::Content::AddJudgement(const Snapshot& now) {
   last.is_completed = now.operation.is_completed;
 }
 
+void TraceBuilder::Reserve(double seconds) {
+  const auto ticks = static_cast<std::size_t>(seconds / content_->trace.dt) + 1;
+  for (auto& hand : content_->trace.hands) hand.reserve(ticks);
+  content_->trace.camera.reserve(ticks);
+}
+
 void TraceBuilder::Add(const Snapshot& now,
                        const std::array<scene::HandControls, instrument::kHandCount>& controls) {
   Content& c = *content_;
@@ -350,6 +385,10 @@ void TraceBuilder::Add(const Snapshot& now,
   c.last.tick = now.tick;
   c.last.phase = now.task.phase;
   c.last.score = c.task ? scene::CalcShownScore(*c.task, now.task) : 0.0;
+  if (c.task) {
+    const bool is_percent = c.task->reference_points > 0;
+    c.last.penalty = now.task.penalty * (is_percent ? c.task->best_score / c.task->reference_points : 1.0);
+  }
   c.last.task_time = now.task.time;
 }
 
@@ -381,7 +420,8 @@ training::AttemptTrace TraceBuilder::Calc() const {
   }
   const bool is_completed = simulation::HasCompleted(last.phase, last.is_completed);
   if (c.task) {
-    trace.outcome = {std::string(scene::PhaseName(last.phase)), is_completed, last.score, last.task_time};
+    trace.outcome = {std::string(scene::PhaseName(last.phase)), is_completed, last.score, last.task_time,
+                     last.penalty};
   } else if (trace.is_operation) {
     trace.outcome.is_completed = is_completed;
     trace.outcome.phase = is_completed ? "completed" : "unfinished";

@@ -62,7 +62,7 @@ std::string DescribeOutcome(const AttemptTrace& trace) {
       break;
   }
   return host::TranslateWith("The task was not finished: it was left after {1}{2}.",
-                             {played, CountGoals(trace)});
+                             {of_task, CountGoals(trace)});
 }
 
 const MetricReference* FindReference(std::span<const MetricReference> references,
@@ -114,7 +114,7 @@ std::string DescribeEvent(const training::AttemptEvent& event) {
 void AddErrors(const AttemptTrace& trace, AttemptReport& report) {
   for (const training::AttemptEvent& event : trace.events) {
     if (!event.is_error) continue;
-    ErrorRow row{event.time, event.severity, event.hand, DescribeEvent(event), ""};
+    ErrorRow row{event.time, event.severity, event.hand, DescribeEvent(event), "", event.force};
     if (event.organ >= 0 && static_cast<std::size_t>(event.organ) < trace.organ_names.size()) {
       row.where = trace.organ_names[static_cast<std::size_t>(event.organ)];
       std::replace(row.where.begin(), row.where.end(), '_', ' ');
@@ -180,6 +180,7 @@ AttemptReport MakeAttemptReport(const AttemptTrace& trace, const training::Attem
   report.is_completed = trace.outcome.is_completed;
   report.is_operation = trace.is_operation;
   report.score = trace.outcome.score;
+  report.penalty = trace.outcome.penalty;
   report.seconds = trace.Seconds();
   if (trace.outcome.task_time > 0) report.task_seconds = trace.outcome.task_time;
   report.critical_view_time = trace.critical_view_time;

@@ -125,6 +125,7 @@ ordered_json EndJson(const AttemptTrace& trace) {
   json["outcome"] = {
       {"phase", outcome.phase}, {"is_completed", outcome.is_completed}, {"task_time", outcome.task_time}};
   WriteOptional(json["outcome"], "score", outcome.score);
+  if (outcome.penalty > 0.0) json["outcome"]["penalty"] = outcome.penalty;
   for (std::size_t hand = 0; hand < trace.ideal_path.size(); ++hand) {
     if (trace.ideal_path[hand]) json["ideal_path"][kHandNames[hand]] = *trace.ideal_path[hand];
   }
@@ -281,11 +282,12 @@ void ReadOutcome(const JsonView& root, AttemptTrace& trace) {
   }
   if (!root.Has("outcome")) return;
   const JsonView view = root.Object("outcome");
-  view.AllowOnly({"phase", "is_completed", "score", "task_time"});
+  view.AllowOnly({"phase", "is_completed", "score", "task_time", "penalty"});
   trace.outcome.phase = view.TextOr("phase", "");
   trace.outcome.is_completed = view.BooleanOr("is_completed", false);
   if (view.Has("score")) trace.outcome.score = view.Number("score");
   trace.outcome.task_time = view.NumberOr("task_time", 0.0, kNotNegative);
+  trace.outcome.penalty = view.NumberOr("penalty", 0.0, kNotNegative);
 }
 
 // --- CSV

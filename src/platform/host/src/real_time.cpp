@@ -21,6 +21,11 @@ void LeaveRealTime() noexcept {
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);
 }
 
+void TakeIdleTimeOnly() noexcept {
+  const sched_param none{};
+  pthread_setschedparam(pthread_self(), SCHED_IDLE, &none);
+}
+
 void SleepUntil(std::int64_t time) noexcept {
   timespec until{};
   until.tv_sec = time / 1'000'000'000;

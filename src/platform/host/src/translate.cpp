@@ -3,6 +3,7 @@
 
 #include <libintl.h>
 
+#include <algorithm>
 #include <clocale>
 #include <cstdlib>
 #include <cstring>
@@ -123,13 +124,26 @@ bool IsPlainNumber(std::string_view text) {
          text.find('.') == text.rfind('.');
 }
 
+/// A pattern with fewer letters says little of what the text is.
+constexpr std::size_t kWeakLetters = 10;
+
+/// Several words, as names of things and people have none: a letter before each of two spaces.
+bool IsSentence(std::string_view text) {
+  return std::count(text.begin(), text.end(), ' ') >= 2;
+}
+
 std::string TranslateComposed(std::string_view text, int depth) {
   if (std::string exact = Translate(text); exact != text || depth == 0) return exact;
   for (const CataloguePattern& pattern : patterns) {
     if (auto places = MatchPattern(pattern, text)) {
-      for (auto& [name, value] : *places)
-        value = IsPlainNumber(value) ? LocalNumber(value) : TranslateComposed(value, depth - 1);
-      return FillPattern(pattern.translation, *places);
+      bool is_garbled = false;
+      for (auto& [name, value] : *places) {
+        std::string own = IsPlainNumber(value) ? LocalNumber(value) : TranslateComposed(value, depth - 1);
+        // "{1}, {2} to {3}" is found in many a sentence: what stays in English there was none of the pattern
+        is_garbled = is_garbled || (pattern.letters < kWeakLetters && own == value && IsSentence(value));
+        value = std::move(own);
+      }
+      if (!is_garbled) return FillPattern(pattern.translation, *places);
     }
   }
   return std::string(text);

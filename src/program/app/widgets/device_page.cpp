@@ -4,6 +4,7 @@
 #include "play_screenshot.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/gui/labels.h"
+#include "trocar/gui/over_card.h"
 #include "trocar/host/translate.h"
 
 namespace trocar::app {
@@ -19,7 +20,7 @@ DevicePage::DevicePage(const presenter::Options& options, presenter::SessionCont
     : presenter_(options, device::FindDeviceStore(), control, *this) {
   set_title(host::Translate("Trocar: devices"));
   add_css_class("trocar");
-  set_default_size(kWidth, kHeight);
+  gui::FitToScreen(*this, kWidth, kHeight);
   if (control != nullptr) use_.emplace(presenter_);
   MakeContent();
   presenter_.Start();
@@ -49,9 +50,13 @@ void DevicePage::MakeContent() {
   tips_.Adopt(*left);
   status_.add_css_class("status");
   status_.set_xalign(0);
-  status_.set_ellipsize(Pango::EllipsizeMode::END);
+  status_.set_wrap(true);
+  auto* scroller = Gtk::make_managed<Gtk::ScrolledWindow>();
+  scroller->set_policy(Gtk::PolicyType::NEVER, Gtk::PolicyType::AUTOMATIC);
+  scroller->set_vexpand(true);
+  scroller->set_child(*left);
   auto* middle = Gtk::make_managed<Gtk::Box>();
-  middle->append(*left);
+  middle->append(*scroller);
   middle->append(plot_);
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->append(*middle);

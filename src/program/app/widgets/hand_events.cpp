@@ -62,7 +62,7 @@ HandEvents::HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& p
   wheel->signal_scroll().connect(
       [this](double, double dy) {
         if (control_ == nullptr || control_->IsPaused()) return true;
-        if (is_taken_ || control_->IsLaparoscopeHeld()) control_->Scroll(-dy);
+        if (MovesSomething()) control_->Scroll(-dy);
         return true;
       },
       false);
@@ -165,10 +165,7 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
     case presenter::Action::kHoldLaparoscope:
       if (control_ != nullptr) control_->HoldLaparoscope(true);
       break;
-    case presenter::Action::kReleasePointer:
-      ReleasePointer();
-      [[fallthrough]];
-    default:
+    default:  // Esc among them: whoever hears it gives the pointer back
       signal_action_.emit(meaning.action);
   }
   return true;
@@ -190,7 +187,12 @@ void HandEvents::OnKeyReleased(guint keyval, guint, Gdk::ModifierType state) {
 
 void HandEvents::OnMotion(const PointerLock::Motion& motion) {
   if (control_ == nullptr || control_->IsPaused()) return;
-  if (is_taken_ || control_->IsLaparoscopeHeld()) control_->Device().MovePointer(motion.dx, motion.dy);
+  if (MovesSomething()) control_->Device().MovePointer(motion.dx, motion.dy);
+}
+
+/// In a camera task the mouse has the laparoscope all the time, and moves it once it was taken by a click.
+bool HandEvents::MovesSomething() const {
+  return is_taken_ || (control_->IsLaparoscopeHeld() && !control_->IsCameraTask());
 }
 
 bool HandEvents::OnPicturePointer(const Glib::RefPtr<const Gdk::Event>& event) {

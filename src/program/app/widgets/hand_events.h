@@ -60,6 +60,7 @@ class HandEvents {
   void ReleaseAll();
   bool IsFocusInPanel() const;
   bool IsTyping() const;
+  bool MovesSomething() const;
   presenter::KeyMeaning FindMeaning(guint keyval, bool control) const;
 
   Gtk::Window& window_;

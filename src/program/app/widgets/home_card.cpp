@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "home_card.h"
 
+#include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
 #include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {
 
-constexpr int kWidth = 620, kMostHeight = 480;  // pixels
+constexpr int kWidth = 620, kMostHeight = 480, kPictureWidth = 96, kPictureHeight = 60;  // pixels
 
 }  // namespace
 
@@ -42,6 +43,7 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
 
   patient_.add_css_class("name");
   patient_.set_xalign(0);
+  patient_.set_wrap(true);
   append(patient_);
 
   problem_.add_css_class("bad");
@@ -61,15 +63,23 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   append(*scroller);
   for (const presenter::HomeEntry& entry : presenter::HomeEntries()) {
     Row row{Gtk::make_managed<Gtk::Button>(), Gtk::make_managed<Gtk::Label>(host::Translate(entry.title)),
-            Gtk::make_managed<Gtk::Label>(host::Translate(entry.about))};
+            Gtk::make_managed<Gtk::Label>(host::Translate(entry.about)), Gtk::make_managed<Gtk::Picture>()};
+    row.picture->set_size_request(kPictureWidth, kPictureHeight);
+    row.picture->set_can_shrink(true);
+    row.picture->set_halign(Gtk::Align::START);
+    row.picture->add_css_class("thumbnail");
+    row.picture->set_visible(false);
     row.title->add_css_class("key-text");
     row.about->add_css_class("name");
     auto* text = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
     for (Gtk::Label* label : {row.title, row.about}) {
       label->set_xalign(0);
+      label->set_wrap(true);
       text->append(*label);
     }
-    row.button->set_child(*text);
+    text->set_valign(Gtk::Align::CENTER);
+    text->set_hexpand(true);
+    row.button->set_child(gui::MakeRow(12, {row.picture, text}));
     row.button->add_css_class("step");
     row.button->signal_clicked().connect([this, choice = entry.choice] { signal_chosen_.emit(choice); });
     entries->append(*row.button);
@@ -83,11 +93,24 @@ void HomeCard::Show(const presenter::HomePage& page) {
       patient_, page.patient.empty() ? "" : host::TranslateWith("Operations are on {1}", {page.patient}));
   gui::SetTextOrHide(problem_, page.problem ? "\u26a0 " + host::ShownText(*page.problem) : "");
   rows_[presenter::HomeChoice::kContinue].button->set_visible(!page.last.empty());
+  rows_[presenter::HomeChoice::kContinue].title->set_text(page.last_title);
   rows_[presenter::HomeChoice::kContinue].about->set_text(page.last);
+  ShowLead(presenter::HomeChoice::kNextStep, page.next);
+  ShowLead(presenter::HomeChoice::kLastResult, page.result);
   rows_[presenter::HomeChoice::kTutorial].title->set_text(
       host::TranslateWith("Tutorial: {1}", {page.tutorial}));
   gui::SetClass(*rows_[presenter::HomeChoice::kTutorial].button, "primary", page.is_tutorial_suggested);
   gui::SetClass(*rows_[presenter::HomeChoice::kContinue].button, "primary", !page.is_tutorial_suggested);
+}
+
+void HomeCard::ShowLead(presenter::HomeChoice choice, const std::optional<presenter::HomeLead>& lead) {
+  Row& row = rows_[choice];
+  row.button->set_visible(lead.has_value());
+  if (!lead) return;
+  row.title->set_text(lead->title);
+  row.about->set_text(lead->about);
+  row.picture->set_visible(!lead->picture.empty());
+  if (!lead->picture.empty()) row.picture->set_filename(lead->picture.string());
 }
 
 void HomeCard::FocusFirst() {

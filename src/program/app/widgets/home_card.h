@@ -25,7 +25,10 @@ class HomeCard : public Gtk::Box {
   struct Row {
     Gtk::Button* button;
     Gtk::Label *title, *about;
+    Gtk::Picture* picture;
   };
+  void ShowLead(presenter::HomeChoice choice, const std::optional<presenter::HomeLead>& lead);
+
   Gtk::Label who_, patient_, problem_;
   Gtk::Entry name_;
   std::map<presenter::HomeChoice, Row> rows_;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "device_page.h"
+#include "layout_check.h"
 #include "replay_window.h"
 #include "simulator_window.h"
 #include "trocar/base/simd_choice.h"
@@ -30,6 +31,8 @@
 #include "trocar/host/partial_path.h"
 #include "trocar/host/printable_output.h"
 #include "trocar/host/translate.h"
+#include "trocar/host/user_folder.h"
+#include "trocar/presenter/film_job.h"
 #include "trocar/presenter/options.h"
 #include "trocar/scene/scene.h"
 
@@ -71,6 +74,7 @@ class Program {
       Open();
       application->add_window(*window_);
       window_->present();
+      CheckLayout();
     });
     const int status = application->run();
     const bool has_failed = has_failed_ && has_failed_();
@@ -89,9 +93,14 @@ class Program {
   }
 
  private:
-  static void ApplyLook() {
+  void ApplyLook() {
+    if (const int percent = command_.options.text_percent; percent > 0) {
+      constexpr int kDotsPerInch = 96, kParts = 1024;  // as GTK counts them
+      Gtk::Settings::get_default()->property_gtk_xft_dpi() = kParts * kDotsPerInch * percent / 100;
+    }
+
     if (const auto data = host::FindDataFolder(); data.ok()) {
-      gui::ApplyLook(*data);
+      gui::ApplyLook(*data, command_.options.is_high_contrast);
     } else {
       host::Log(host::LogLevel::kWarning, data.error().Text());
     }
@@ -127,10 +136,23 @@ class Program {
   std::unique_ptr<SimulatorWindow> MakeSimulator(SimulatorWindow::Beginning beginning) {
     SimulatorServices services;
     services.open_centre = [this] { OpenCentre().Presenter().Open(centre::PageKind::kHistory); };
-    services.load_best = [this]() -> std::function<base::Result<centre::BestResults>()> {
-      return [access = access_] { return centre::LoadBestResults(access); };
+    services.load_best = [this]() -> std::function<base::Result<centre::HomeResults>()> {
+      return [access = access_] { return centre::LoadHomeResults(access); };
     };
-    services.be_somebody = [this](const std::optional<std::string>& text) -> base::Result<std::string> {
+    services.start_step = [this](const centre::StepName& step) {
+      centre::CentrePresenter& presenter = OpenCentre().Presenter();
+      presenter.Open(centre::PageKind::kCourses);
+      presenter.StartStep(step);
+    };
+    services.open_result = [this](const centre::NextAndLast::Result& result) {
+      centre::CentrePresenter& presenter = OpenCentre().Presenter();
+      if (result.recording.empty()) return presenter.Open(centre::PageKind::kHistory);
+      centre::HistoryPage::Row row;
+      row.attempt = result.attempt, row.recording = result.recording;
+      presenter.OpenResultOf(row);
+    };
+    services.be_somebody =
+        [this](const std::optional<std::string>& text) -> base::Result<presenter::Somebody> {
       if (text) {
         auto pseudonym = centre::FindPseudonym(access_, *text);
         if (!pseudonym.ok()) return pseudonym.error();
@@ -138,7 +160,7 @@ class Program {
         if (centre_ != nullptr) centre_->Presenter().BeSomebody(access_.person);
         if (filing_ != nullptr) filing_->SetPerson(access_.person);
       }
-      return centre::NameOf(access_, access_.person);
+      return presenter::Somebody{centre::NameOf(access_, access_.person), access_.person};
     };
     services.open_attempt = [this](const std::filesystem::path& recording,
                                    const std::optional<centre::ExamSitting>& exam) {
@@ -150,6 +172,13 @@ class Program {
         filing->Begin(path, step);
       };
       services.hooks.on_end = [filing = filing_.get()](const auto& path) { filing->End(path); };
+      services.hooks.watch = [filing = filing_.get()](const auto& path, const auto& simulation, auto from,
+                                                      auto until) {
+        const auto live = filing->Follow(path, simulation, from, until);
+        return session::AttemptWatch{
+            [live](const auto& now, const auto& controls) { live->Add(now, controls); },
+            [live](bool is_whole) { live->End(is_whole); }};
+      };
     }
     return std::make_unique<SimulatorWindow>(command_.options, since_start_, std::move(services),
                                              std::move(beginning));
@@ -170,10 +199,10 @@ class Program {
 
   SimulatorWindow* OpenSimulator() {
     for (const auto& one : simulators_) {
-      if (one->get_visible()) return one.get();
+      if (one->IsOpen()) return one.get();
     }
     auto* first = dynamic_cast<SimulatorWindow*>(window_.get());
-    return first != nullptr && first->get_visible() ? first : nullptr;
+    return first != nullptr && first->IsOpen() ? first : nullptr;
   }
 
   // the training centre
@@ -192,10 +221,22 @@ class Program {
       options.replay = recording;
       options.replay_beside.clear();
       options.replay_at = time;
-      replay_ = std::make_unique<ReplayWindow>(
-          options, [this](presenter::Branch branch) { Simulate(std::move(branch)); });
+      replay_ = std::make_unique<ReplayWindow>(options, [this](presenter::Branch branch) {
+        // who takes over sees what is operated on, not the replay on top of it
+        replay_->close();
+        Simulate(std::move(branch));
+      });
       application_->add_window(*replay_);
       replay_->present();
+    };
+    services.draw_moment = [threads = Threads()](
+                               const std::filesystem::path& recording, double time,
+                               const std::function<bool()>& goes_on) -> base::Result<std::filesystem::path> {
+      const std::filesystem::path picture =
+          host::FindCacheFolder() / "moments" / (recording.stem().string() + ".png");
+      const auto drawn = presenter::DrawMoment(recording, time, picture, threads, goes_on);
+      if (!drawn.ok()) return drawn.error();
+      return picture;
     };
     auto made =
         std::make_unique<centre::CentreWindow>(access_, Threads(), filing_.get(), std::move(services));
@@ -208,11 +249,11 @@ class Program {
   /// The one that is open, or a new one.
   centre::CentreWindow& OpenCentre() {
     if (auto* first = dynamic_cast<centre::CentreWindow*>(window_.get());
-        first != nullptr && first->get_visible()) {
+        first != nullptr && first->IsOpen()) {
       first->present();
       return *first;
     }
-    if (centre_ == nullptr || !centre_->get_visible()) {
+    if (centre_ == nullptr || !centre_->IsOpen()) {
       {
         const std::lock_guard lock(mutex_);
         woken_ = nullptr;
@@ -251,6 +292,47 @@ class Program {
     if (woken_ != nullptr) woken_->Wake();
   }
 
+  /// Where the command line asks for it: opens all pages, says what is cut off, and ends.
+  void CheckLayout() {
+    auto* simulator = dynamic_cast<SimulatorWindow*>(window_.get());
+    if (command_.options.layout.empty() || simulator == nullptr) return;
+    std::vector<LayoutCheck::Page> pages = simulator->LayoutPages();
+    const auto add = [&](const char* name, centre::PageKind kind) {
+      pages.push_back({name, [this, kind] { OpenCentre().Presenter().Open(kind); },
+                       [this]() -> Gtk::Window* { return centre_.get(); },
+                       [this] { return centre_ != nullptr && !centre_->Presenter().IsBusy(); }});
+    };
+    add("history", centre::PageKind::kHistory);
+    add("courses", centre::PageKind::kCourses);
+    add("group", centre::PageKind::kGroup);
+    add("exam", centre::PageKind::kExam);
+    pages.push_back({"who",
+                     [this] { centre_->Presenter().Do(centre::CentreAction::kWho); },
+                     [this]() -> Gtk::Window* { return centre_.get(); },
+                     {}});
+    pages.push_back({"result",
+                     [this] {
+                       const auto& rows = centre_->Presenter().Page().history.rows;
+                       if (!rows.empty()) centre_->Presenter().OpenResultOf(rows.front());
+                     },
+                     [this]() -> Gtk::Window* { return centre_.get(); },
+                     [this] {
+                       const auto& page = centre_->Presenter().Page();
+                       return page.history.rows.empty() || (page.result && !centre_->Presenter().IsBusy());
+                     }});
+    layout_ = std::make_unique<LayoutCheck>(std::move(pages), command_.options.width, command_.options.height,
+                                            command_.options.layout);
+    layout_->Start([this](const base::Status& written) {
+      if (!written.ok()) host::Log(host::LogLevel::kError, written.error().Text());
+      Glib::signal_timeout().connect_once(
+          [this] {
+            if (centre_ != nullptr) centre_->close();
+            application_->quit();
+          },
+          0);
+    });
+  }
+
   template <typename Window>
   void Use(std::unique_ptr<Window> window) {
     if constexpr (std::is_same_v<Window, SimulatorWindow>) {
@@ -275,6 +357,7 @@ class Program {
   std::vector<std::unique_ptr<SimulatorWindow>> simulators_;  // that were opened beside it
   std::unique_ptr<centre::CentreWindow> centre_;
   std::unique_ptr<ReplayWindow> replay_;
+  std::unique_ptr<LayoutCheck> layout_;
   std::function<bool()> has_failed_;  // asked once the windows have closed
 };
 

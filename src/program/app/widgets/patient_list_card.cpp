@@ -25,7 +25,8 @@ PatientListCard::PatientListCard()
   append(problem_);
   gui::SetStyle(doing_, "name");
   doing_.set_hexpand(true);
-  doing_.set_ellipsize(Pango::EllipsizeMode::END);
+  doing_.set_wrap(true);
+  doing_.set_xalign(0);
   progress_.set_valign(Gtk::Align::CENTER);
   gui::SetAccessibleName(progress_, host::Translate("How far it is"));
   cancel_.signal_clicked().connect([this] {
@@ -46,11 +47,11 @@ PatientListCard::~PatientListCard() {
 }
 
 void PatientListCard::MakeFoot() {
-  auto* label = Gtk::make_managed<Gtk::Label>(host::Translate("New patient: seed"));
+  auto* label = Gtk::make_managed<Gtk::Label>(host::Translate("New patient: number"));
   label->add_css_class("name");
   seed_.set_adjustment(Gtk::Adjustment::create(1, 0, kMostSeed, 1, 10));
-  seed_.set_tooltip_text(host::Translate("The same seed gives the same patient"));
-  gui::SetAccessibleName(seed_, host::Translate("Seed of a new patient"));
+  seed_.set_tooltip_text(host::Translate("The same number gives the same patient"));
+  gui::SetAccessibleName(seed_, host::Translate("Number of a new patient"));
   generate_.add_css_class("primary");
   generate_.set_tooltip_text(
       host::Translate("A plausible patient without any pictures, with varied anatomy"));
@@ -140,9 +141,9 @@ void PatientListCard::AddPatient(const presenter::PatientEntry& patient) {
   } else if (is_chosen) {
     state->set_text(host::Translate("\u2713 Chosen"));
   }
-  auto* choose = Gtk::make_managed<Gtk::Button>(host::Translate("Operate on"));
+  auto* choose = Gtk::make_managed<Gtk::Button>(host::Translate("Choose"));
   choose->set_tooltip_text(patient.name);
-  gui::SetAccessibleName(*choose, host::TranslateWith("Operate on {1}", {patient.name}));
+  gui::SetAccessibleName(*choose, host::TranslateWith("Choose {1}", {patient.name}));
   choose->set_sensitive(!patient.problem);
   choose->signal_clicked().connect([this, folder = patient.folder] {
     desk_.Choose(folder);

@@ -19,7 +19,7 @@ std::string NameOf(const record::Description& d) {
   std::replace(name.begin(), name.end(), '_', ' ');
   name = host::Translate(name);
   if (!d.level.empty()) name += ", " + host::Translate(d.level);
-  return host::TranslateWith("{1}, seed {2}", {name, std::to_string(d.seed)});
+  return host::TranslateWith("{1}, variant {2}", {name, std::to_string(d.seed)});
 }
 
 std::string DescribeRow(const record::RecordingSummary& recording) {

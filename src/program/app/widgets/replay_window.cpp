@@ -8,13 +8,14 @@
 #include "picture_folder.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
+#include "trocar/gui/over_card.h"
 #include "trocar/gui/window_screenshot.h"
 #include "trocar/host/translate.h"
 
 namespace trocar::app {
 namespace {
 
-constexpr int kWidth = 1280, kHeight = 800, kListWidth = 250;  // [pixels]
+constexpr int kListWidth = 250;  // [pixels]
 
 const char* StyleOf(presenter::ReplayMark::Kind kind) {
   switch (kind) {
@@ -37,7 +38,7 @@ ReplayWindow::ReplayWindow(const presenter::Options& options,
       recording_(options.replay) {
   set_title(host::Translate("Trocar: replay"));
   add_css_class("trocar");
-  set_default_size(kWidth, kHeight);
+  gui::FitToScreen(*this, options.width, options.height);
   set_titlebar(bar_);
   MakeContent();
   presenter_ = std::make_unique<presenter::ReplayPresenter>(
@@ -58,7 +59,7 @@ void ReplayWindow::MakeSide(std::size_t side) {
   now.about.add_css_class("badge");
   now.about.set_halign(Gtk::Align::START);
   now.about.set_valign(Gtk::Align::START);
-  now.about.set_ellipsize(Pango::EllipsizeMode::END);
+  now.about.set_wrap(true);
   now.about.set_can_target(false);
   now.overlay.add_overlay(now.about);
   for (const unsigned button : {1u, 3u}) {
@@ -96,9 +97,9 @@ void ReplayWindow::MakeContent() {
   overlay_.set_child(*pictures);
   help_card_.set_visible(false);
   chooser_.set_visible(false);
-  for (Gtk::Widget* card : {static_cast<Gtk::Widget*>(&failure_card_), static_cast<Gtk::Widget*>(&help_card_),
-                            static_cast<Gtk::Widget*>(&chooser_)})
-    overlay_.add_overlay(*card);
+  overlay_.add_overlay(failure_card_);
+  for (Gtk::Widget* card : {static_cast<Gtk::Widget*>(&help_card_), static_cast<Gtk::Widget*>(&chooser_)})
+    gui::AddOverCard(overlay_, *card);
 
   mark_list_.set_selection_mode(Gtk::SelectionMode::NONE);
   auto* scroller = Gtk::make_managed<Gtk::ScrolledWindow>();
@@ -129,7 +130,7 @@ void ReplayWindow::MakeContent() {
 
   message_.set_halign(Gtk::Align::START);
   message_.set_hexpand(true);
-  message_.set_ellipsize(Pango::EllipsizeMode::END);
+  message_.set_wrap(true);
   state_.add_css_class("numbers");
   auto* status = Gtk::make_managed<Gtk::Box>();
   status->add_css_class("status");

@@ -7,6 +7,7 @@
 #include "picture_folder.h"
 #include "play_screenshot.h"
 #include "trocar/gui/labels.h"
+#include "trocar/gui/over_card.h"
 #include "trocar/gui/window_screenshot.h"
 #include "trocar/host/translate.h"
 #include "trocar/host/user_folder.h"
@@ -15,7 +16,8 @@
 namespace trocar::app {
 namespace {
 
-constexpr int kWidth = 1280, kHeight = 800;
+constexpr int kHintWidth = 80;           // [characters]
+constexpr double kWorthAQuestion = 6.0;  // of an attempt [s]
 
 }  // namespace
 
@@ -28,7 +30,7 @@ SimulatorWindow::SimulatorWindow(const presenter::Options& options, const host::
       loading_best_([this] { best_loaded_.emit(); }) {
   set_title("Trocar");
   add_css_class("trocar");
-  set_default_size(kWidth, kHeight);
+  gui::FitToScreen(*this, options.width, options.height);
   set_titlebar(bar_);
   MakeContent();
   tips_.Adopt(panel_);
@@ -67,21 +69,35 @@ void SimulatorWindow::MakeOverlay() {
   badge_.add_css_class("badge");
   badge_.set_halign(Gtk::Align::START);
   badge_.set_valign(Gtk::Align::START);
+  badge_.set_hexpand(true);
   hint_.add_css_class("hint");
   hint_.set_halign(Gtk::Align::CENTER);
   hint_.set_valign(Gtk::Align::END);
   progress_.add_css_class("badge");
   progress_.set_halign(Gtk::Align::END);
   progress_.set_valign(Gtk::Align::START);
+  top_.set_valign(Gtk::Align::START);
+  top_.Append(badge_);
+  top_.Append(progress_);
+  for (Gtk::Label* label : {&badge_, &progress_, &tutorial_, &hint_}) label->set_wrap(true);
+  for (Gtk::Label* label : {&tutorial_, &hint_}) {
+    label->set_max_width_chars(kHintWidth);
+    label->set_justify(Gtk::Justification::CENTER);
+  }
   tutorial_.add_css_class("hint");
   tutorial_.add_css_class("warning");
   tutorial_.set_halign(Gtk::Align::CENTER);
   tutorial_.set_valign(Gtk::Align::START);
   tutorial_.set_margin_top(56);
+  tutorial_task_.set_label(host::TranslateWith("Start {1}", {presenter::TutorialTaskName()}));
+  tutorial_task_.add_css_class("primary");
+  tutorial_task_.set_halign(Gtk::Align::CENTER);
+  tutorial_task_.set_valign(Gtk::Align::CENTER);
+  tutorial_task_.set_visible(false);
+  tutorial_task_.signal_clicked().connect([this] { presenter_->StartTutorialTask(); });
+  overlay_.add_overlay(tutorial_task_);
   MakeQuestion();
-  help_.set_halign(Gtk::Align::CENTER);
-  help_.set_valign(Gtk::Align::CENTER);
-  const std::initializer_list<Gtk::Widget*> labels = {&badge_, &progress_, &tutorial_, &hint_};
+  const std::initializer_list<Gtk::Widget*> labels = {&top_, &tutorial_, &hint_};
   const std::initializer_list<Gtk::Widget*> cards = {
       &home_, &help_, &chooser_, &patients_, &keys_, &opening_, &recordings_, &result_card_, &question_};
   for (Gtk::Widget* label : labels) {
@@ -91,7 +107,8 @@ void SimulatorWindow::MakeOverlay() {
   overlay_.add_overlay(failure_card_);
   for (Gtk::Widget* card : cards) {
     card->set_visible(false);
-    overlay_.add_overlay(*card);
+    Gtk::ScrolledWindow& scroller = gui::AddOverCard(overlay_, *card);
+    if (card == &help_) help_scroller_ = &scroller;
   }
 }
 
@@ -132,7 +149,8 @@ void SimulatorWindow::MakeContent() {
   status->add_css_class("status");
   event_.set_halign(Gtk::Align::START);
   event_.set_hexpand(true);
-  event_.set_ellipsize(Pango::EllipsizeMode::END);
+  event_.set_wrap(true);
+  event_.set_xalign(0);
   state_.add_css_class("numbers");
   status->append(event_);
   status->append(state_);
@@ -140,7 +158,7 @@ void SimulatorWindow::MakeContent() {
   haptics_.set_visible(false);
   haptics_.add_css_class("status");
   haptics_.set_halign(Gtk::Align::START);
-  haptics_.set_ellipsize(Pango::EllipsizeMode::END);
+  haptics_.set_wrap(true);
 
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->append(*middle);
@@ -169,6 +187,8 @@ void SimulatorWindow::MakeRoutes() {
   // other windows may keep the program alive: what nobody sees any more does not run on
   signal_close_request().connect(
       [this] {
+        if (!presenter_->MayClose()) return true;
+        is_open_ = false;
         presenter_->Close();
         if (rehearsal_ != nullptr) rehearsal_->Leave();
         return false;
@@ -191,6 +211,7 @@ void SimulatorWindow::MakeRoutes() {
     // a store that is away is said where results are shown; here there are just none
     const auto best = loading_best_.Take();
     if (best.ok()) presenter_->ShowBest(*best);
+    if (std::exchange(wants_best_again_, false)) RequestBest();
   });
   recordings_.SignalChosen().connect(
       [this](const std::filesystem::path& path) { presenter_->OpenRecording(path); });
@@ -210,7 +231,11 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   view::Overlay overlay;
   overlay.X_world_camera = control.CalcView(*work.snapshot);
   if (presenter_->HasGuides())
-    overlay.trails = presenter::MakeGuides(control.GetScene(), control.Surfaces(), *work.snapshot);
+    overlay.trails =
+        presenter::MakeGuides(control.GetScene(), control.Surfaces(), control.Strands(), *work.snapshot);
+  if (auto mark =
+          presenter::MarkOperationStep(presenter_->NextOperationStep(), work.snapshot->X_world_laparoscope))
+    overlay.trails.push_back(std::move(*mark));
   picture_.SetOverlay(std::move(overlay));
   picture_.queue_render();
   HearFrame(*work.snapshot);
@@ -254,7 +279,8 @@ void SimulatorWindow::Show(const presenter::SimulatorPage& page) {
   mode_.set_text(page.mode);
   mode_.set_visible(!page.is_rehearsal_open);  // it speaks of hands
   gui::SetTextOrHide(progress_, page.progress);
-  gui::SetTextOrHide(tutorial_, page.tutorial);
+  gui::SetTextOrHide(tutorial_, page.tutorial.empty() ? page.next_step : page.tutorial);
+  tutorial_task_.set_visible(page.is_tutorial_done);
   chooser_.set_visible(page.is_task_list_open);
   recordings_.set_visible(page.is_recording_list_open);
   result_card_.set_visible(page.is_result_open);
@@ -298,6 +324,7 @@ void SimulatorWindow::FocusCard(const presenter::SimulatorPage& page) {
                       : page.is_task_list_open    ? static_cast<Gtk::Widget*>(&chooser_)
                       : page.is_patient_list_open ? static_cast<Gtk::Widget*>(&patients_)
                       : page.is_key_list_open     ? static_cast<Gtk::Widget*>(&keys_)
+                      : page.is_help_open         ? static_cast<Gtk::Widget*>(&help_)
                                                   : nullptr;
   if (card == focused_card_) return;
   focused_card_ = card;
@@ -309,8 +336,13 @@ void SimulatorWindow::FocusCard(const presenter::SimulatorPage& page) {
   Glib::signal_timeout().connect_once(
       [this, card] {
         if (card != focused_card_ || !card->get_visible()) return;
-        card == &home_ ? home_.FocusFirst()
-                       : static_cast<void>(card->child_focus(Gtk::DirectionType::TAB_FORWARD));
+        if (card == &home_) {
+          home_.FocusFirst();
+        } else if (card == &help_) {
+          help_scroller_->grab_focus();  // so that it scrolls with the keyboard, too
+        } else {
+          card->child_focus(Gtk::DirectionType::TAB_FORWARD);
+        }
       },
       0);
 }
@@ -331,7 +363,13 @@ void SimulatorWindow::UseControl(presenter::SessionControl* control) {
 }
 
 void SimulatorWindow::RequestBest() {
-  if (services_.load_best && !loading_best_.IsRunning()) loading_best_.Start(services_.load_best());
+  if (!services_.load_best) return;
+  // what is being read may be of somebody else
+  if (loading_best_.IsRunning()) {
+    wants_best_again_ = true;
+  } else {
+    loading_best_.Start(services_.load_best());
+  }
 }
 
 void SimulatorWindow::ShowHelp() {
@@ -367,6 +405,9 @@ void SimulatorWindow::DoInWindow(presenter::Action action) {
     case presenter::Action::kToggleFullscreen:
       is_fullscreen() ? unfullscreen() : fullscreen();
       break;
+    case presenter::Action::kReleasePointer:
+      if (is_fullscreen()) unfullscreen();
+      break;
     case presenter::Action::kSwitchPane:
       SwitchPane();
       break;
@@ -392,8 +433,16 @@ void SimulatorWindow::DoInWindow(presenter::Action action) {
   }
 }
 
-base::Result<std::string> SimulatorWindow::BeSomebody(const std::optional<std::string>& text) {
-  return services_.be_somebody ? services_.be_somebody(text) : std::string();
+base::Result<presenter::Somebody> SimulatorWindow::BeSomebody(const std::optional<std::string>& text) {
+  return services_.be_somebody ? services_.be_somebody(text) : presenter::Somebody{};
+}
+
+void SimulatorWindow::StartStep(const centre::StepName& step) {
+  if (services_.start_step) services_.start_step(step);
+}
+
+void SimulatorWindow::OpenLastResult(const centre::NextAndLast::Result& result) {
+  if (services_.open_result) services_.open_result(result);
 }
 
 void SimulatorWindow::OpenReplay(const std::filesystem::path& recording) {
@@ -401,8 +450,11 @@ void SimulatorWindow::OpenReplay(const std::filesystem::path& recording) {
   options.replay = recording;
   options.replay_beside.clear();
   replay_ = std::make_unique<ReplayWindow>(options, [this](presenter::Branch branch) {
+    // who takes over sees what is operated on, not the replay on top of it
+    replay_->close();
     presenter_->TakeOver(std::move(branch));
     present();
+    picture_.grab_focus();
   });
   replay_->set_transient_for(*this);
   get_application()->add_window(*replay_);
@@ -417,6 +469,61 @@ void SimulatorWindow::OpenAttempt(const std::filesystem::path& recording,
         if (services_.open_attempt) services_.open_attempt(recording, exam);
       },
       0);
+}
+
+std::vector<LayoutCheck::Page> SimulatorWindow::LayoutPages() {
+  using presenter::Action;
+  std::vector<LayoutCheck::Page> pages;
+  const auto add = [&](const char* name, std::function<void()> open, std::function<bool()> is_there = {}) {
+    pages.push_back({name, std::move(open), [this] { return this; }, std::move(is_there)});
+  };
+  const auto has_scene = [this] {
+    return presenter_->Control() != nullptr && !presenter_->Page().is_home_open;
+  };
+  add("home", [this] { presenter_->OpenHome(); });
+  add("tasks", [this] { presenter_->OpenTaskList(); });
+  add("patients", [this] { presenter_->OpenPatientList(); });
+  add("recordings", [this] { presenter_->OpenRecordingList(); });
+  add("keys", [this] { presenter_->OpenKeyList(); });
+  add("help", [this] {
+    presenter_->CloseKeyList();
+    presenter_->Do(Action::kToggleHelp);
+  });
+  add("rehearsal", [this] {
+    presenter_->Do(Action::kToggleHelp);
+    presenter_->OpenRehearsal();
+  });
+  add(
+      "tutorial",
+      [this] {
+        presenter_->CloseRehearsal();
+        presenter_->Choose(presenter::HomeChoice::kTutorial);
+      },
+      has_scene);
+  add(
+      "task",
+      [this] {
+        presenter_->StartTutorialTask();
+        if (!presenter_->Page().is_panel_open) presenter_->Do(Action::kTogglePanel);
+      },
+      has_scene);
+  add(
+      "question",
+      [this] {
+        if (presenter_->Control()->IsPaused()) presenter_->Do(Action::kTogglePause);
+      },
+      [this] {
+        // an attempt that is worth a question
+        if (presenter_->Page().question.empty() && presenter_->Control()->Now().time > kWorthAQuestion)
+          presenter_->Do(Action::kToggleTutorial);
+        return !presenter_->Page().question.empty();
+      });
+  add("devices", [this] {
+    presenter_->Answer(false);
+    OpenDevices();
+  });
+  pages.back().window = [this]() -> Gtk::Window* { return device_page_.get(); };
+  return pages;
 }
 
 void SimulatorWindow::SwitchPane() {

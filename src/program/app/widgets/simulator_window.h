@@ -16,6 +16,7 @@
 #include "hand_events.h"
 #include "home_card.h"
 #include "key_card.h"
+#include "layout_check.h"
 #include "opening_card.h"
 #include "panel.h"
 #include "patient_list_card.h"
@@ -25,6 +26,7 @@
 #include "result_card.h"
 #include "sound_card.h"
 #include "task_chooser.h"
+#include "trocar/gui/columns.h"
 #include "trocar/gui/command_bar.h"
 #include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
@@ -42,9 +44,11 @@ struct SimulatorServices {
       open_attempt;
   /// The best results of whoever operates, from the store, are read beside the window's thread.
   /// \return what reads them
-  std::function<std::function<base::Result<centre::BestResults>()>()> load_best;
+  std::function<std::function<base::Result<centre::HomeResults>()>()> load_best;
   /// As SimulatorScreen::BeSomebody.
-  std::function<base::Result<std::string>(const std::optional<std::string>&)> be_somebody;
+  std::function<base::Result<presenter::Somebody>(const std::optional<std::string>&)> be_somebody;
+  std::function<void(const centre::StepName&)> start_step;
+  std::function<void(const centre::NextAndLast::Result&)> open_result;
   presenter::AttemptHooks hooks;
 };
 
@@ -59,6 +63,10 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   ~SimulatorWindow() override;
 
   presenter::SimulatorPresenter& Presenter() { return *presenter_; }
+  /// Whether a person can still see it: GTK forgets a window that was closed.
+  bool IsOpen() const { return is_open_; }
+  /// Every page of the window, for --check-layout.
+  std::vector<LayoutCheck::Page> LayoutPages();
   /// Writes what --haptic-record asks for; call it once the window has closed.
   void SaveHapticRecord() { presenter_->SaveHapticRecord(); }
   /// Error of the window, if any: the program's exit status follows it.
@@ -99,7 +107,9 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   bool IsPointerTaken() const override { return hands_->IsPointerTaken(); }
   void FocusPicture() override { picture_.grab_focus(); }
   void DoInWindow(presenter::Action action) override;
-  base::Result<std::string> BeSomebody(const std::optional<std::string>& text) override;
+  base::Result<presenter::Somebody> BeSomebody(const std::optional<std::string>& text) override;
+  void StartStep(const centre::StepName& step) override;
+  void OpenLastResult(const centre::NextAndLast::Result& result) override;
 
   SimulatorServices services_;
   gui::Tips tips_;
@@ -108,8 +118,10 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   Picture picture_;
   Panel panel_;
   Gtk::Box help_;  // of the keys as they are now
+  Gtk::ScrolledWindow* help_scroller_ = nullptr;
   std::optional<std::pair<presenter::KeyLayout, presenter::KeyBindings::Own>> shown_help_;
   Gtk::Widget* focused_card_ = nullptr;
+  bool is_open_ = true;
   HomeCard home_;
   OpeningCard opening_;
   PatientListCard patients_;
@@ -121,9 +133,12 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private presenter::Simula
   SoundCard sound_card_;
   FailureCard failure_card_;
   Gtk::Label badge_, hint_, event_, state_, haptics_, mode_, progress_, tutorial_, asked_;
+  gui::Columns top_{0};  // badge and progress
+  Gtk::Button tutorial_task_;
   std::unique_ptr<HandEvents> hands_;
   Glib::Dispatcher loaded_, best_loaded_;
-  gui::BackgroundJob<base::Result<centre::BestResults>> loading_best_;
+  gui::BackgroundJob<base::Result<centre::HomeResults>> loading_best_;
+  bool wants_best_again_ = false;  // asked for while it was read
   gui::FileDialog file_dialog_;
   std::unique_ptr<presenter::SimulatorPresenter> presenter_;
   FilmBar film_bar_{[this](const std::string& text, bool is_warning) { presenter_->Tell(text, is_warning); }};

@@ -23,11 +23,12 @@ std::string DescribeLevel(const presenter::TaskPage::Level& level) {
 }  // namespace
 
 TaskChooser::TaskChooser() : gui::ListCard(kListWidth) {
-  auto* label = Gtk::make_managed<Gtk::Label>(host::Translate("Seed of the task"));
+  auto* label = Gtk::make_managed<Gtk::Label>(host::Translate("Variant of the task"));
   label->add_css_class("name");
   seed_.set_adjustment(Gtk::Adjustment::create(1, 0, kMostSeed, 1, 10));
-  gui::SetAccessibleName(seed_, host::Translate("Seed of the task"));
-  seed_.set_tooltip_text(host::Translate("Moves what a task leaves open; the same seed gives the same task"));
+  gui::SetAccessibleName(seed_, host::Translate("Variant of the task"));
+  seed_.set_tooltip_text(
+      host::Translate("Moves what a task leaves open; the same number gives the same task"));
   patients_.signal_clicked().connect([this] { signal_patients_.emit(); });
   AddFoot({label, &seed_, &patients_});
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/centre/attempt_filing.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -15,6 +16,7 @@
 #include "trocar/host/file_lock.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/log.h"
+#include "trocar/host/real_time.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/store/keep_attempt.h"
 
@@ -48,23 +50,34 @@ struct AttemptFiling::Content {
     fs::path recording;
     std::string person;
     StepName step;
+    std::shared_ptr<LiveAttempt> live;  // null: it was not measured while it was played
+  };
+  /// An attempt whose recording is to be measured.
+  struct Waiting {
+    fs::path recording;
+    std::string person;
+    StepName step;
+    std::unique_ptr<Replaying> going_on;  // where it was given up for a newer one
   };
 
   Access access;
   int threads;
   std::function<void()> on_news;
   store::Courier courier;
-  std::map<fs::path, Note> notes;  // of recordings; of the thread
 
   mutable std::mutex mutex;
-  std::condition_variable changed;
-  std::deque<Work> work;
+  std::condition_variable changed, has_waiting;
+  std::map<fs::path, Note> notes;  // of recordings
+  std::deque<Work> work;           // of the clerk
+  std::map<fs::path, std::shared_ptr<LiveAttempt>> followed;
+  std::vector<Waiting> waiting;      // to be replayed; their names tell the time, the newest is taken first
+  std::optional<fs::path> measured;  // that is being replayed
   std::string person;
   FilingStatus status;
   std::optional<Error> away;  // why the courier waits
   std::vector<FiledAttempt> filed;
   std::atomic<bool> is_ending{false};
-  std::thread thread;
+  std::thread clerk, replayer;
 
   Content(Access taken, int count, std::function<void()> news)
       : access(std::move(taken)),
@@ -76,10 +89,22 @@ struct AttemptFiling::Content {
     {
       const std::lock_guard lock(mutex);
       one.person = person;
-      if (one.kind == Work::Kind::kEnd) ++status.measuring;
+      if (one.kind == Work::Kind::kEnd) {
+        if (const auto found = followed.find(one.recording); found != followed.end()) {
+          if (found->second->is_whole_) one.live = std::move(found->second);
+          followed.erase(found);
+        }
+        BeginCounting();
+      }
       work.push_back(std::move(one));
     }
     changed.notify_one();
+  }
+
+  /// \pre locked
+  void BeginCounting() {
+    if (status.measuring == 0) status.measured = 0;
+    ++status.measuring;
   }
 
   void Fail(const Error& error) {
@@ -101,6 +126,7 @@ struct AttemptFiling::Content {
     fs::permissions(NoteFolder(access.place), fs::perms::owner_all, ignored);
     note.file = NoteFolder(access.place) / (one.recording.stem().string() + ".json");
     if (const base::Status written = Write(note); !written.ok()) Fail(written.error());
+    const std::lock_guard lock(mutex);
     notes.insert_or_assign(one.recording, std::move(note));
   }
 
@@ -117,6 +143,7 @@ struct AttemptFiling::Content {
   }
 
   void Forget(const fs::path& recording) {
+    const std::lock_guard lock(mutex);
     const auto found = notes.find(recording);
     if (found == notes.end()) return;
     std::error_code ignored;
@@ -139,76 +166,72 @@ struct AttemptFiling::Content {
         host::Log(host::LogLevel::kWarning, attempt.error().Text());
         continue;
       }
-      Work one{Work::Kind::kEnd, attempt->recording, attempt->trainee, FindStepName(*attempt)};
-      notes.insert_or_assign(one.recording, Note{entry.path(), std::move(*attempt), std::move(*lock), true});
+      Waiting one{attempt->recording, attempt->trainee, FindStepName(*attempt), nullptr};
       const std::lock_guard guard(mutex);
-      ++status.measuring;
-      work.push_back(std::move(one));
+      notes.insert_or_assign(one.recording, Note{entry.path(), std::move(*attempt), std::move(*lock), true});
+      BeginCounting();
+      waiting.push_back(std::move(one));
     }
+    has_waiting.notify_one();
   }
 
   /// Sees what the courier came to.
   void Look() {
-    const std::size_t waiting = store::Spool(access.place).CountWaiting();
+    const std::size_t spooled = store::Spool(access.place).CountWaiting();
     const auto why = courier.Failure();
     {
       const std::lock_guard lock(mutex);
-      const bool is_same = waiting == status.waiting && why.has_value() == away.has_value();
-      status.waiting = waiting;
+      const bool is_same = spooled == status.waiting && why.has_value() == away.has_value();
+      status.waiting = spooled;
       away = why;
       if (is_same) return;
     }
     on_news();
   }
 
-  bool Show(double share) {
-    {
-      const std::lock_guard lock(mutex);
-      status.progress = share;
-    }
-    on_news();
-    return !is_ending.load();
+  /// It counts for whoever began it. \return false: somebody erased the person meanwhile
+  bool UseNote(const fs::path& recording, std::string& whose, StepName& step) {
+    const std::lock_guard lock(mutex);
+    const auto note = notes.find(recording);
+    if (note == notes.end()) return true;
+    whose = note->second.attempt.trainee;
+    step = FindStepName(note->second.attempt);
+    std::error_code failure;
+    return !note->second.is_written || fs::exists(note->second.file, failure);
   }
 
-  /// Measures an attempt and gives it to the courier.
-  void End(Work one) {
-    // it counts for whoever began it
-    if (const auto note = notes.find(one.recording); note != notes.end()) {
-      one.person = note->second.attempt.trainee;
-      one.step = FindStepName(note->second.attempt);
-      // somebody erased the person meanwhile
-      std::error_code failure;
-      if (note->second.is_written && !fs::exists(note->second.file, failure)) return Forget(one.recording);
-    }
-    std::error_code ignored;
-    FiledAttempt result;
-    result.recording = one.recording;
-    if (!fs::exists(one.recording, ignored)) {
-      Forget(one.recording);
-      result.failure =
-          Error{ErrorCode::kFileMissing,
-                "there is no recording of this attempt: one that lasts less than a second is not kept"};
+  void Tell(FiledAttempt result) {
+    Look();  // what waits is known before it counts as measured
+    {
       const std::lock_guard lock(mutex);
       filed.push_back(std::move(result));
-      return;
+      --status.measuring;
+      ++status.measured;
     }
-    auto judged = JudgeRecording(
-        one.recording, {threads, one.step, one.person, [this](double share) { return Show(share); }});
+    on_news();
+  }
+
+  void Uncount() {
+    {
+      const std::lock_guard lock(mutex);
+      --status.measuring;
+    }
+    on_news();
+  }
+
+  /// Keeps what an attempt came to.
+  void File(const fs::path& recording, const std::string& whose, const StepName& step,
+            base::Result<JudgedAttempt> judged) {
+    FiledAttempt result;
+    result.recording = recording;
     std::optional<store::Attempt> attempt;
     if (judged.ok()) {
       attempt = judged->attempt;
-      // this program wrote the recording from the live simulation, from whatever state that began
-      store::VerificationMark& mark = attempt->mark;
-      if (mark.IsVerified() || mark.why == store::WhyUnverified::kSavedState)
-        mark.state = store::Verification::kRecordedHere, mark.why = store::WhyUnverified::kNone;
-      judged->attempt.mark = mark;
       if (judged->is_demonstration) attempt.reset();
       result.judged = std::move(*judged);
     } else {
-      // the next program goes on with what this one had no time for
-      if (is_ending.load()) return;
       result.failure = judged.error();
-      auto described = DescribeRecording(one.recording, one.person, one.step);
+      auto described = DescribeRecording(recording, whose, step);
       if (described.ok()) attempt = std::move(*described);
       if (attempt) attempt->mark.why = store::WhyUnverified::kCannotReplay;
     }
@@ -216,47 +239,123 @@ struct AttemptFiling::Content {
       if (const auto kept = courier.Keep(*attempt); !kept.ok()) {
         Fail(kept.error());
         result.failure = kept.error();
-      } else {
-        Forget(one.recording);
+        return Tell(std::move(result));
       }
-    } else {
-      Forget(one.recording);
     }
-    const std::lock_guard lock(mutex);
-    filed.push_back(std::move(result));
+    Forget(recording);
+    Tell(std::move(result));
   }
 
-  void Run() {
+  /// Of an attempt that has ended: files what was measured while it was played, or leaves it to the other thread.
+  void End(Work one) {
+    if (!UseNote(one.recording, one.person, one.step)) {
+      Forget(one.recording);
+      return Uncount();
+    }
+    std::error_code ignored;
+    if (!fs::exists(one.recording, ignored)) {
+      Forget(one.recording);
+      FiledAttempt result;
+      result.recording = one.recording;
+      result.failure =
+          Error{ErrorCode::kFileMissing,
+                "there is no recording of this attempt: one that lasts less than a second is not kept"};
+      return Tell(std::move(result));
+    }
+    if (one.live != nullptr) {
+      auto judged = JudgePlayed(one.recording, one.live->fold_, {threads, one.step, one.person, {}});
+      if (judged.ok()) return File(one.recording, one.person, one.step, std::move(judged));
+      host::Log(host::LogLevel::kWarning, "its recording is measured: " + judged.error().Text());
+    }
+    {
+      const std::lock_guard lock(mutex);
+      waiting.push_back({one.recording, one.person, one.step, nullptr});
+    }
+    has_waiting.notify_one();
+    on_news();
+  }
+
+  void RunClerk() {
     AdoptNotes();
     std::unique_lock lock(mutex);
-    while (!is_ending.load()) {
+    while (!is_ending.load() || !work.empty()) {
       if (work.empty()) {
         changed.wait_for(lock, kLook);
         lock.unlock();
         Look();
         lock.lock();
-        if (work.empty()) continue;
+        continue;
       }
       Work one = std::move(work.front());
       work.pop_front();
-      status.progress = 0;
-      const bool is_end = one.kind == Work::Kind::kEnd;
       lock.unlock();
-      is_end ? End(std::move(one)) : Begin(one);
-      if (is_end) Look();  // what waits is known before it counts as measured
-      lock.lock();
-      if (is_end) --status.measuring;
-      lock.unlock();
-      on_news();
+      // what was measured is filed however soon the program ends: it takes no time
+      one.kind == Work::Kind::kBegin ? Begin(one) : End(std::move(one));
       lock.lock();
     }
-    // notes of what has begun are written, however soon the program ends
-    for (const Work& one : work) {
-      if (one.kind == Work::Kind::kBegin) {
-        lock.unlock();
-        Begin(one);
-        lock.lock();
+  }
+
+  /// The newest: recordings are named for their time.
+  std::vector<Waiting>::iterator FindNewest() {
+    return std::max_element(waiting.begin(), waiting.end(), [](const Waiting& a, const Waiting& b) {
+      return a.recording.filename() < b.recording.filename();
+    });
+  }
+
+  /// \return false: it gives way
+  bool ShowProgress(const fs::path& recording, double share) {
+    bool goes_on = !is_ending.load();
+    {
+      const std::lock_guard lock(mutex);
+      status.progress = share;
+      const auto newest = FindNewest();
+      if (newest != waiting.end() && newest->recording.filename() > recording.filename()) goes_on = false;
+    }
+    on_news();
+    return goes_on;
+  }
+
+  void Measure(Waiting one) {
+    if (!UseNote(one.recording, one.person, one.step)) {
+      Forget(one.recording);
+      return Uncount();
+    }
+    const JudgeSettings settings{threads, one.step, one.person,
+                                 [&](double share) { return ShowProgress(one.recording, share); }};
+    auto judged = JudgeRecording(one.recording, settings, &one.going_on);
+    if (!judged.ok() && judged.error().code == ErrorCode::kCancelled) {
+      // the next program goes on with what this one had no time for
+      if (is_ending.load()) return;
+      const std::lock_guard lock(mutex);
+      waiting.push_back(std::move(one));
+      return;
+    }
+    if (judged.ok()) {
+      // a program of this computer wrote the recording from the live simulation, from whatever state that began
+      store::VerificationMark& mark = judged->attempt.mark;
+      if (mark.IsVerified() || mark.why == store::WhyUnverified::kSavedState)
+        mark.state = store::Verification::kRecordedHere, mark.why = store::WhyUnverified::kNone;
+    }
+    File(one.recording, one.person, one.step, std::move(judged));
+  }
+
+  void RunReplayer() {
+    host::TakeIdleTimeOnly();
+    std::unique_lock lock(mutex);
+    while (!is_ending.load()) {
+      const auto newest = FindNewest();
+      if (newest == waiting.end()) {
+        has_waiting.wait(lock);
+        continue;
       }
+      Waiting one = std::move(*newest);
+      waiting.erase(newest);
+      measured = one.recording;
+      status.progress = 0;
+      lock.unlock();
+      Measure(std::move(one));
+      lock.lock();
+      measured.reset();
     }
   }
 };
@@ -264,7 +363,8 @@ struct AttemptFiling::Content {
 AttemptFiling::AttemptFiling(Access access, int threads, std::function<void()> on_news)
     : content_(std::make_unique<Content>(std::move(access), threads, std::move(on_news))) {
   content_->person = content_->access.person;
-  content_->thread = std::thread([content = content_.get()] { content->Run(); });
+  content_->clerk = std::thread([content = content_.get()] { content->RunClerk(); });
+  content_->replayer = std::thread([content = content_.get()] { content->RunReplayer(); });
 }
 
 AttemptFiling::~AttemptFiling() {
@@ -273,7 +373,9 @@ AttemptFiling::~AttemptFiling() {
     content_->is_ending.store(true);
   }
   content_->changed.notify_all();
-  content_->thread.join();
+  content_->has_waiting.notify_all();
+  content_->clerk.join();
+  content_->replayer.join();
 }
 
 void AttemptFiling::SetPerson(const std::string& pseudonym) {
@@ -282,16 +384,37 @@ void AttemptFiling::SetPerson(const std::string& pseudonym) {
 }
 
 void AttemptFiling::Begin(const fs::path& recording, const StepName& step) {
-  content_->Add({Content::Work::Kind::kBegin, recording, {}, step});
+  content_->Add({Content::Work::Kind::kBegin, recording, {}, step, nullptr});
+}
+
+std::shared_ptr<LiveAttempt> AttemptFiling::Follow(const fs::path& recording,
+                                                   const simulation::Simulation& simulation,
+                                                   assessment::Milestone from, assessment::Milestone until) {
+  auto live = std::make_shared<LiveAttempt>(assessment::AttemptFold(simulation, from, until));
+  const std::lock_guard lock(content_->mutex);
+  content_->followed.insert_or_assign(recording, live);
+  return live;
 }
 
 void AttemptFiling::End(const fs::path& recording) {
-  content_->Add({Content::Work::Kind::kEnd, recording, {}, {}});
+  content_->Add({Content::Work::Kind::kEnd, recording, {}, {}, nullptr});
 }
 
 FilingStatus AttemptFiling::Status() const {
   const std::lock_guard lock(content_->mutex);
   FilingStatus status = content_->status;
+  if (content_->measured) {
+    const auto note = content_->notes.find(*content_->measured);
+    status.pending.push_back({*content_->measured,
+                              note == content_->notes.end() ? "" : note->second.attempt.trainee,
+                              status.progress});
+  }
+  for (const Content::Waiting& one : content_->waiting)
+    status.pending.push_back({one.recording, one.person, -1});
+  std::sort(status.pending.begin() + (content_->measured ? 1 : 0), status.pending.end(),
+            [](const PendingAttempt& a, const PendingAttempt& b) {
+              return a.recording.filename() > b.recording.filename();
+            });
   if (content_->away) status.failure = content_->away;
   return status;
 }

@@ -2,7 +2,10 @@
 #include "trocar/centre/best_results.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "trocar/centre/course_page.h"
+#include "trocar/centre/history_page.h"
 #include "trocar/host/translate.h"
 #include "trocar/report/attempt_report.h"
 #include "trocar/store/attempts.h"
@@ -39,6 +42,29 @@ base::Result<BestResults> LoadBestResults(const Access& access) {
     }
     from = page->next;
     if (from.empty()) break;
+  }
+  return results;
+}
+
+base::Result<HomeResults> LoadHomeResults(const Access& access) {
+  auto best = LoadBestResults(access);
+  if (!best.ok()) return best.error();
+  HomeResults results{std::move(*best), {}};
+  if (access.person.empty()) return results;  // everybody's last is nobody's
+  const auto course = LoadCourse(access, {});
+  if (!course.ok()) return course.error();
+  for (const CoursePage::Step& step : course->page.steps) {
+    if (step.key != course->page.next) continue;
+    results.leads.next =
+        NextAndLast::Step{{course->page.course, step.key}, course->page.name, step.name, step.task, step.due};
+  }
+  const auto history = LoadHistory(access, {access.person, {}, {}});
+  if (!history.ok()) return history.error();
+  if (!history->rows.empty()) {
+    const HistoryPage::Row& row = history->rows.front();
+    results.leads.last = NextAndLast::Result{
+        row.task, row.outcome + (row.score.empty() ? "" : ", " + row.score) + ", " + row.time,
+        row.attempt.task, row.attempt, row.recording};
   }
   return results;
 }

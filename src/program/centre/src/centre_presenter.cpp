@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "trocar/assessment/judge_recording.h"
 #include "trocar/host/log.h"
 #include "trocar/host/translate.h"
+#include "trocar/record/recording_list.h"
 
 namespace trocar::centre {
 namespace {
 
+constexpr std::size_t kMostRecent = 3;  // results that nobody has asked for
 constexpr double kLead = 2;  // before an error, so that one sees how it came [s]
 
 PageKind KindOf(CentreAction action) {
@@ -90,23 +93,68 @@ void CentrePresenter::FollowFiling() {
           "{1} attempts wait on this computer for the store and will arrive by themselves", status.waiting);
       if (status.failure) page_.notice += ": " + host::ShownText(*status.failure);
     }
+    ShowPending(status);
     for (FiledAttempt& filed : filing_->TakeFiled()) {
       const bool is_expected = filed.recording == expected_;
+      // it may be there before the window that asks for it hears that the attempt is over
+      if (!is_expected) recent_.push_back(filed);
+      if (recent_.size() > kMostRecent) recent_.pop_front();
       // who reads another result goes on reading it
       if (!is_expected && page_.kind == PageKind::kResult) continue;
-      if (is_expected) expected_.clear();
-      if (filed.judged) {
-        UseResult(*filed.judged);
-      } else if (filed.failure && is_expected) {
-        page_.kind = PageKind::kHistory;
-        Read();
-        Fail(*filed.failure);
-      }
+      UseFiled(filed, is_expected);
     }
     if (!expected_.empty() && !job_.IsRunning()) page_.progress = status.progress;
   }
   if (job_.IsRunning()) page_.progress = share_.load();
   Refresh(false);
+}
+
+/// What has ended and is not in the history yet.
+void CentrePresenter::ShowPending(const FilingStatus& status) {
+  if (status.measuring > 0) {
+    const std::string measuring = host::TranslateWith(
+        "Attempts are being measured, {1} of {2}: {3} %",
+        {std::to_string(status.measured + 1), std::to_string(status.measured + status.measuring),
+         std::to_string(static_cast<int>(100 * status.progress))});
+    page_.notice = page_.notice.empty() ? measuring : measuring + "  ·  " + page_.notice;
+  }
+  std::vector<HistoryPage::Pending> pending;
+  for (const PendingAttempt& one : status.pending) {
+    auto known = pending_.find(one.recording);
+    if (known == pending_.end()) {
+      HistoryPage::Pending row;
+      row.recording = one.recording;
+      if (const auto summary = record::ReadSummary(one.recording); summary.ok()) {
+        row.when = report::FormatDate(summary->description.started);
+        row.task = TaskNameOf(assessment::TaskKeyOf(summary->description.name));
+        if (!summary->description.level.empty())
+          row.task += ", " + host::Translate(summary->description.level);
+      } else {
+        row.task = one.recording.filename().string();
+      }
+      known = pending_.emplace(one.recording, std::move(row)).first;
+    }
+    pending.push_back(known->second);
+    pending.back().is_measured_now = one.progress >= 0;
+  }
+  const auto is_same = [](const HistoryPage::Pending& a, const HistoryPage::Pending& b) {
+    return a.recording == b.recording && a.is_measured_now == b.is_measured_now;
+  };
+  const auto& shown = page_.history.pending;
+  if (std::equal(shown.begin(), shown.end(), pending.begin(), pending.end(), is_same)) return;
+  page_.history.pending = std::move(pending);
+  if (page_.kind == PageKind::kHistory) ++page_.version;
+}
+
+void CentrePresenter::UseFiled(const FiledAttempt& filed, bool is_expected) {
+  if (is_expected) expected_.clear();
+  if (filed.judged) {
+    UseResult(*filed.judged);
+  } else if (filed.failure && is_expected) {
+    page_.kind = PageKind::kHistory;
+    Read();
+    Fail(*filed.failure);
+  }
 }
 
 void CentrePresenter::Fail(const base::Error& error) {
@@ -209,7 +257,7 @@ void CentrePresenter::Read() {
     case PageKind::kGroup:
       return ChooseGroup(page_.group.group);
     case PageKind::kExam:
-      return;
+      return ReadExamChoices();
   }
 }
 
@@ -265,6 +313,9 @@ void CentrePresenter::ExpectResult(const std::filesystem::path& recording) {
   page_.review = {};
   page_.kind = PageKind::kResult;
   Refresh(true);
+  const auto known = std::find_if(recent_.begin(), recent_.end(),
+                                  [&](const FiledAttempt& one) { return one.recording == recording; });
+  if (known != recent_.end()) UseFiled(*known, true);
 }
 
 void CentrePresenter::UseResult(const JudgedAttempt& judged) {
@@ -278,8 +329,24 @@ void CentrePresenter::UseResult(const JudgedAttempt& judged) {
     return [this, page, id = judged.attempt.recording_id] {
       if (shown_.recording_id == id) page_.result = *page;
       ReadReview();
+      ShowMoment();
     };
   });
+}
+
+/// A picture beside what is to be done better first.
+void CentrePresenter::ShowMoment() {
+  if (!draw_moment_ || !page_.result || !page_.result->first_time || !page_.result->moment.empty()) return;
+  Ask(host::Translate("Drawing the moment"),
+      [this, draw = draw_moment_, recording = page_.result->recording,
+       time = page_.result->begin + *page_.result->first_time, id = shown_.recording_id]() -> Apply {
+        const auto drawn = draw(recording, time, [this] { return !is_given_up_.load(); });
+        // a picture that cannot be drawn is no reason for a message: the button beside it opens the replay
+        if (!drawn.ok()) host::Log(host::LogLevel::kWarning, drawn.error().Text());
+        return [this, id, picture = drawn.ok() ? *drawn : std::filesystem::path()] {
+          if (shown_.recording_id == id && page_.result) page_.result->moment = picture;
+        };
+      });
 }
 
 void CentrePresenter::ReadReview() {
@@ -351,6 +418,7 @@ void CentrePresenter::ReadHistory(const HistoryQuery& query) {
     auto history = std::make_shared<base::Result<HistoryPage>>(LoadHistory(access, query));
     return [this, history] {
       if (!history->ok()) return Fail(history->error());
+      std::swap((*history)->pending, page_.history.pending);  // those the filing knows, not the store
       page_.history = **history;
     };
   });
@@ -445,12 +513,92 @@ void CentrePresenter::ChooseGroup(const std::string& group) {
   });
 }
 
+/// Changes something in the store and reads the group again.
+void CentrePresenter::ChangeGroup(std::function<base::Status(const Access&)> change, const std::string& group,
+                                  const std::string& done) {
+  Ask(host::Translate("Changing the group"),
+      [this, access = access_, change = std::move(change), group, done]() -> Apply {
+        return [this, group, done, changed = change(access)] {
+          if (!changed.ok()) return Fail(changed.error());
+          screen_->ShowNotice(done);
+          ChooseGroup(group);
+        };
+      });
+}
+
+void CentrePresenter::MakeGroup(const std::string& name) {
+  if (name.empty()) return;
+  ChangeGroup([name](const Access& access) { return centre::MakeGroup(access, name); }, name,
+              host::TranslateWith("The group \"{1}\" is there.", {name}));
+}
+
+void CentrePresenter::JoinGroup(const std::string& who) {
+  const std::string group = page_.group.group;
+  if (who.empty() || group.empty()) return;
+  ChangeGroup([group, who](const Access& access) { return centre::JoinGroup(access, group, who); }, group,
+              host::TranslateWith("{1} is in the group.", {who}));
+}
+
+void CentrePresenter::LeaveGroup(const std::string& pseudonym) {
+  const std::string group = page_.group.group;
+  ChangeGroup(
+      [group, pseudonym](const Access& access) { return centre::LeaveGroup(access, group, pseudonym); },
+      group, host::TranslateWith("{1} has left the group.", {NameOf(access_, pseudonym)}));
+}
+
+void CentrePresenter::AssignCourse(const std::string& course, const std::string& due) {
+  const std::string group = page_.group.group;
+  if (group.empty() || course.empty()) return;
+  ChangeGroup(
+      [group, course, due](const Access& access) { return centre::AssignCourse(access, group, course, due); },
+      group, host::Translate("The course is assigned; members find it at Courses."));
+}
+
+void CentrePresenter::ReadExamChoices() {
+  if (!page_.exam.choices.empty()) return;
+  Ask(host::Translate("Reading the tasks"), [this]() -> Apply {
+    auto choices = std::make_shared<base::Result<std::vector<ExamChoice>>>(ListExamChoices());
+    return [this, choices] {
+      if (!choices->ok()) return Fail(choices->error());
+      page_.exam.choices = **choices;
+    };
+  });
+}
+
+void CentrePresenter::SealExam(const std::string& name, const std::string& task, const std::string& level,
+                               const std::filesystem::path& file) {
+  Ask(host::Translate("Sealing the exam"), [this, name, task, level, file]() -> Apply {
+    auto sealed = std::make_shared<base::Result<ExamPage>>(SealExamFile(name, task, level, file));
+    return [this, sealed, file] {
+      if (!sealed->ok()) return Fail(sealed->error());
+      std::swap((*sealed)->choices, page_.exam.choices);
+      page_.exam = **sealed;
+      SetExaminee();
+      screen_->ShowNotice(host::TranslateWith(
+          "Sealed. Keep {1} secret until the exam is over, and publish the file beside it before.",
+          {file.filename().string()}));
+    };
+  });
+}
+
+void CentrePresenter::MakeKeys(const std::filesystem::path& file, const std::string& passphrase) {
+  Ask(host::Translate("Making the keys"), [this, file, passphrase]() -> Apply {
+    return [this, file, made = MakeCentreKeys(file, passphrase)] {
+      made.ok() ? screen_->ShowNotice(host::TranslateWith(
+                      "The keys are made. {1}.key signs certificates: keep it secret. Publish {1}.pub.",
+                      {file.stem().string()}))
+                : Fail(made.error());
+    };
+  });
+}
+
 void CentrePresenter::OpenExamFile(const std::filesystem::path& file) {
   page_.kind = PageKind::kExam;
   Ask(host::Translate("Opening the exam"), [this, file]() -> Apply {
     auto opened = std::make_shared<base::Result<ExamPage>>(OpenExam(file));
     return [this, opened] {
       if (!opened->ok()) return Fail(opened->error());
+      std::swap((*opened)->choices, page_.exam.choices);
       page_.exam = **opened;
       SetExaminee();
     };

@@ -116,6 +116,7 @@ CoursePage::Step MakeStep(const Course& course, const Step& step, const assessme
   shown.key = step.key, shown.name = host::Translate(step.name);
   shown.goal = host::Translate(step.goal), shown.briefing = host::Translate(step.briefing);
   shown.what = WhatOf(step);
+  shown.task = step.task;
   shown.state = now.state;
   shown.progress = ProgressText(step, now);
   for (const std::string& key : now.locked_by) {

@@ -5,6 +5,9 @@
 #include <utility>
 
 #include "trocar/assessment/certificate.h"
+#include "trocar/assessment/proficiency.h"
+#include "trocar/centre/judged_attempt.h"
+#include "trocar/files/task_file.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/host/translate.h"
 #include "trocar/store/attempts.h"
@@ -12,6 +15,44 @@
 #include "words.h"
 
 namespace trocar::centre {
+namespace {
+
+constexpr const char* kOperation = "cholecystectomy";
+
+}  // namespace
+
+base::Result<std::vector<ExamChoice>> ListExamChoices() {
+  const auto tasks = files::ListTasks();
+  if (!tasks.ok()) return tasks.error();
+  std::vector<ExamChoice> choices;
+  for (const files::TaskEntry& task : *tasks)
+    choices.push_back({task.key, host::Translate(task.name), task.levels});
+  choices.push_back({kOperation, TaskNameOf(kOperation), {}});
+  return choices;
+}
+
+base::Result<ExamPage> SealExamFile(const std::string& name, const std::string& task,
+                                    const std::string& level, const std::filesystem::path& file) {
+  assessment::ExamSettings settings;
+  settings.name = name;
+  (task == kOperation ? settings.operation : settings.task) = task;
+  settings.level = level;
+  const auto known = assessment::ListProficiencies();
+  if (!known.ok()) return known.error();
+  for (const assessment::Proficiency& one : *known) {
+    if (one.task == task && one.level == level) settings.passes = one.thresholds;
+  }
+  const auto sealed = assessment::SealExam(std::move(settings));
+  if (!sealed.ok()) return sealed.error();
+  if (const auto written = assessment::WriteExam(file, *sealed); !written.ok()) return written.error();
+  return OpenExam(file);
+}
+
+base::Status MakeCentreKeys(const std::filesystem::path& file, const std::string& passphrase) {
+  std::filesystem::path name = file;
+  if (name.extension() == ".key" || name.extension() == ".pub") name.replace_extension();
+  return assessment::MakeKeys(name, passphrase);
+}
 
 base::Result<ExamPage> OpenExam(const std::filesystem::path& file) {
   const auto exam = assessment::ReadExam(file);

@@ -2,12 +2,16 @@
 #include "trocar/centre/group_page.h"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <utility>
 
+#include "trocar/assessment/course.h"
 #include "trocar/centre/judged_attempt.h"
+#include "trocar/host/safe_file.h"
 #include "trocar/host/translate.h"
 #include "trocar/store/attempts.h"
+#include "trocar/store/courses.h"
 #include "words.h"
 
 namespace trocar::centre {
@@ -76,7 +80,78 @@ GroupPage::Cell MakeCell(const Tally& tally, TaskBook& tasks, const std::string&
   return cell;
 }
 
+/// The course as it lies in the file, so that the store knows what it was when it was assigned.
+base::Result<store::Course> ReadForStore(const assessment::Course& course) {
+  const auto text = host::ReadFile(course.path);
+  if (!text.ok()) return text.error();
+  store::Course kept{course.key, 1, *text, {}};
+  for (const assessment::Step& step : course.steps)
+    kept.steps.push_back({step.key, step.IsOperation() ? step.operation : step.task, step.level});
+  return kept;
+}
+
+/// Stores the course, as a new version where the store's newest has another text.
+base::Result<int> KeepCourse(Desk& desk, store::Course course) {
+  const auto known = store::FindCourse(desk.store, course.key);
+  if (known.ok()) course.version = known->text == course.text ? known->version : known->version + 1;
+  if (const auto added = store::AddCourse(desk.store, desk.viewer, course); !added.ok()) return added.error();
+  return course.version;
+}
+
 }  // namespace
+
+base::Status MakeGroup(const Access& access, const std::string& name) {
+  auto desk = OpenDesk(access);
+  if (!desk.ok()) return desk.error();
+  const auto added = store::AddGroup(desk->store, desk->viewer, name);
+  if (!added.ok()) return added.error();
+  // whoever makes a group leads it, and sees its members
+  return access.person.empty() ? base::Status()
+                               : store::JoinGroup(desk->store, desk->viewer, name, access.person);
+}
+
+base::Status JoinGroup(const Access& access, const std::string& group, const std::string& who) {
+  const auto pseudonym = FindPseudonym(access, who);
+  if (!pseudonym.ok()) return pseudonym.error();
+  if (pseudonym->empty())
+    return base::Error{base::ErrorCode::kStoreInvalid, "nobody was named; type a name or a pseudonym"};
+  auto desk = OpenDesk(access);
+  if (!desk.ok()) return desk.error();
+  return store::JoinGroup(desk->store, desk->viewer, group, *pseudonym);
+}
+
+base::Status LeaveGroup(const Access& access, const std::string& group, const std::string& pseudonym) {
+  auto desk = OpenDesk(access);
+  if (!desk.ok()) return desk.error();
+  return store::LeaveGroup(desk->store, desk->viewer, group, pseudonym);
+}
+
+base::Status AssignCourse(const Access& access, const std::string& group, const std::string& course,
+                          const std::string& due) {
+  store::Assignment assignment;
+  assignment.group = group, assignment.course = course;
+  if (!due.empty()) {
+    const auto day = assessment::ParseDay(due);
+    if (!day)
+      return base::Error{base::ErrorCode::kStoreInvalid,
+                         "\"" + due + "\" is no day; write it as 2026-12-31, or leave it empty"};
+    // until the day is over
+    assignment.due_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
+                            (*day + std::chrono::days(1)).time_since_epoch())
+                            .count() -
+                        1;
+  }
+  const auto found = assessment::FindCourse(course);
+  if (!found.ok()) return found.error();
+  auto text = ReadForStore(*found);
+  if (!text.ok()) return text.error();
+  auto desk = OpenDesk(access);
+  if (!desk.ok()) return desk.error();
+  const auto version = KeepCourse(*desk, std::move(*text));
+  if (!version.ok()) return version.error();
+  assignment.version = *version;
+  return store::AddAssignment(desk->store, desk->viewer, assignment);
+}
 
 base::Result<GroupPage> LoadGroup(const Access& access, const std::string& group) {
   auto desk = OpenDesk(access);
@@ -86,6 +161,10 @@ base::Result<GroupPage> LoadGroup(const Access& access, const std::string& group
                        "groups are for instructors; say at \"Who are you?\" who you are"};
   }
   GroupPage page;
+  const auto courses = assessment::ListCourses();
+  if (!courses.ok()) return courses.error();
+  for (const assessment::Course& course : *courses)
+    page.courses.push_back({course.key, host::Translate(course.name)});
   const auto groups = store::ListGroups(desk->store, desk->viewer);
   if (!groups.ok()) return groups.error();
   for (const store::Group& one : *groups) page.groups.push_back(one.name);

@@ -109,6 +109,12 @@ base::Result<std::optional<assessment::Proficiency>> FindThresholds(const std::s
   return std::optional<assessment::Proficiency>();
 }
 
+std::int64_t NowMilliseconds() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
 base::Result<store::Attempt> Describe(const record::Recording& recording, const fs::path& path,
                                       const JudgeSettings& settings) {
   auto attempt = store::DescribeAttempt(recording, path);
@@ -125,9 +131,7 @@ base::Result<store::Attempt> Describe(const record::Recording& recording, const 
 void SetMark(const record::Replay& replay, const record::Description& description, store::Attempt& attempt) {
   store::VerificationMark& mark = attempt.mark;
   mark.program = host::VersionText();
-  mark.time_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
-                     std::chrono::system_clock::now().time_since_epoch())
-                     .count();
+  mark.time_ms = NowMilliseconds();
   if (replay.IsAtEnd() && !replay.IsEndingSame()) {
     const bool is_of_this_version = record::IsOfThisProgram(description);
     mark.claim = replay.GetRecording().ending->outcome;
@@ -138,6 +142,67 @@ void SetMark(const record::Replay& replay, const record::Description& descriptio
   } else {
     mark.state = store::Verification::kVerified, mark.why = store::WhyUnverified::kNone;
   }
+}
+
+/// What is known without the states.
+base::Result<JudgedAttempt> BeginJudging(const record::Recording& recording, const fs::path& path,
+                                         const JudgeSettings& settings) {
+  JudgedAttempt judged;
+  auto attempt = Describe(recording, path, settings);
+  if (!attempt.ok()) return attempt.error();
+  judged.attempt = std::move(*attempt);
+  judged.step = settings.step;
+  judged.begin = static_cast<double>(recording.FirstTick()) * recording.description.tick_seconds;
+  judged.is_demonstration = recording.description.player == kDemonstration;
+  return judged;
+}
+
+base::Result<std::optional<assessment::Step>> FindStep(const StepName& name) {
+  if (!name.IsSet()) return std::optional<assessment::Step>();
+  const auto course = assessment::FindCourse(name.course);
+  if (!course.ok()) return course.error();
+  auto found = assessment::FindStep(*course, name.step);
+  if (!found.ok()) return found.error();
+  return std::optional(std::move(*found));
+}
+
+/// Verdict, coach and report of what was played.
+base::Result<JudgedAttempt> CompleteJudging(JudgedAttempt judged, const std::optional<assessment::Step>& step,
+                                            const assessment::PlayedAttempt& played,
+                                            const record::Description& description, const fs::path& path,
+                                            const JudgeSettings& settings) {
+  const assessment::AttemptResult& result = played.result;
+  std::optional<assessment::Proficiency> proficiency;
+  if (step) {
+    proficiency = step->proficiency;
+    judged.attempt.patient = step->patient.Text();
+  } else {
+    auto found = FindThresholds(judged.attempt.task, judged.attempt.level);
+    if (!found.ok()) return found.error();
+    proficiency = std::move(*found);
+  }
+  judged.attempt.metrics = result.metrics.values;
+  judged.attempt.is_completed = result.is_completed;
+  judged.attempt.score = played.trace.outcome.score;
+  if (proficiency) {
+    judged.verdict = assessment::Judge(*proficiency, result);
+    judged.attempt.is_passed = judged.verdict->is_passed;
+  }
+  if (step) judged.debriefing = judged.verdict->is_passed ? step->after_pass : step->after_fail;
+
+  const auto validity = FindValidity(judged.attempt.task);
+  const auto references = MakeReferences(proficiency ? &*proficiency : nullptr, validity);
+  const auto advice = Coach(played.trace, result.metrics, validity);
+  report::AttemptReportInput input;
+  input.facts = report::DescribeAttempt(description, played.task_name);
+  input.facts.person = settings.person;
+  input.facts.recording = path.filename().string();
+  input.facts.is_as_recorded = judged.attempt.mark.claim.empty();
+  input.facts.best_score = played.best_score;
+  input.references = references;
+  input.advice = advice;
+  judged.report = report::MakeAttemptReport(played.trace, result.metrics, input);
+  return judged;
 }
 
 }  // namespace
@@ -151,68 +216,49 @@ base::Result<store::Attempt> DescribeRecording(const fs::path& path, const std::
   return Describe(*recording, path, settings);
 }
 
-base::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSettings& settings) {
+base::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSettings& settings,
+                                           std::unique_ptr<Replaying>* going_on) {
   auto recording = record::ReadRecording(path);
   if (!recording.ok()) return recording.error();
-  JudgedAttempt judged;
-  auto attempt = Describe(*recording, path, settings);
-  if (!attempt.ok()) return attempt.error();
-  judged.attempt = std::move(*attempt);
-  judged.step = settings.step;
   const record::Description description = recording->description;
-  judged.begin = static_cast<double>(recording->FirstTick()) * description.tick_seconds;
-  judged.is_demonstration = description.player == kDemonstration;
-
-  std::optional<assessment::Step> step;
-  if (settings.step.IsSet()) {
-    const auto course = assessment::FindCourse(settings.step.course);
-    if (!course.ok()) return course.error();
-    auto found = assessment::FindStep(*course, settings.step.step);
-    if (!found.ok()) return found.error();
-    step = std::move(*found);
+  auto judged = BeginJudging(*recording, path, settings);
+  if (!judged.ok()) return judged.error();
+  const auto step = FindStep(settings.step);
+  if (!step.ok()) return step.error();
+  std::unique_ptr<Replaying> playing = going_on != nullptr ? std::move(*going_on) : nullptr;
+  if (playing == nullptr) {
+    auto replay = record::Replay::Open(std::move(*recording), settings.threads);
+    if (!replay.ok()) return replay.error();
+    using assessment::Milestone;
+    assessment::AttemptFold fold(replay->GetSimulation(), *step ? (*step)->from : Milestone::kStart,
+                                 *step ? (*step)->until : Milestone::kCompleted);
+    playing.reset(new Replaying{std::move(*replay), std::move(fold)});
   }
-  auto replay = record::Replay::Open(std::move(*recording), settings.threads);
-  if (!replay.ok()) return replay.error();
-  using assessment::Milestone;
-  const auto played = assessment::PlayAttempt(*replay, step ? step->from : Milestone::kStart,
-                                              step ? step->until : Milestone::kCompleted,
-                                              {settings.threads, settings.progress});
+  auto played =
+      assessment::PlayAttempt(playing->replay, playing->fold, {settings.threads, settings.progress});
+  if (!played.ok()) {
+    if (played.error().code == ErrorCode::kCancelled && going_on != nullptr) *going_on = std::move(playing);
+    return played.error();
+  }
+  SetMark(playing->replay, description, judged->attempt);
+  return CompleteJudging(std::move(*judged), *step, *played, description, path, settings);
+}
+
+base::Result<JudgedAttempt> JudgePlayed(const fs::path& path, const assessment::AttemptFold& fold,
+                                        const JudgeSettings& settings) {
+  auto recording = record::ReadRecording(path);
+  if (!recording.ok()) return recording.error();
+  auto judged = BeginJudging(*recording, path, settings);
+  if (!judged.ok()) return judged.error();
+  const auto step = FindStep(settings.step);
+  if (!step.ok()) return step.error();
+  const auto played = fold.Calc();
   if (!played.ok()) return played.error();
-  const assessment::AttemptResult& result = played->result;
-
-  std::optional<assessment::Proficiency> proficiency;
-  if (step) {
-    proficiency = step->proficiency;
-    judged.attempt.patient = step->patient.Text();
-  } else {
-    auto found = FindThresholds(judged.attempt.task, judged.attempt.level);
-    if (!found.ok()) return found.error();
-    proficiency = std::move(*found);
-  }
-  SetMark(*replay, description, judged.attempt);
-  judged.attempt.metrics = result.metrics.values;
-  judged.attempt.is_completed = result.is_completed;
-  judged.attempt.score = played->trace.outcome.score;
-  if (proficiency) {
-    judged.verdict = assessment::Judge(*proficiency, result);
-    judged.attempt.is_passed = judged.verdict->is_passed;
-  }
-  if (step) judged.debriefing = judged.verdict->is_passed ? step->after_pass : step->after_fail;
-
-  const auto validity = FindValidity(judged.attempt.task);
-  const auto references = MakeReferences(proficiency ? &*proficiency : nullptr, validity);
-  const auto advice = Coach(played->trace, result.metrics, validity);
-  report::AttemptReportInput input;
-  const scene::Scene& scene = replay->GetSimulation().GetScene();
-  input.facts = report::DescribeAttempt(description, scene.task ? scene.task->name : scene.name);
-  input.facts.person = settings.person;
-  input.facts.recording = path.filename().string();
-  input.facts.is_as_recorded = judged.attempt.mark.claim.empty();
-  if (scene.task && scene.task->reference_points > 0) input.facts.best_score = scene.task->best_score;
-  input.references = references;
-  input.advice = advice;
-  judged.report = report::MakeAttemptReport(played->trace, result.metrics, input);
-  return judged;
+  store::VerificationMark& mark = judged->attempt.mark;
+  mark.program = host::VersionText();
+  mark.time_ms = NowMilliseconds();
+  mark.state = store::Verification::kRecordedHere, mark.why = store::WhyUnverified::kNone;
+  return CompleteJudging(std::move(*judged), *step, *played, recording->description, path, settings);
 }
 
 StepName FindStepName(const store::Attempt& attempt) {

@@ -46,7 +46,7 @@ void SetVerdict(const JudgedAttempt& judged, ResultPage& page) {
   }
   const auto missed =
       static_cast<std::size_t>(std::count_if(judged.verdict->metrics.begin(), judged.verdict->metrics.end(),
-                                             [](const auto& m) { return !m.is_met; }));
+                                             [](const auto& m) { return !m.is_met && !m.is_open; }));
   page.verdict = host::TranslateWith(
       "Completed, not passed: {1} of {2} missed",
       {std::to_string(missed),
@@ -54,11 +54,56 @@ void SetVerdict(const JudgedAttempt& judged, ResultPage& page) {
   page.tone = judged.verdict->is_safe ? Tone::kCaution : Tone::kBad;
 }
 
+/// What made the score what it is: goals, time and errors.
+std::string WhyOfScore(const report::AttemptReport& r) {
+  std::vector<std::string> parts;
+  const auto done = static_cast<std::size_t>(std::count_if(
+      r.goals.begin(), r.goals.end(), [](const report::GoalRow& goal) { return goal.time.has_value(); }));
+  if (!r.goals.empty())
+    parts.push_back(
+        host::TranslateWith("{1} of {2} goals", {std::to_string(done), std::to_string(r.goals.size())}));
+  if (!r.is_completed) {
+    parts.push_back(host::Translate("not finished: no points for time"));
+  } else if (r.task_seconds) {
+    parts.push_back(host::TranslateWith("in {1}", {report::FormatClock(*r.task_seconds)}));
+  }
+  if (r.penalty > 0)
+    parts.push_back(
+        host::TranslateWith("errors took {1} off", {ScoreText(r.penalty, r.facts.best_score.has_value())}));
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
+/// What to do better first: the worst error, or else what the coach puts first, or else what is unfinished.
+void FindFirst(const JudgedAttempt& judged, ResultPage& page) {
+  const auto worst = std::max_element(
+      page.errors.begin(), page.errors.end(),
+      [](const ResultPage::ErrorRow& a, const ResultPage::ErrorRow& b) { return a.tone < b.tone; });
+  const bool has_errors = worst != page.errors.end();
+  if (has_errors && (worst->tone == Tone::kBad || page.advice.empty())) {
+    page.first = worst->what, page.first_time = worst->time;
+    return;
+  }
+  if (!page.advice.empty()) {
+    page.first = page.advice.front().sentence, page.first_time = page.advice.front().time;
+    return;
+  }
+  if (judged.attempt.is_completed) return;
+  for (const report::GoalRow& goal : judged.report.goals) {
+    if (goal.time) continue;
+    page.first = host::TranslateWith("Finish: {1}", {host::TranslateComposed(goal.name)});
+    return;
+  }
+}
+
 void AddTiles(const JudgedAttempt& judged, ResultPage& page) {
   const report::AttemptReport& r = judged.report;
-  if (r.score && r.is_completed)
-    page.tiles.push_back({host::Translate("Score"), ScoreText(*r.score, r.facts.best_score.has_value()), ""});
-  page.tiles.push_back({host::Translate("Time"), report::FormatClock(r.seconds), host::Translate("min:s")});
+  if (r.score)
+    page.tiles.push_back(
+        {host::Translate("Score"), ScoreText(*r.score, r.facts.best_score.has_value()), WhyOfScore(r)});
+  page.tiles.push_back(
+      {host::Translate("Time"), report::FormatClock(report::ShownSeconds(r)), host::Translate("min:s")});
   const auto critical = std::count_if(r.errors.begin(), r.errors.end(), [](const report::ErrorRow& error) {
     return error.severity == surgery::Severity::kCritical;
   });
@@ -88,6 +133,7 @@ void AddErrors(const report::AttemptReport& from, ResultPage& page) {
     row.clock = report::FormatClock(error.time);
     row.what = host::TranslateComposed(error.what);
     if (!error.where.empty()) row.what += " (" + host::TranslateComposed(error.where) + ")";
+    if (error.force > 0) row.what += " (" + report::FormatShown(error.force) + " N)";
     if (error.hand >= 0)
       row.what += error.hand == 0 ? host::Translate(", left hand") : host::Translate(", right hand");
     row.severity = host::Translate(surgery::NameOf(error.severity));
@@ -175,13 +221,14 @@ ResultPage MakeResultPage(const JudgedAttempt& judged, const Access* access) {
       page.thresholds.push_back(
           {MetricName(one.threshold.of),
            one.value ? MetricText(one.threshold.of.metric, *one.value) : host::Translate("not measured"),
-           LimitText(one.threshold), one.threshold.source, one.is_met});
+           LimitText(one.threshold), one.threshold.source, one.is_met, one.is_open});
     }
   }
   for (const report::Advice& advice : r.advice)
     page.advice.push_back({host::TranslateComposed(advice.sentence), host::Translate(advice.why),
                            host::Translate(advice.practise), advice.exercise, advice.time});
   AddErrors(r, page);
+  FindFirst(judged, page);
   AddMetrics(judged, access, page);
   page.drawings = {report::DrawTimeline(r), report::DrawPaths(r, report::PathView::kFromFront),
                    report::DrawPaths(r, report::PathView::kFromHead)};

@@ -154,6 +154,20 @@ TEST_F(Centre, ShowsTheResultOfAnAttemptAndItsHistory) {
   EXPECT_EQ(screen_.page.result->verdict, "Not completed");
 }
 
+// A result that was measured while it was played may be there before anybody asks for its page.
+TEST_F(Centre, ShowsAResultThatWasThereBeforeItWasAskedFor) {
+  AttemptFiling filing(access_, 1, [] {});
+  Begin(&filing);
+  filing.Begin(recording_);
+  Record(300);
+  filing.End(recording_);
+  ASSERT_TRUE(Until([&] { return filing.Status().measuring == 0; }));
+  presenter_->Finish();
+  presenter_->ExpectResult(recording_);
+  ASSERT_TRUE(screen_.page.result.has_value());
+  EXPECT_EQ(screen_.page.result->recording, recording_);
+}
+
 TEST_F(Centre, StartsAStepOfACourse) {
   Begin();
   presenter_->Open(PageKind::kCourses);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -15,6 +16,7 @@
 #include "trocar/centre/history_page.h"
 #include "trocar/centre/result_page.h"
 #include "trocar/host/safe_file.h"
+#include "trocar/store/courses.h"
 
 namespace trocar::centre {
 namespace {
@@ -236,6 +238,62 @@ TEST_P(Pages, GroupShowsMembersAndWhatTheyCameTo) {
   EXPECT_EQ(refused.error().code, base::ErrorCode::kStoreRefused);
 }
 
+// The issue: an instructor had to type commands.
+TEST_P(Pages, InstructorsMakeGroupsMembersAndAssignmentsHere) {
+  const std::string instructor = Add(Role::kInstructor), who = Add(Role::kTrainee);
+  ASSERT_TRUE(MakeGroup(access_, "Ward 3").ok());
+  EXPECT_FALSE(MakeGroup(access_, "Ward 3").ok()) << "there is one";
+  ASSERT_TRUE(JoinGroup(access_, "Ward 3", who).ok());
+  ASSERT_TRUE(JoinGroup(access_, "Ward 3", instructor).ok());
+  ASSERT_TRUE(JoinGroup(access_, "Ward 3", "Anna Berg").ok()) << "a new name is a new trainee";
+  EXPECT_FALSE(JoinGroup(access_, "Ward 3", "").ok());
+  Access teacher = access_;
+  teacher.person = instructor;
+  const auto group = LoadGroup(teacher, "Ward 3");
+  ASSERT_TRUE(group.ok()) << group.error().Text();
+  EXPECT_EQ(group->members.size(), 2u);
+  EXPECT_FALSE(group->courses.empty());
+  // a course, with a day; once more with another
+  EXPECT_FALSE(AssignCourse(teacher, "Ward 3", "basic-skills", "tomorrow").ok());
+  for (const char* due : {"2026-12-24", "2026-12-31", ""}) {
+    const auto assigned = AssignCourse(teacher, "Ward 3", "basic-skills", due);
+    EXPECT_TRUE(assigned.ok()) << due << ": " << assigned.error().Text();
+  }
+  const auto viewer = store::FindViewer(Open(), who);
+  ASSERT_TRUE(viewer.ok());
+  const auto assignments = store::ListAssignments(Open(), *viewer, who);
+  ASSERT_TRUE(assignments.ok());
+  ASSERT_EQ(assignments->size(), 1u);
+  EXPECT_EQ(assignments->front().course, "basic-skills");
+  EXPECT_FALSE(assignments->front().due_ms.has_value());
+  ASSERT_TRUE(LeaveGroup(access_, "Ward 3", who).ok());
+  EXPECT_EQ(LoadGroup(teacher, "Ward 3")->members.size(), 1u);
+  // a trainee changes nothing
+  Access trainee = access_;
+  trainee.person = who;
+  EXPECT_FALSE(MakeGroup(trainee, "Mine").ok());
+  EXPECT_FALSE(AssignCourse(trainee, "Ward 3", "basic-skills", "").ok());
+}
+
+TEST_P(Pages, HomeKnowsTheNextStepAndTheLastResult) {
+  const std::string who = Add(Role::kTrainee);
+  access_.person = who;
+  auto home = LoadHomeResults(access_);
+  ASSERT_TRUE(home.ok()) << home.error().Text();
+  ASSERT_TRUE(home->leads.next.has_value());
+  EXPECT_FALSE(home->leads.last.has_value());
+  Keep(MakeOne(1, who, 90, true));
+  Keep(MakeOne(2, who, 60, false));
+  home = LoadHomeResults(access_);
+  ASSERT_TRUE(home->leads.last.has_value());
+  EXPECT_THAT(home->leads.last->outcome, HasSubstr("not passed"));
+  EXPECT_EQ(home->leads.last->task, "peg_transfer");
+  access_.person.clear();
+  home = LoadHomeResults(access_);
+  EXPECT_FALSE(home->leads.last.has_value() || home->leads.next.has_value())
+      << "everybody's last is nobody's";
+}
+
 TEST_P(Pages, CourseMapOpensStepsAsTheyAreDone) {
   const std::string who = Add(Role::kTrainee);
   access_.person = who;
@@ -356,6 +414,34 @@ TEST_F(Result, SaysPassedOrNotInWordsAndIsGreenOnlyWherePassed) {
   EXPECT_EQ(part.tone, Tone::kCaution);
 }
 
+// The issue: "Time, met" with 1 of 12 goals done, two different times, no score and no reason.
+TEST_F(Result, OfAnUnfinishedAttemptMeetsNothingAndHasOneTimeAndAScoreWithItsReason) {
+  const JudgedAttempt judged = JudgeFile("part.trocar");
+  ASSERT_FALSE(judged.attempt.is_completed);
+  const ResultPage page = MakeResultPage(judged, nullptr);
+  ASSERT_FALSE(page.thresholds.empty());
+  for (const ResultPage::ThresholdRow& row : page.thresholds) {
+    EXPECT_FALSE(row.is_met) << row.name;
+    EXPECT_NE(row.is_open, row.value == "not measured") << row.name;
+  }
+  const auto tile = [&](const char* label) -> ResultPage::Tile {
+    for (const ResultPage::Tile& one : page.tiles) {
+      if (one.label == label) return one;
+    }
+    return {};
+  };
+  ASSERT_TRUE(judged.report.task_seconds.has_value());
+  EXPECT_EQ(tile("Time").value, report::FormatClock(*judged.report.task_seconds));
+  EXPECT_THAT(page.outcome, HasSubstr(report::FormatDuration(*judged.report.task_seconds)));
+  EXPECT_THAT(tile("Score").note, HasSubstr("not finished"));
+  EXPECT_THAT(tile("Score").note, HasSubstr("goals"));
+  EXPECT_FALSE(page.first.empty()) << "there is something to do better: to finish";
+  const ResultPage whole = MakeResultPage(JudgeFile("whole.trocar"), nullptr);
+  EXPECT_TRUE(std::any_of(whole.thresholds.begin(), whole.thresholds.end(), [](const auto& row) {
+    return row.is_met;
+  })) << "the control: a completed one meets what it meets";
+}
+
 TEST_F(Result, OfACourseStepIsJudgedByIt) {
   JudgeSettings settings;
   settings.step = {"basic-skills", "instruments"};
@@ -387,6 +473,25 @@ TEST_F(Result, IsSavedByTheFilesEnding) {
 }
 
 // exams
+
+TEST(Exam, IsSealedAndKeysAreMadeWithoutAShell) {
+  const test::TemporaryFolder folder;
+  const auto choices = ListExamChoices();
+  ASSERT_TRUE(choices.ok());
+  EXPECT_GT(choices->size(), 9u);
+  const auto file = folder.Path() / "finals.json";
+  const auto page = SealExamFile("Finals", "peg_transfer", "normal", file);
+  ASSERT_TRUE(page.ok()) << page.error().Text();
+  EXPECT_EQ(page->name, "Finals");
+  EXPECT_FALSE(page->thresholds.empty()) << "the delivered thresholds of task and level pass";
+  EXPECT_TRUE(std::filesystem::exists(folder.Path() / "finals.published.json"));
+  EXPECT_FALSE(SealExamFile("Finals", "peg_transfer", "normal", file).ok()) << "a seal is not replaced";
+  EXPECT_TRUE(SealExamFile("Whole", "cholecystectomy", "", folder.Path() / "whole.json").ok());
+  ASSERT_TRUE(MakeCentreKeys(folder.Path() / "centre.key", "seven green herons").ok());
+  EXPECT_TRUE(*assessment::IsKeyEncrypted(folder.Path() / "centre.key"));
+  EXPECT_TRUE(assessment::ReadPublicKey(folder.Path() / "centre.pub").ok());
+  EXPECT_FALSE(MakeCentreKeys(folder.Path() / "centre", "seven green herons").ok()) << "nor is a key";
+}
 
 TEST(Exam, IsOpenedWithoutShowingItsSeed) {
   test::TemporaryFolder folder;

@@ -10,6 +10,7 @@
 #include "result_view.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
+#include "trocar/gui/over_card.h"
 #include "trocar/host/translate.h"
 #include "view_parts.h"
 
@@ -30,12 +31,13 @@ CentreWindow::CentreWindow(const Access& access, int threads, AttemptFiling* fil
       exam_(std::make_unique<ExamView>()) {
   set_title(host::Translate("Trocar: training centre"));
   add_css_class("trocar");
-  set_default_size(kWidth, kHeight);
+  gui::FitToScreen(*this, kWidth, kHeight);
   set_titlebar(bar_);
   MakeContent();
   MakeWho();
   presenter_ = std::make_unique<CentrePresenter>(access, threads, static_cast<CentreScreen&>(*this), filing,
                                                  [this] { news_.emit(); });
+  presenter_->SetDrawMoment(services_.draw_moment);
   result_->Use(*presenter_);
   history_->Use(*presenter_);
   courses_->Use(*presenter_);
@@ -57,8 +59,9 @@ void CentreWindow::MakeContent() {
   stack_.set_vexpand(true);
   overlay_.set_child(stack_);
   help_card_.set_visible(false);
-  overlay_.add_overlay(help_card_);
-  overlay_.add_overlay(who_card_);
+  gui::AddOverCard(overlay_, help_card_);
+  who_card_.set_visible(false);
+  gui::AddOverCard(overlay_, who_card_);
 
   notice_.add_css_class("waiting");
   notice_.set_xalign(0);
@@ -66,7 +69,8 @@ void CentreWindow::MakeContent() {
   notice_.set_visible(false);
   busy_.set_halign(Gtk::Align::START);
   busy_.set_hexpand(true);
-  busy_.set_ellipsize(Pango::EllipsizeMode::END);
+  busy_.set_wrap(true);
+  busy_.set_xalign(0);
   progress_.set_size_request(kBarWidth, -1);
   progress_.set_valign(Gtk::Align::CENTER);
   auto* status = Gtk::make_managed<Gtk::Box>();
@@ -113,6 +117,12 @@ void CentreWindow::MakeRoutes() {
   add_controller(keys);
   property_is_active().signal_changed().connect([this] { tips_.End(); });
   news_.connect([this] { presenter_->Finish(); });
+  signal_close_request().connect(
+      [this] {
+        is_open_ = false;
+        return false;
+      },
+      false);
 }
 
 bool CentreWindow::OnKey(guint keyval, guint, Gdk::ModifierType state) {

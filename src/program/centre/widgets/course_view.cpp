@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "trocar/gui/card.h"
+#include "trocar/gui/columns.h"
 #include "trocar/host/translate.h"
 #include "view_parts.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 using assessment::StepState;
 
-constexpr int kMapWidth = 520, kGap = 14;  // [pixels]
+constexpr int kMapWidth = 420, kGap = 14;  // [pixels]
 
 std::string WordOf(StepState state) {
   switch (state) {
@@ -61,17 +62,16 @@ void CourseView::Show(const CentrePage& shown) {
   all->append(MakeText(page.about, "name"));
   if (!page.note.empty()) all->append(MakeText(page.note, StyleOf(Tone::kCaution)));
 
-  auto* columns = Gtk::make_managed<Gtk::Box>();
-  columns->set_spacing(kGap);
+  auto* columns = Gtk::make_managed<gui::Columns>(kGap);
   auto* map = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   map->set_size_request(kMapWidth, -1);
   map->set_spacing(6);
   ShowMap(page, *map);
-  columns->append(*map);
+  columns->Append(*map);
   detail_ = &MakeCard("");
   detail_->set_hexpand(true);
   detail_->set_valign(Gtk::Align::START);
-  columns->append(*detail_);
+  columns->Append(*detail_);
   all->append(*columns);
   const bool is_there = std::any_of(page.steps.begin(), page.steps.end(),
                                     [this](const CoursePage::Step& step) { return step.key == chosen_; });

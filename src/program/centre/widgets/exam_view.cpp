@@ -2,6 +2,8 @@
 #include "exam_view.h"
 
 #include "trocar/gui/card.h"
+#include "trocar/gui/columns.h"
+#include "trocar/gui/labels.h"
 #include "trocar/host/translate.h"
 #include "view_parts.h"
 
@@ -29,7 +31,11 @@ void ExamView::Show(const CentrePage& shown) {
   all->set_spacing(14);
   all->append(MakeText(page.name.empty() ? host::Translate("Exam") : page.name, "page-title"));
   if (page.file.empty()) {
-    all->append(MakeInvitation());
+    auto* columns = Gtk::make_managed<gui::Columns>(14);
+    columns->Append(MakeInvitation());
+    columns->Append(MakeSealing(page));
+    columns->Append(MakeKeys());
+    all->append(*columns);
   } else {
     all->append(MakeFacts(page));
     all->append(MakeSitting(page));
@@ -40,16 +46,106 @@ void ExamView::Show(const CentrePage& shown) {
 
 Gtk::Box& ExamView::MakeInvitation() {
   Gtk::Box& card = MakeCard(host::Translate("No exam is open"));
-  card.append(
-      MakeText(host::Translate("An examiner seals the settings of an exam with `trocar exam seal`. Open that "
-                               "file here; what is sat under it is recorded, and the certificate says what "
-                               "it came to and nothing of anybody's competence."),
-               "value"));
+  card.append(MakeText(
+      host::Translate("An examiner seals the settings of an exam. Open that file here; what is sat under it "
+                      "is recorded, and the certificate says what it came to and nothing of anybody's "
+                      "competence."),
+      "value"));
+  card.set_hexpand(true);
+  card.set_valign(Gtk::Align::START);
   Gtk::Button& button = MakeButton(
       host::Translate("Open an exam…"), [this] { ChooseExam(); }, "primary");
   button.set_halign(Gtk::Align::START);
   card.append(button);
   return card;
+}
+
+/// For the examiner: what nobody can change or know beforehand.
+Gtk::Box& ExamView::MakeSealing(const ExamPage& page) {
+  Gtk::Box& card = MakeCard(host::Translate("Seal a new exam"));
+  card.set_hexpand(true);
+  card.set_valign(Gtk::Align::START);
+  card.append(
+      MakeText(host::Translate("What is left open is drawn by chance and kept secret. The file beside the "
+                               "exam is published before, so that everybody can check afterwards."),
+               "value"));
+  auto* name = Gtk::make_managed<Gtk::Entry>();
+  name->set_placeholder_text(host::Translate("Name of the exam"));
+  gui::SetAccessibleName(*name, host::Translate("Name of the exam"));
+  auto* tasks = Gtk::make_managed<Gtk::DropDown>();
+  auto* levels = Gtk::make_managed<Gtk::DropDown>();
+  std::vector<Glib::ustring> names;
+  for (const ExamChoice& choice : page.choices) names.push_back(choice.name);
+  tasks->set_model(Gtk::StringList::create(names));
+  gui::SetAccessibleName(*tasks, host::Translate("Task"));
+  gui::SetAccessibleName(*levels, host::Translate("Level"));
+  const auto fill = [tasks, levels, choices = page.choices] {
+    std::vector<Glib::ustring> shown;
+    if (tasks->get_selected() < choices.size()) {
+      for (const std::string& level : choices[tasks->get_selected()].levels)
+        shown.push_back(host::Translate(level));
+    }
+    levels->set_model(Gtk::StringList::create(shown));
+    levels->set_visible(!shown.empty());
+  };
+  tasks->property_selected().signal_changed().connect(fill);
+  fill();
+  Gtk::Button& seal = MakeButton(
+      host::Translate("Seal…"),
+      [this, name, tasks, levels, choices = page.choices] {
+        if (tasks->get_selected() >= choices.size()) return;
+        const ExamChoice& choice = choices[tasks->get_selected()];
+        const std::string level = levels->get_selected() < choice.levels.size()
+                                      ? choice.levels[levels->get_selected()]
+                                      : std::string();
+        ChooseSealed(name->get_text().raw(), choice.key, level);
+      },
+      "primary");
+  card.append(*name);
+  card.append(*tasks);
+  card.append(*levels);
+  seal.set_halign(Gtk::Align::START);
+  card.append(seal);
+  return card;
+}
+
+/// For the centre, once.
+Gtk::Box& ExamView::MakeKeys() {
+  Gtk::Box& card = MakeCard(host::Translate("The centre's keys"));
+  card.set_hexpand(true);
+  card.set_valign(Gtk::Align::START);
+  card.append(MakeText(
+      host::Translate("Made once. The private key signs certificates and stays secret; the public one "
+                      "is published, and anybody checks certificates with it."),
+      "value"));
+  auto* passphrase = Gtk::make_managed<Gtk::PasswordEntry>();
+  passphrase->property_placeholder_text() = host::Translate("Passphrase that protects the private key");
+  passphrase->set_show_peek_icon(true);
+  Gtk::Button& make = MakeButton(
+      host::Translate("Make keys…"), [this, passphrase] { ChooseNewKeys(passphrase->get_text().raw()); },
+      "primary");
+  make.set_halign(Gtk::Align::START);
+  card.append(*passphrase);
+  card.append(make);
+  return card;
+}
+
+void ExamView::ChooseSealed(const std::string& name, const std::string& task, const std::string& level) {
+  gui::FileRequest request;
+  request.title = host::Translate("Save the sealed exam");
+  request.new_name = "exam.json";
+  file_dialog_.Ask(*this, request, [this, name, task, level](const std::filesystem::path& file) {
+    presenter_->SealExam(name, task, level, file);
+  });
+}
+
+void ExamView::ChooseNewKeys(const std::string& passphrase) {
+  gui::FileRequest request;
+  request.title = host::Translate("Save the centre's keys");
+  request.new_name = "centre.key";
+  file_dialog_.Ask(*this, request, [this, passphrase](const std::filesystem::path& file) {
+    presenter_->MakeKeys(file, passphrase);
+  });
 }
 
 Gtk::Box& ExamView::MakeFacts(const ExamPage& page) {

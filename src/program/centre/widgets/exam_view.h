@@ -21,10 +21,14 @@ class ExamView : public Gtk::Box {
 
  private:
   Gtk::Box& MakeInvitation();
+  Gtk::Box& MakeSealing(const ExamPage& page);
+  Gtk::Box& MakeKeys();
   Gtk::Box& MakeFacts(const ExamPage& page);
   Gtk::Box& MakeSitting(const ExamPage& page);
   Gtk::Box& MakeCertificate(const ExamPage& page);
   void ChooseExam();
+  void ChooseSealed(const std::string& name, const std::string& task, const std::string& level);
+  void ChooseNewKeys(const std::string& passphrase);
   void ChooseKey(const std::string& certificate_name);
   void ChooseCertificate(const std::filesystem::path& key, const std::string& name);
 

@@ -4,6 +4,9 @@
 
 #include <gtkmm.h>
 
+#include <functional>
+#include <string>
+
 #include "trocar/centre/centre_presenter.h"
 
 namespace trocar::centre {
@@ -16,6 +19,12 @@ class GroupView : public Gtk::Box {
   void Show(const CentrePage& page);
 
  private:
+  Gtk::Box& MakeForm(const std::string& title, const std::string& about, const std::string& hint,
+                     const std::string& button, std::function<void(const std::string&)> act);
+  Gtk::Box& MakeNewGroup();
+  Gtk::Box& MakeNewMember();
+  Gtk::Box& MakeAssignment(const GroupPage& page);
+
   CentrePresenter* presenter_ = nullptr;
 };
 

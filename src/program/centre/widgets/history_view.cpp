@@ -2,6 +2,7 @@
 #include "history_view.h"
 
 #include "trocar/gui/card.h"
+#include "trocar/gui/columns.h"
 #include "trocar/host/translate.h"
 #include "view_parts.h"
 
@@ -21,10 +22,24 @@ void HistoryView::Show(const CentrePage& shown) {
   all->add_css_class("page");
   all->set_spacing(kGap);
   all->append(MakeHead(page));
-  auto* columns = Gtk::make_managed<Gtk::Box>();
-  columns->set_spacing(kGap);
-  columns->append(MakeList(page));
-  columns->append(MakeLearning(page));
+  if (!page.pending.empty()) {
+    Gtk::Box& card = MakeCard(host::Translate("Not measured yet"));
+    for (const HistoryPage::Pending& one : page.pending) {
+      Gtk::Label& what = MakeText(one.when + "  ·  " + one.task, "value");
+      what.set_hexpand(true);
+      card.append(gui::MakeRow(10, {&what, &MakeLine(one.is_measured_now ? host::Translate("being measured")
+                                                                         : host::Translate("waits"),
+                                                     "name")}));
+    }
+    card.append(
+        MakeText(host::Translate("They ended with the program, or were not measured while they were played. "
+                                 "They enter by themselves."),
+                 "fine"));
+    all->append(card);
+  }
+  auto* columns = Gtk::make_managed<gui::Columns>(kGap);
+  columns->Append(MakeList(page));
+  columns->Append(MakeLearning(page));
   all->append(*columns);
   append(MakePage(*all));
 }
@@ -78,7 +93,7 @@ Gtk::Widget& HistoryView::MakeList(const HistoryPage& page) {
     table->AddText(row.when);
     if (is_everyone) table->AddText(row.person);
     table->AddText(row.task, "value", true);
-    table->AddText(row.outcome, StyleOf(row.tone));
+    table->AddText(row.outcome, StyleOf(row.tone), true);
     table->AddText(row.score);
     table->AddText(row.time);
     Gtk::Button& result = MakeButton(

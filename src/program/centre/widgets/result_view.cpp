@@ -3,6 +3,7 @@
 
 #include "review_view.h"
 #include "trocar/gui/card.h"
+#include "trocar/gui/columns.h"
 #include "trocar/host/translate.h"
 #include "trocar/report/attempt_report.h"
 #include "view_parts.h"
@@ -10,7 +11,8 @@
 namespace trocar::centre {
 namespace {
 
-constexpr int kTextWidth = 520, kPlotWidth = 640, kGap = 14;  // [pixels]
+constexpr int kMomentWidth = 320, kMomentHeight = 200;        // [pixels]
+constexpr int kTextWidth = 420, kPlotWidth = 640, kGap = 14;  // [pixels]
 constexpr double kWidePlot = 600;  // a drawing that stands alone in its row [pixels]
 
 }  // namespace
@@ -28,9 +30,11 @@ void ResultView::Show(const CentrePage& shown) {
     Gtk::Label& title = MakeLine(host::Translate("Measuring the attempt"), "page-title");
     title.set_halign(Gtk::Align::CENTER);
     wait->append(title);
-    Gtk::Label& what = MakeLine(host::Translate("It is played again from its recording, to the bit, and "
-                                                "measured. It is kept whatever you do meanwhile."),
-                                "name");
+    Gtk::Label& what =
+        MakeText(host::Translate("It is measured while it is played. What was not, is played again from its "
+                                 "recording, to the bit. It is kept whatever you do meanwhile."),
+                 "name");
+    what.set_max_width_chars(60);
     wait->append(what);
     append(*wait);
     return;
@@ -72,11 +76,10 @@ void ResultView::Show(const CentrePage& shown) {
   ShowNumbers(page, *right);
   if (shown.review.attempt != 0) right->append(*Gtk::make_managed<ReviewView>(shown.review, *presenter_));
 
-  auto* columns = Gtk::make_managed<Gtk::Box>();
+  auto* columns = Gtk::make_managed<gui::Columns>(kGap);
   columns->add_css_class("page");
-  columns->set_spacing(kGap);
-  columns->append(*left);
-  columns->append(*right);
+  columns->Append(*left);
+  columns->Append(*right);
   append(MakePage(*columns));
   append(MakeActions(page));
 }
@@ -90,6 +93,19 @@ void ResultView::ShowHead(const ResultPage& page, Gtk::Box& into) {
   banner->append(MakeText(page.verdict, "verdict-text"));
   banner->append(MakeText(page.outcome, "value"));
   if (!page.debriefing.empty()) banner->append(MakeText(page.debriefing, "value"));
+  if (!page.first.empty())
+    banner->append(MakeText(host::TranslateWith("Better first: {1}", {page.first}), "key-text"));
+  if (!page.moment.empty()) {
+    auto* moment = Gtk::make_managed<Gtk::Picture>();
+    moment->set_filename(page.moment.string());
+    moment->set_alternative_text(page.first);
+    moment->set_can_shrink(true);
+    moment->set_size_request(kMomentWidth, kMomentHeight);
+    moment->set_halign(Gtk::Align::START);
+    moment->set_margin_top(6);
+    moment->add_css_class("thumbnail");
+    banner->append(*moment);
+  }
   into.append(*banner);
   auto* tiles = Gtk::make_managed<Gtk::FlowBox>();
   tiles->set_selection_mode(Gtk::SelectionMode::NONE);
@@ -101,7 +117,7 @@ void ResultView::ShowHead(const ResultPage& page, Gtk::Box& into) {
     box->add_css_class("tile");
     box->append(MakeLine(tile.label, "fine"));
     box->append(MakeLine(tile.value, "tile-value"));
-    box->append(MakeLine(tile.note, "fine"));
+    box->append(MakeText(tile.note, "fine"));
     tiles->append(*box);
   }
   into.append(*tiles);
@@ -163,8 +179,12 @@ void ResultView::ShowNumbers(const ResultPage& page, Gtk::Box& into) {
     auto* table = Gtk::make_managed<Table>(
         std::vector<std::string>{"", "", host::Translate("reached"), host::Translate("needed")});
     for (const ResultPage::ThresholdRow& row : page.thresholds) {
-      table->AddText(row.is_met ? host::Translate("✓ met") : host::Translate("✗ missed"),
-                     row.is_met ? "good" : "caution");
+      table->AddText(row.is_met    ? host::Translate("✓ met")
+                     : row.is_open ? host::Translate("– not finished")
+                                   : host::Translate("✗ missed"),
+                     row.is_met    ? "good"
+                     : row.is_open ? "name"
+                                   : "caution");
       table->AddText(row.name, "value", true);
       table->AddText(row.value);
       table->AddText(row.limit);

@@ -54,7 +54,10 @@ void PrintVerdict(const assessment::Verdict& verdict) {
   std::vector<std::vector<std::string>> rows = {{"", "metric", "reached", "needed", "for"}};
   for (const auto& one : verdict.metrics) {
     const auto& threshold = one.threshold;
-    rows.push_back({Translate(one.is_met ? Mark("met") : Mark("MISSED")), ShownKey(threshold.of),
+    rows.push_back({Translate(one.is_met    ? Mark("met")
+                              : one.is_open ? Mark("not finished")
+                                            : Mark("MISSED")),
+                    ShownKey(threshold.of),
                     one.value ? FormatMetric(threshold.of.metric, *one.value) : Translate("not defined"),
                     FormatBound(threshold), Translate(NameOf(threshold.purpose))});
   }
@@ -82,6 +85,7 @@ nlohmann::ordered_json VerdictJson(const assessment::Verdict& verdict) {
                                   {"threshold", threshold.value},
                                   {"value", nullptr},
                                   {"met", one.is_met},
+                                  {"not_finished", one.is_open},
                                   {"margin", one.margin}};
     if (one.value) row["value"] = *one.value;
     json["metrics"].push_back(std::move(row));

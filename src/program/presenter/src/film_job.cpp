@@ -8,9 +8,14 @@
 #include <system_error>
 #include <utility>
 
+#include "trocar/host/partial_path.h"
 #include "trocar/host/user_folder.h"
 #include "trocar/record/replay.h"
+#include "trocar/render/image.h"
+#include "trocar/render/offscreen_context.h"
+#include "trocar/render/offscreen_target.h"
 #include "trocar/view/film_maker.h"
+#include "trocar/view/laparoscope_view.h"
 
 namespace trocar::presenter {
 namespace {
@@ -18,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFramesPerSecond = 30;
+constexpr int kMomentWidth = 640, kMomentHeight = 400;  // [pixels]
 
 base::Error Cancelled() {
   return {base::ErrorCode::kCancelled, "the video was given up; nothing was written"};
@@ -69,6 +75,40 @@ base::Result<Film> MakeFilm(const FilmRequest& request, gui::JobProgress& progre
   }
   if (const auto finished = film->Finish(); !finished.ok()) return finished.error();
   return Film{from, until, frames};
+}
+
+base::Status DrawMoment(const fs::path& recording, double time, const fs::path& picture, int threads,
+                        const std::function<bool()>& goes_on) {
+  auto read = record::ReadRecording(recording);
+  if (!read.ok()) return read.error();
+  const auto tick =
+      static_cast<std::uint64_t>(std::max(0.0, std::round(time / read->description.tick_seconds)));
+  record::ReplaySettings settings;
+  settings.threads = threads;
+  settings.index = record::IndexPathOf(recording);
+  settings.visit_seconds = 0;
+  auto replay = record::Replay::Open(std::move(*read), settings);
+  if (!replay.ok()) return replay.error();
+  if (const auto sought = replay->Seek(tick, goes_on); !sought.ok()) return sought.error();
+  if (goes_on && !goes_on()) return Cancelled();
+  const simulation::Simulation& simulation = replay->GetSimulation();
+  auto context = render::OffscreenContext::Make();
+  if (!context.ok()) return context.error();
+  auto target = render::OffscreenTarget::Make(kMomentWidth, kMomentHeight);
+  if (!target.ok()) return target.error();
+  auto view = view::LaparoscopeView::Make(simulation.GetScene(), simulation.Surfaces(),
+                                          simulation.GetSnapshot(), simulation.Strands());
+  if (!view.ok()) return view.error();
+  view->Update(simulation.GetSnapshot());
+  target->Bind();
+  view->Draw(target->Width(), target->Height());
+  render::Image image;
+  target->Read(image);
+  if (const auto failure = host::MakeFolders(picture.parent_path())) {
+    return base::Error{base::ErrorCode::kFileUnwritable,
+                       picture.string() + " cannot be written: " + failure.message() + "; check the folder"};
+  }
+  return render::WritePng(picture, image);
 }
 
 fs::path PictureFolder(const fs::path& pictures) {

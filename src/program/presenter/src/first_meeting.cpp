@@ -41,6 +41,12 @@ std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapsh
 
 }  // namespace
 
+bool SimulatorPresenter::HasCard() const {
+  return page_.is_task_list_open || page_.is_result_open || page_.is_recording_list_open ||
+         page_.is_patient_list_open || page_.is_key_list_open || page_.is_rehearsal_open ||
+         !page_.question.empty() || (page_.is_home_open && control_ != nullptr);
+}
+
 void SimulatorPresenter::CloseCards() {
   page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = page_.is_home_open = false;
   page_.is_patient_list_open = page_.is_key_list_open = page_.is_rehearsal_open = false;
@@ -53,8 +59,40 @@ void SimulatorPresenter::OpenHome() {
   page_.is_help_open = false;
   CloseCards();
   page_.is_home_open = true;
-  if (const auto who = screen_->BeSomebody({}); who.ok()) page_.home.who = *who;
+  if (const auto who = screen_->BeSomebody({}); who.ok()) page_.home.who = who->name;
+  screen_->RequestBest();
   Refresh();
+}
+
+/// Whoever operated here last is there again, unless the command line names somebody.
+void SimulatorPresenter::MeetAgain() {
+  if (settings_.person.empty() || !options_.trainee.empty()) return;
+  if (const auto who = screen_->BeSomebody(settings_.person); !who.ok())
+    host::Log(host::LogLevel::kWarning, who.error().Text());
+}
+
+/// The next step of the course and the last result, where they are known.
+void SimulatorPresenter::FindLeads() {
+  next_lead_.reset();
+  result_lead_.reset();
+  if (!leads_.next && !leads_.last) return;
+  const auto tasks = LoadTaskPage(TaskSection::kAll, options_.operation.patient);
+  const auto picture = [&](const std::string& task) -> std::filesystem::path {
+    if (!tasks.ok()) return {};
+    for (const TaskPage::Group& group : tasks->groups) {
+      for (const TaskPage::Row& row : group.rows) {
+        if (row.request.task == (task.empty() ? kOperationTask : task)) return row.picture;
+      }
+    }
+    return {};
+  };
+  if (leads_.next)
+    next_lead_ = HomeLead{host::TranslateWith("Next in {1}", {leads_.next->course}),
+                          leads_.next->title + (leads_.next->due.empty() ? "" : "  ·  " + leads_.next->due),
+                          picture(leads_.next->task)};
+  if (leads_.last)
+    result_lead_ = HomeLead{host::TranslateWith("Last result: {1}", {leads_.last->title}),
+                            leads_.last->outcome, picture(leads_.last->task)};
 }
 
 /// What could not be opened is said on the home page, which leads on.
@@ -64,7 +102,7 @@ void SimulatorPresenter::LeadOn(const base::Error& error) {
   options_.scene.clear();
   options_.operation.part.clear();
   start_.reset();
-  tutorial_.Leave();
+  LeaveTutorial();
   page_.home.problem = error;
   // a patient that has vanished is not asked for again; the home page says who is operated on now
   std::error_code ignored;
@@ -95,9 +133,13 @@ void SimulatorPresenter::Choose(HomeChoice choice) {
       request.choice.level = settings_.last_level;
       request.choice.seed = settings_.last_seed;
       return request.task.empty() ? Refresh() : Open(request);
+    case HomeChoice::kNextStep:
+      return leads_.next ? screen_->StartStep(leads_.next->name) : Refresh();
+    case HomeChoice::kLastResult:
+      return leads_.last ? screen_->OpenLastResult(*leads_.last) : Refresh();
     case HomeChoice::kTutorial:
-      if (tutorial_.IsOn()) tutorial_.Leave();
-      return ToggleTutorial();
+      if (!tutorial_.IsOn()) return Do(Action::kToggleTutorial);
+      return BeginTutorial();
     case HomeChoice::kBasicSkills:
       return OpenTaskList(TaskSection::kBasicSkills);
     case HomeChoice::kOperation:
@@ -116,9 +158,15 @@ void SimulatorPresenter::Choose(HomeChoice choice) {
 void SimulatorPresenter::BeSomebody(const std::string& text) {
   const auto who = screen_->BeSomebody(text);
   page_.home.problem.reset();
-  best_.clear();  // they were somebody else's
+  // they were somebody else's
+  best_.clear();
+  leads_ = {};
+  FindLeads();
   if (who.ok()) {
-    page_.home.who = *who;
+    page_.home.who = who->name;
+    settings_.person = who->pseudonym;
+    KeepSettings();
+    screen_->RequestBest();
   } else {
     page_.home.problem = who.error();
   }
@@ -161,13 +209,31 @@ void SimulatorPresenter::ToggleLeftHanded() {
 // tutorial
 
 void SimulatorPresenter::ToggleTutorial() {
-  if (tutorial_.IsOn()) {
-    tutorial_.Leave();
-    Announce(host::Translate(
-        "The tutorial goes on where you left it. What you do now is no attempt before a task is begun."));
-    return;
-  }
+  if (!tutorial_.IsOn()) return BeginTutorial();
+  tutorial_.Leave();
+  Announce(bindings_.Fill(host::Translate(
+      "The tutorial goes on where you left it. What you do now is no attempt; {reset} begins one.")));
+}
+
+void SimulatorPresenter::BeginTutorial() {
+  if (loading_.IsRunning()) return;
+  TaskRequest request;
+  request.task = kTutorialTask;
+  request.choice.patient_folder = options_.operation.patient;
+  Open(request);
+  // the scene is read beside the window: whoever makes its session finds the tutorial on
   tutorial_.Begin(settings_.tutorial_step >= kTutorialSteps ? 0 : settings_.tutorial_step);
+  is_practice_ = true;
+  Refresh();
+}
+
+/// Whatever is opened from now on is an attempt.
+void SimulatorPresenter::LeaveTutorial() {
+  tutorial_.Leave();
+  is_practice_ = false;
+}
+
+void SimulatorPresenter::StartTutorialTask() {
   TaskRequest request;
   request.task = kTutorialTask;
   request.choice.patient_folder = options_.operation.patient;
@@ -188,12 +254,22 @@ void SimulatorPresenter::FollowTutorial(const simulation::Snapshot& snapshot) {
   Refresh();
 }
 
+OperationStep SimulatorPresenter::NextOperationStep() const {
+  if (control_ == nullptr || !HasGuides() || tutorial_.IsOn() || control_->IsDemonstration() ||
+      is_attempt_over_)
+    return {};
+  if (!control_->GetScene().operation || control_->GetScene().task) return {};
+  return FindOperationStep(control_->GetScene(), control_->Strands(), control_->Now(),
+                           operation_end_.Reached());
+}
+
 // questions
 
 bool SimulatorPresenter::MustAsk(Action action) const {
-  if (action != Action::kQuit && action != Action::kToggleDemonstration) return false;
+  if (action != Action::kQuit && action != Action::kToggleDemonstration && action != Action::kToggleTutorial)
+    return false;
   if (asked_ == action || unattended_.IsOn() || control_ == nullptr || page_.failure) return false;
-  return !control_->IsDemonstration() && !is_attempt_over_ && !tutorial_.IsOn() &&
+  return !control_->IsDemonstration() && !is_attempt_over_ && !is_practice_ &&
          attempt_seconds_ > kWorthAsking;
 }
 
@@ -220,6 +296,7 @@ Situation SimulatorPresenter::MakeSituation() {
   situation.is_demonstration = control_->IsDemonstration();
   situation.is_demonstration_over = control_->IsDemonstrationOver();
   situation.is_laparoscope_held = control_->IsLaparoscopeHeld();
+  situation.is_camera_task = control_->IsCameraTask() && situation.is_laparoscope_held;
   situation.has_camera_holder = control_->HasCameraHolder();
   situation.is_right_hand = control_->GetHand() == device::kRightHand;
   situation.is_slow = control_->IsSlowMotion();
@@ -236,6 +313,9 @@ void SimulatorPresenter::RefreshFirstMeeting() {
   page_.is_left_handed = settings_.is_left_handed;
   page_.is_panel_open = settings_.has_panel && control_ != nullptr && !IsExam();
   page_.tutorial = page_.failure ? "" : tutorial_.Text(bindings_);
+  page_.is_tutorial_done = !page_.tutorial.empty() && tutorial_.IsDone();
+  const std::string_view next = page_.failure ? std::string_view() : NextOperationStep().text;
+  page_.next_step = next.empty() ? "" : bindings_.Fill(host::Translate(next));
   page_.progress = control_ == nullptr || page_.failure
                        ? ""
                        : DescribeProgress(control_->GetScene(), control_->Now(), operation_end_);
@@ -244,11 +324,18 @@ void SimulatorPresenter::RefreshFirstMeeting() {
           ? host::Translate("Leave Trocar? The attempt ends here; what is recorded of it is kept.")
       : asked_ == Action::kToggleDemonstration
           ? host::Translate("Play the demonstration? It begins anew, and your attempt ends here.")
+      : asked_ == Action::kToggleTutorial
+          ? host::Translate("Begin the tutorial? Your attempt ends here; what is recorded of it is kept.")
           : "";
   if (!page_.is_home_open) return;
   page_.home = MakeHomePage(settings_, page_.home.who, page_.home.problem);
+  page_.home.next = next_lead_;
+  page_.home.result = result_lead_;
   page_.home.patient = ShortPatientName(options_.operation.patient);
-  if (control_ != nullptr) page_.home.last = host::Translate("Back to the operation that is open");
+  if (control_ != nullptr) {
+    page_.home.last_title = host::Translate("Go on");
+    page_.home.last = host::Translate("Back to what is open");
+  }
   page_.hint.clear();
   page_.badge.clear();
 }

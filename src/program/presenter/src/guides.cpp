@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/host/translate.h"
+#include "trocar/presenter/pointer_map.h"
 #include "trocar/presenter/read_outs.h"
 
 namespace trocar::presenter {
@@ -20,9 +21,13 @@ constexpr double kLineWidth = 0.0007, kRingWidth = 0.0009;   // m
 constexpr double kFootRadius = 0.0035, kHoldRadius = 0.005;  // m
 constexpr double kNextMargin = 0.004, kPlaceRadius = 0.006;  // m
 constexpr double kFootLift = 0.0006;                         // above what it lies on [m]
+constexpr double kNear = 0.003, kTouchRadius = 0.003;        // about to touch; of the ring that says so [m]
 constexpr double kNearest = 0.0015;                          // nearer, the tip touches it [m]
 constexpr double kClosedJaw = 0.06, kDash = 0.004;           // rad, m
 constexpr int kRingSteps = 24;
+constexpr int kMostSteps = 256;           // towards a shape
+constexpr double kMet = 2e-5;             // so near is there [m]
+constexpr double kStrandRadius = 0.0012;  // of fibres and fat between organs, as they are drawn [m]
 constexpr std::array<Material, instrument::kHandCount> kHandColours = {Material::kBlueRubber,
                                                                        Material::kYellowRubber};
 
@@ -39,22 +44,39 @@ std::optional<double> Meet(const Vec3& from, const Vec3& way, const Vec3& a, con
   return t;
 }
 
-/// A box from outside.
-std::optional<double> MeetBox(const Vec3& from, const Vec3& way, const Vec3& half) {
-  double near = 0, far = kLongestGuide;
-  const std::array<std::array<double, 3>, 3> axes = {
-      {{from.x, way.x, half.x}, {from.y, way.y, half.y}, {from.z, way.z, half.z}}};
-  for (const auto& [at, step, reach] : axes) {
-    if (std::fabs(step) < 1e-12) {
-      if (std::fabs(at) > reach) return std::nullopt;
-      continue;
+/// From a shape's surface, negative inside; p in its frame.
+double DistanceFrom(const RigidShape& shape, const Vec3& p) {
+  const double across = std::hypot(p.x, p.y);
+  switch (shape.kind) {
+    case RigidShape::Kind::kBox: {
+      const Vec3 out{std::fabs(p.x) - shape.size.x, std::fabs(p.y) - shape.size.y,
+                     std::fabs(p.z) - shape.size.z};
+      const Vec3 beyond{std::max(out.x, 0.0), std::max(out.y, 0.0), std::max(out.z, 0.0)};
+      return math::Norm(beyond) + std::min(std::max({out.x, out.y, out.z}), 0.0);
     }
-    const double one = (-reach - at) / step, other = (reach - at) / step;
-    near = std::max(near, std::min(one, other));
-    far = std::min(far, std::max(one, other));
+    case RigidShape::Kind::kCylinder: {
+      const double out = across - shape.size.x, up = std::fabs(p.z) - shape.size.z;
+      return std::hypot(std::max(out, 0.0), std::max(up, 0.0)) + std::min(std::max(out, up), 0.0);
+    }
+    case RigidShape::Kind::kCapsule:
+      return std::hypot(across, std::max(std::fabs(p.z) - shape.size.z, 0.0)) - shape.size.x;
+    case RigidShape::Kind::kSphere:
+      return math::Norm(p) - shape.size.x;
+    case RigidShape::Kind::kRing:
+      return std::hypot(across - shape.size.x, p.z) - shape.size.y;
   }
-  if (near > far) return std::nullopt;
-  return near;
+  return kLongestGuide;
+}
+
+/// A shape from outside, by steps as long as nothing is near.
+std::optional<double> MeetShape(const RigidShape& shape, const Vec3& from, const Vec3& way, double longest) {
+  double at = 0;
+  for (int step = 0; step < kMostSteps && at < longest; ++step) {
+    const double distance = DistanceFrom(shape, from + at * way);
+    if (distance < kMet) return at;
+    at += distance;
+  }
+  return std::nullopt;
 }
 
 /// A ball from outside: nodes of a tube lie about as far apart as it is wide.
@@ -63,17 +85,6 @@ std::optional<double> MeetBall(const Vec3& from, const Vec3& way, const Vec3& ce
   const double along = math::Dot(to, way), off2 = math::SquaredNorm(to) - along * along;
   if (along < 0 || off2 > radius * radius) return std::nullopt;
   return std::max(0.0, along - std::sqrt(radius * radius - off2));
-}
-
-Trail MakeRing(const Vec3& centre, const Vec3& normal, double radius, Material material) {
-  const math::Quaternion turn = math::RotationBetween({0, 0, 1}, normal);
-  Trail ring{{}, material, kRingWidth};
-  for (int i = 0; i <= kRingSteps; ++i) {
-    const double angle = 2 * M_PI * i / kRingSteps;
-    ring.points.push_back(centre +
-                          math::Rotate(turn, Vec3{radius * std::cos(angle), radius * std::sin(angle), 0}));
-  }
-  return ring;
 }
 
 /// Which goal is worked on: one that has begun, else the first that may be.
@@ -100,14 +111,22 @@ double FindRadius(const scene::SceneObject& object) {
 }
 
 void AddDepthLine(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
-                  const simulation::Snapshot& snapshot, int hand, std::vector<Trail>& trails) {
+                  std::span<const scene::StrandInfo> strands, const simulation::Snapshot& snapshot, int hand,
+                  std::vector<Trail>& trails) {
   const Vec3& tip = snapshot.instruments[static_cast<std::size_t>(hand)].X_world_tool.translation;
   const Vec3 way = scene.HasPatient() || scene.model
-                       ? math::Rotate(snapshot.X_world_laparoscope.rotation, Vec3{0, 0, -1})
+                       ? math::Rotate(snapshot.X_world_laparoscope.rotation,
+                                      CalcSightLine(snapshot.X_world_laparoscope, tip))
                        : Vec3{0, 0, -1};
-  const auto distance = FindDistanceAhead(scene, surfaces, snapshot, tip, way);
-  if (!distance || *distance < kNearest) return;
   const Material colour = kHandColours[static_cast<std::size_t>(hand)];
+  const Vec3 to_eye = math::Rotate(snapshot.X_world_laparoscope.rotation, Vec3{0, 0, 1});
+  if (snapshot.instruments[static_cast<std::size_t>(hand)].is_touching) {
+    trails.push_back(MakeRing(tip, to_eye, kTouchRadius, Material::kMark));
+    return;
+  }
+  const auto distance = FindDistanceAhead(scene, surfaces, strands, snapshot, tip, way);
+  if (distance && *distance < kNear) trails.push_back(MakeRing(tip, to_eye, kTouchRadius, colour));
+  if (!distance || *distance < kNearest) return;
   for (double at = 0; at < *distance; at += 2 * kDash)
     trails.push_back({{tip + at * way, tip + std::min(at + kDash, *distance) * way}, colour, kLineWidth});
   trails.push_back(MakeRing(tip + (*distance - kFootLift) * way, way, kFootRadius, colour));
@@ -115,8 +134,20 @@ void AddDepthLine(const scene::Scene& scene, std::span<const scene::SurfaceInfo>
 
 }  // namespace
 
+Trail MakeRing(const Vec3& centre, const Vec3& normal, double radius, Material material) {
+  const math::Quaternion turn = math::RotationBetween({0, 0, 1}, normal);
+  Trail ring{{}, material, kRingWidth};
+  for (int i = 0; i <= kRingSteps; ++i) {
+    const double angle = 2 * M_PI * i / kRingSteps;
+    ring.points.push_back(centre +
+                          math::Rotate(turn, Vec3{radius * std::cos(angle), radius * std::sin(angle), 0}));
+  }
+  return ring;
+}
+
 std::optional<double> FindDistanceAhead(const scene::Scene& scene,
                                         std::span<const scene::SurfaceInfo> surfaces,
+                                        std::span<const scene::StrandInfo> strands,
                                         const simulation::Snapshot& snapshot, const Vec3& from,
                                         const Vec3& direction) noexcept {
   double nearest = kLongestGuide;
@@ -124,12 +155,19 @@ std::optional<double> FindDistanceAhead(const scene::Scene& scene,
     if (t) nearest = std::min(nearest, *t);
   };
   for (std::size_t i = 0; i < scene.objects.size() && i < snapshot.objects.size(); ++i) {
-    if (scene.objects[i].body.mass > 0) continue;
+    if (snapshot.objects[i].held_by != 0) continue;  // it goes with the jaws
     for (const RigidShape& shape : scene.objects[i].body.shapes) {
-      if (shape.kind != RigidShape::Kind::kBox) continue;
       const Pose X = math::Inverse(snapshot.objects[i].X_world_object * shape.X_body_shape);
-      take(MeetBox(X * from, math::Rotate(X.rotation, direction), shape.size));
+      take(MeetShape(shape, X * from, math::Rotate(X.rotation, direction), nearest));
     }
+  }
+  const auto& is_intact = snapshot.operation.strand_is_intact;
+  for (std::size_t i = 0; i < strands.size(); ++i) {
+    if (i < is_intact.size() && is_intact[i] == 0) continue;
+    const Vec3 &a = snapshot.positions[strands[i].a], &b = snapshot.positions[strands[i].b];
+    const int balls = 1 + static_cast<int>(math::Distance(a, b) / kStrandRadius);
+    for (int ball = 0; ball <= balls; ++ball)
+      take(MeetBall(from, direction, math::Lerp(a, b, static_cast<double>(ball) / balls), kStrandRadius));
   }
   for (const scene::SurfaceInfo& tube : surfaces) {
     for (std::size_t i = 0; i < tube.radii.size(); ++i)
@@ -177,10 +215,11 @@ NextStep FindNextStep(const scene::Task& task, const simulation::Snapshot& snaps
 }
 
 std::vector<Trail> MakeGuides(const scene::Scene& scene, std::span<const scene::SurfaceInfo> surfaces,
+                              std::span<const scene::StrandInfo> strands,
                               const simulation::Snapshot& snapshot) {
   std::vector<Trail> trails;
   for (int hand = 0; hand < instrument::kHandCount; ++hand) {
-    AddDepthLine(scene, surfaces, snapshot, hand, trails);
+    AddDepthLine(scene, surfaces, strands, snapshot, hand, trails);
     const auto& tool = snapshot.instruments[static_cast<std::size_t>(hand)];
     if (tool.is_grasping) {
       const Vec3 along = math::Rotate(tool.X_world_tool.rotation, Vec3{0, 0, 1});

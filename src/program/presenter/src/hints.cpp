@@ -20,6 +20,11 @@ std::string ModeTemplate(const Situation& situation) {
   if (situation.is_demonstration)
     return host::Translate(
         "The script holds both hands  ·  {demonstration} takes over  ·  {run} pauses  ·  {help} all keys");
+  if (situation.is_laparoscope_held && situation.is_camera_task)
+    return host::Translate(
+        "Laparoscope: mouse looks round  ·  wheel in and out  ·  {left-hand}, {right-hand}: a hand  ·  Esc "
+        "frees the "
+        "mouse  ·  {help} all keys");
   if (situation.is_laparoscope_held)
     return host::Translate(
         "Laparoscope: mouse looks round  ·  wheel in and out  ·  let {hold-laparoscope} or the {button:look} "
@@ -45,7 +50,7 @@ std::string ModeTemplate(const Situation& situation) {
 }  // namespace
 
 std::string HintText(const Situation& situation) {
-  if (!situation.is_loaded) return situation.is_loading ? host::Translate("Loading the patient …") : "";
+  if (!situation.is_loaded) return situation.is_loading ? host::Translate("Loading …") : "";
   if (situation.is_paused) return Fill(situation, host::Translate("Paused. {run} goes on."));
   if (situation.is_demonstration_over)
     return Fill(
@@ -55,6 +60,9 @@ std::string HintText(const Situation& situation) {
     return Fill(
         situation,
         host::Translate("Demonstration: the script holds both instruments. {demonstration} takes over."));
+  if (situation.is_camera_task && !situation.is_pointer_taken)
+    return Fill(situation,
+                host::Translate("Click into the picture to take the laparoscope. {help} shows all keys."));
   if (situation.is_laparoscope_held) return "";
   if (!situation.is_pointer_taken)
     return Fill(situation,
@@ -87,7 +95,7 @@ std::string ModeText(const Situation& situation) {
 }
 
 std::string StateText(const Situation& situation) {
-  if (!situation.is_loaded) return situation.is_loading ? host::Translate("Loading the patient") : "";
+  if (!situation.is_loaded) return situation.is_loading ? host::Translate("Loading") : "";
   if (situation.is_paused) return host::Translate("Paused");
   return situation.is_demonstration ? host::Translate("Demonstration") : host::Translate("Running");
 }

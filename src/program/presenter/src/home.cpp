@@ -11,7 +11,9 @@ namespace trocar::presenter {
 namespace {
 
 constexpr HomeEntry kEntries[] = {
-    {HomeChoice::kContinue, "Continue", "What you trained last"},
+    {HomeChoice::kContinue, "Once more", "What you trained last"},
+    {HomeChoice::kNextStep, "Next in the course", "The step that comes next"},
+    {HomeChoice::kLastResult, "Last result", "What the last attempt came to"},
     {HomeChoice::kTutorial, "Tutorial", "Learn each control by doing it: five minutes"},
     {HomeChoice::kBasicSkills, "Basic skills", "Rings, pegs, threads, clips: each task with its levels"},
     {HomeChoice::kOperation, "The operation and its parts",
@@ -40,6 +42,7 @@ HomePage MakeHomePage(const WindowSettings& settings, const std::string& who,
   HomePage page;
   page.who = who;
   page.problem = problem;
+  page.last_title = host::Translate("Once more");
   if (!settings.last_task.empty()) {
     page.last = host::Translate(InWords(settings.last_task));
     if (!settings.last_part.empty()) page.last += ", " + host::Translate(InWords(settings.last_part));

@@ -14,6 +14,7 @@ void SimulatorPresenter::Start() {
   is_closed_ = false;
   const bool is_named = !options_.scene.empty() || !options_.task.empty() || options_.is_task_list ||
                         options_.is_demonstration || !options_.run.IsAttended();
+  MeetAgain();
   if (!start_ && !is_named) return OpenHome();
   page_.home.problem.reset();
   preparing_ = std::make_shared<Preparing>();
@@ -72,7 +73,7 @@ void SimulatorPresenter::GiveUpOpening() {
   options_.scene.clear();
   options_.operation.part.clear();
   start_.reset();
-  tutorial_.Leave();
+  LeaveTutorial();
   page_.home.problem.reset();
   OpenHome();
   Announce(host::Translate("Given up before it began."));
@@ -114,6 +115,7 @@ void SimulatorPresenter::GoOn() {
 void SimulatorPresenter::TakeOver(Branch branch) {
   if (loading_.IsRunning() || page_.failure) return;
   is_closed_ = false;
+  LeaveTutorial();
   Drop();
   start_.reset();
   const record::Description& from = branch.description;
@@ -160,18 +162,28 @@ session::SessionOptions SimulatorPresenter::MakeSessionOptions(record::Descripti
         host::LogLevel::kWarning,
         "the key \"" + key + "\" of the device settings can have no act; docs/devices.md says which can");
   }
-  // what is tried in the tutorial is no attempt
-  if (options_.recordings.empty() || tutorial_.IsOn()) return options;
-  options.keeping = {options_.recordings, std::move(description), {}, hooks_.on_end};
+  if (options_.recordings.empty() || is_practice_) return options;
+  options.keeping = {options_.recordings, std::move(description), {}, hooks_.on_end, {}};
   if (hooks_.on_begin) {
     options.keeping->on_begin = [begin = hooks_.on_begin, step = start_ ? start_->step : centre::StepName()](
                                     const std::filesystem::path& path) { begin(path, step); };
+  }
+  if (hooks_.watch) {
+    // as a replay of it is judged: of a part that no course asks for, the whole recording counts
+    const bool is_of_course = start_ && start_->step.IsSet();
+    const auto from = is_of_course ? start_->from : assessment::Milestone::kStart;
+    const auto until = is_of_course ? start_->until : assessment::Milestone::kCompleted;
+    options.keeping->watch = [watch = hooks_.watch, from, until](const std::filesystem::path& path,
+                                                                 const simulation::Simulation& simulation) {
+      return watch(path, simulation, from, until);
+    };
   }
   return options;
 }
 
 void SimulatorPresenter::Open(const TaskRequest& request) {
   if (loading_.IsRunning()) return;
+  LeaveTutorial();
   Drop();
   options_.task = request.task;
   options_.scene = request.scene;
@@ -187,6 +199,7 @@ void SimulatorPresenter::Open(const TaskRequest& request) {
 
 void SimulatorPresenter::Open(const centre::Start& start) {
   if (loading_.IsRunning()) return;
+  LeaveTutorial();
   Drop();
   options_.task = start.description.name;
   options_.scene.clear();
@@ -198,6 +211,12 @@ void SimulatorPresenter::Open(const centre::Start& start) {
   if (start.exam) page_.view.has_force_arrows = false;
   screen_->FocusPicture();
   Start();
+}
+
+bool SimulatorPresenter::MayClose() {
+  if (!MustAsk(Action::kQuit)) return true;
+  Do(Action::kQuit);
+  return false;
 }
 
 void SimulatorPresenter::Close() {

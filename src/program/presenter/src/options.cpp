@@ -117,6 +117,22 @@ void AddRun(CLI::App& app, Options& options) {
                  "File that keeps the window's settings (default: window.json beside devices.json in "
                  "~/.config/trocar; none with --screenshot)");
   app.add_flag("--fullscreen", options.is_fullscreen, "Start in full screen (F11 switches)");
+  app.add_option_function<std::string>(
+         "--size",
+         [&options](const std::string& text) {
+           if (std::sscanf(text.c_str(), "%dx%d", &options.width, &options.height) != 2)
+             throw CLI::ValidationError("--size", "two numbers of pixels, for example 1024x700");
+         },
+         "Size of a window at first, in pixels: 1280x800")
+      ->type_name("WIDTHxHEIGHT");
+  app.add_option("--text-percent", options.text_percent,
+                 "Size of texts in per cent (default: as the desktop has it)")
+      ->check(CLI::Range(50, 400));
+  app.add_flag("--high-contrast", options.is_high_contrast,
+               "White on black, with lines round what can be pressed (also where the desktop's theme has "
+               "high contrast)");
+  app.add_option("--check-layout", options.layout,
+                 "Open every page, write what is cut off or off the screen in this JSON file, and quit");
   app.add_flag("--demonstration", options.is_demonstration,
                "Start with the demonstration: the script moves both hands");
   app.add_option("--screenshot", options.run.screenshot,

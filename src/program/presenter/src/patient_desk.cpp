@@ -101,7 +101,7 @@ void PatientDesk::Make(const std::string& name, const std::string& doing, Maker 
 
 void PatientDesk::Generate(std::uint64_t seed) {
   const std::string number = std::to_string(seed);
-  Make("seed-" + number, host::TranslateWith("Making the patient of seed {1}", {number}),
+  Make("seed-" + number, host::TranslateWith("Making patient {1}", {number}),
        [seed](const fs::path& folder, Work& work) -> base::Status {
          const auto patient = anatomy::GeneratePatient(seed);
          if (!patient.ok()) return patient.error();

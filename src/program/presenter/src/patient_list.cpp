@@ -107,7 +107,6 @@ PatientEntry DescribePatient(const fs::path& folder) {
     entry.problem = patient.error();
     return entry;
   }
-  if (!patient->name.empty()) entry.name = host::TranslateComposed(patient->name);
   entry.about = DescribeFindings(*patient);
   if (patient->tubes.empty())
     entry.problem = base::Error{
@@ -128,8 +127,10 @@ std::vector<PatientEntry> ListPatients(const fs::path& folder, const fs::path& c
   const auto data = host::FindDataFolder();
   if (data.ok()) {
     entries.push_back(DescribePatient(*data / kBuiltIn));
+    // everywhere by the same name
     entries.back().folder.clear();
-    entries.back().about = host::Translate("Built in; measured and trained on most");
+    entries.back().name = ShortPatientName({});
+    entries.back().about = host::Translate("From the Visible Human's pictures; measured and trained on most");
   }
   std::vector<fs::path> folders;
   std::error_code failure;

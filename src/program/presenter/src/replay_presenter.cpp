@@ -33,8 +33,8 @@ std::string DescribeSide(const record::Recording& recording) {
   const record::Description& d = recording.description;
   std::string text = host::Translate(Words(std::filesystem::path(d.name).stem().string()));
   if (!d.level.empty()) text += ", " + host::Translate(d.level);
-  text +=
-      host::TranslateWith(", seed {1}  ·  {2}", {std::to_string(d.seed), host::TranslateComposed(d.player)});
+  text += host::TranslateWith(", variant {1}  ·  {2}",
+                              {std::to_string(d.seed), host::TranslateComposed(d.player)});
   if (d.started.size() >= 16) text += "  ·  " + d.started.substr(0, 10) + " " + d.started.substr(11, 5);
   return text;
 }

@@ -51,6 +51,16 @@ device::MouseKeyboardSettings DeviceSettings(const scene::Scene& scene) {
 
 }  // namespace
 
+bool IsCameraTask(const scene::Scene& scene) {
+  if (!scene.task || scene.task->goals.empty()) return false;
+  for (const scene::Goal& goal : scene.task->goals) {
+    for (const scene::Condition& step : goal.steps) {
+      if (step.kind != scene::ConditionKind::kCameraSees) return false;
+    }
+  }
+  return true;
+}
+
 base::Result<std::unique_ptr<SessionControl>> SessionControl::Make(simulation::Simulation simulation,
                                                                    const session::SessionOptions& options) {
   const device::MouseKeyboardSettings settings = DeviceSettings(simulation.GetScene());
@@ -60,6 +70,9 @@ base::Result<std::unique_ptr<SessionControl>> SessionControl::Make(simulation::S
   if (const base::Status status = control->device_.Configure(); !status) return status.error();
   if (const base::Status status = control->device_.Activate(); !status) return status.error();
   control->PlaceAtHome();
+  control->is_camera_task_ = presenter::IsCameraTask(control->GetScene());
+  control->has_camera_ = control->is_camera_task_;
+  control->HoldLaparoscope(false);
   control->RestoreSettings();
   return control;
 }
@@ -122,8 +135,16 @@ void SessionControl::AdvanceMouse(const simulation::Snapshot& snapshot, double d
     LimitLead(snapshot);
     const math::Pose X_world_view = CalcView(snapshot);
     device_.Read(after);
-    for (const Channel channel : kChannels)
-      device_.SetPointerMap(channel, CalcPointerMap(JointsOf(after[channel]), X_world_view));
+    for (const Channel channel : kChannels) {
+      const TrocarJoints joints = JointsOf(after[channel]);
+      const math::Vec3 away =
+          channel == device::kLaparoscope
+              ? math::Vec3{0, 0, -1}
+              : CalcSightLine(X_world_view,
+                              instrument::CalcToolPose(GetScene().instruments[channel].p_world_port, joints)
+                                  .translation);
+      device_.SetPointerMap(channel, CalcPointerMap(joints, X_world_view, away));
+    }
     const Channel chosen = device_.GetChosen();
     const math::Vec3 p_world_followed = chosen == device::kLaparoscope
                                             ? X_world_view * math::Vec3{0, 0, -kLookDistance}
@@ -250,7 +271,8 @@ void SessionControl::ChooseHand(Channel hand) {
   if (hand == device::kLaparoscope) return;
   if (hand != hand_) ReleasePedals();
   hand_ = hand;
-  if (!IsLaparoscopeHeld()) device_.Choose(hand);
+  if (has_camera_ || !IsLaparoscopeHeld()) device_.Choose(hand);
+  has_camera_ = false;
 }
 
 void SessionControl::SwitchHand() {
@@ -259,18 +281,20 @@ void SessionControl::SwitchHand() {
 
 void SessionControl::HoldLaparoscope(bool is_held) {
   if (is_held) SetCameraHolder(false);
-  device_.Choose(is_held ? device::kLaparoscope : hand_);
+  has_camera_ = has_camera_ || (is_held && is_camera_task_);
+  device_.Choose(is_held || has_camera_ ? device::kLaparoscope : hand_);
 }
 
 void SessionControl::Scroll(double steps) {
   const bool goes_in = steps > 0 && has_depth_snap_ && !is_fulcrum_mirrored_ && !IsLaparoscopeHeld();
   if (!goes_in) return device_.Scroll(steps);
   const simulation::Snapshot& now = Now();
-  const math::Vec3 away = math::Rotate(CalcView(now).rotation, math::Vec3{0, 0, -1});
   // where the hand is, not the tool, which follows it
   const math::Vec3 tip =
       instrument::CalcToolPose(GetScene().instruments[hand_].p_world_port, input_.hands[hand_]).translation;
-  const auto ahead = FindDistanceAhead(GetScene(), Surfaces(), now, tip, away);
+  const math::Pose X_world_view = CalcView(now);
+  const math::Vec3 away = math::Rotate(X_world_view.rotation, CalcSightLine(X_world_view, tip));
+  const auto ahead = FindDistanceAhead(GetScene(), Surfaces(), Strands(), now, tip, away);
   const double step = device::MouseKeyboardSettings().metres_per_step;
   const double left = ahead ? *ahead - kSnapGap - wheel_under_way_ : 2 * steps * step;
   // at it already: the person wants to go on, once what was turned has been walked

@@ -208,8 +208,12 @@ void SimulatorPresenter::ToggleForceFeedback() {
 
 /// Esc: no force, no pointer, no card over the picture, nothing that is prepared.
 void SimulatorPresenter::ReleaseAll() {
+  const bool is_free =
+      preparing_ == nullptr && !screen_->IsPointerTaken() && !page_.is_help_open && !HasCard();
   if (preparing_ != nullptr) preparing_->is_cancelled = true;
   if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
+  // one thing after the other: whoever has nothing else to leave leaves full screen
+  if (is_free) screen_->DoInWindow(Action::kReleasePointer);
   screen_->ReleasePointer();
   screen_->FocusPicture();
   page_.is_help_open = false;
@@ -231,6 +235,8 @@ void SimulatorPresenter::SetDemonstration(bool is_on) {
 }
 
 void SimulatorPresenter::Reset() {
+  // a board on which one learned becomes an attempt
+  if (is_practice_ && (!tutorial_.IsOn() || tutorial_.IsDone())) return StartTutorialTask();
   // a step that begins in the middle of an operation begins there again
   if (start_ && !start_->state.empty()) return Open(centre::Start(*start_));
   is_attempt_over_ = false;
@@ -255,9 +261,12 @@ void SimulatorPresenter::OpenTaskList(TaskSection section) {
   Refresh();
 }
 
-void SimulatorPresenter::ShowBest(const centre::BestResults& results) {
-  if (results == best_ && !best_.empty()) return;
-  best_ = results;
+void SimulatorPresenter::ShowBest(const centre::HomeResults& results) {
+  leads_ = results.leads;
+  FindLeads();
+  if (page_.is_home_open) Refresh();
+  if (results.best == best_ && !best_.empty()) return;
+  best_ = results.best;
   AddBestResults(best_, page_.tasks);
   if (page_.is_task_list_open) screen_->FillTaskList(page_.tasks);
 }

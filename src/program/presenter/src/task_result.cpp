@@ -151,7 +151,7 @@ std::string FormatTaskResultHtml(const TaskResult& result) {
   std::string html = "<!DOCTYPE html>\n<html lang=\"" + host::Translate("en") +
                      "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + task + " - Trocar</title>\n<style>" +
                      kStyle + "</style>\n</head>\n<body>\n<h1>" + task + "</h1>\n<p>" +
-                     say(host::TranslateWith("{1} after {2} (min:s). Score {3}. Level {4}, seed {5}.",
+                     say(host::TranslateWith("{1} after {2} (min:s). Score {3}. Level {4}, variant {5}.",
                                              {result.verdict, FormatTime(result.time), FormatScore(result),
                                               host::Translate(result.level), std::to_string(result.seed)}));
   if (result.is_demonstration) html += " " + say(host::Translate("A demonstration by the scripted expert."));

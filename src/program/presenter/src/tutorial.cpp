@@ -21,14 +21,16 @@ enum Lesson { kTake, kMove, kDepth, kOpenJaws, kCloseJaws, kSpin, kOtherHand, kL
 constexpr std::string_view kTexts[kTutorialSteps] = {
     "Click into the picture: the mouse takes the right instrument.",
     "Move the mouse: the tip follows it across the picture.",
-    "Turn the wheel: the tip goes deeper into the picture, and back out.",
+    "Turn the wheel away from you: the tip goes into the picture; towards you: back out.",
     "Hold the {button:open} mouse button (or {open-jaws}): the jaws open.",
     "Hold the {button:close} mouse button (or {close-jaws}): the jaws close.",
     "Hold {spin-left} or {spin-right}: the instrument spins about its shaft.",
     "Press {other-hand}: the mouse takes the other hand; this one keeps its place and its grip.",
     "Hold {hold-laparoscope} and move the mouse: the laparoscope looks round. Let {hold-laparoscope} go "
     "again.",
-    "Take a ring: jaws open, the dashed line on its rim, wheel down to it, close. Then open them: it falls.",
+    "Take a ring: jaws open; move until the tip lies over the ring's rim in the picture; turn the wheel away "
+    "from "
+    "you: the tip goes in behind that spot and stops at the rim; close. Then open them: it falls.",
     "Press {run}: everything stands still. Press it again to go on."};
 
 double CalcTurn(const instrument::TrocarJoints& a, const instrument::TrocarJoints& b) {
@@ -44,6 +46,10 @@ bool IsAnyHeld(const simulation::Snapshot& snapshot) {
 
 std::span<const std::string_view> TutorialTexts() noexcept {
   return kTexts;
+}
+
+std::string TutorialTaskName() {
+  return host::Translate("peg transfer");
 }
 
 void Tutorial::Begin(int step) {
@@ -107,8 +113,10 @@ std::string Tutorial::Text(const KeyBindings& bindings) const {
   const std::string leave = bindings.Fill(host::Translate("   ({tutorial} leaves the tutorial)"));
   if (IsDone())
     return host::TranslateWith(
-        "Done: these are all the controls. Now try the task: the bright ring shows what comes next.{1}",
-        {leave});
+        "Done: these are all the controls. {1} or the button below begins the task, as an attempt that is "
+        "kept: "
+        "the bright ring shows what comes next.{2}",
+        {bindings.Fill("{reset}"), leave});
   return host::TranslateWith("{1} of {2}:  {3}{4}",
                              {std::to_string(step_ + 1), std::to_string(kTutorialSteps),
                               bindings.Fill(host::Translate(kTexts[step_])), leave});

@@ -26,7 +26,7 @@ std::map<std::string, std::string> ReadTexts(const host::JsonView& root, const c
 
 WindowSettings ReadSettings(const host::JsonView& root) {
   root.AllowOnly({"format", "version", "left_handed", "real_trocar", "guides", "panel", "depth_snap",
-                  "patient", "keys", "buttons", "last", "tutorial_step"});
+                  "person", "patient", "keys", "buttons", "last", "tutorial_step"});
   if (root.Text("format") != kFormat) root.Complain("is no file of the window's settings");
   root.Integer("version", {kVersion, kVersion});
   WindowSettings settings;
@@ -36,6 +36,7 @@ WindowSettings ReadSettings(const host::JsonView& root) {
   settings.has_panel = root.BooleanOr("panel", settings.has_panel);
   settings.tutorial_step = root.IntegerOr("tutorial_step", 0, {0, kTutorialSteps});
   settings.has_depth_snap = root.BooleanOr("depth_snap", settings.has_depth_snap);
+  settings.person = root.TextOr("person", "");
   settings.patient = root.TextOr("patient", "");
   settings.keys = ReadTexts(root, "keys");
   settings.buttons = ReadTexts(root, "buttons");
@@ -80,6 +81,7 @@ base::Status SaveWindowSettings(const std::filesystem::path& path, const WindowS
                                  {"panel", settings.has_panel},
                                  {"depth_snap", settings.has_depth_snap},
                                  {"tutorial_step", settings.tutorial_step}};
+  if (!settings.person.empty()) json["person"] = settings.person;
   if (!settings.patient.empty()) json["patient"] = settings.patient;
   if (!settings.keys.empty()) json["keys"] = settings.keys;
   if (!settings.buttons.empty()) json["buttons"] = settings.buttons;

@@ -35,7 +35,9 @@ struct Bench {
     EXPECT_TRUE(read.ok()) << read.error().Text();
     return Make(*read);
   }
-  std::vector<view::Trail> Guides() const { return MakeGuides(*scene, simulation.Surfaces(), snapshot); }
+  std::vector<view::Trail> Guides() const {
+    return MakeGuides(*scene, simulation.Surfaces(), simulation.Strands(), snapshot);
+  }
 };
 
 int CountMarks(const std::vector<view::Trail>& trails) {
@@ -47,12 +49,14 @@ int CountMarks(const std::vector<view::Trail>& trails) {
 TEST(Guides, DropFromTheTipToTheBoard) {
   Bench bench = Bench::OfTask("peg_transfer");
   const Vec3 tip{0.004, 0.02, -0.100};
-  const auto distance =
-      FindDistanceAhead(*bench.scene, bench.simulation.Surfaces(), bench.snapshot, tip, {0, 0, -1});
+  const auto distance = FindDistanceAhead(*bench.scene, bench.simulation.Surfaces(),
+                                          bench.simulation.Strands(), bench.snapshot, tip, {0, 0, -1});
   ASSERT_TRUE(distance.has_value());
   EXPECT_NEAR(*distance, tip.z - kBoardTop, 1e-9);
-  EXPECT_FALSE(FindDistanceAhead(*bench.scene, {}, bench.snapshot, tip, {0, 0, 1}).has_value()) << "upwards";
-  EXPECT_FALSE(FindDistanceAhead(*bench.scene, {}, bench.snapshot, {0.4, 0, -0.1}, {0, 0, -1}).has_value())
+  EXPECT_FALSE(FindDistanceAhead(*bench.scene, {}, {}, bench.snapshot, tip, {0, 0, 1}).has_value())
+      << "upwards";
+  EXPECT_FALSE(
+      FindDistanceAhead(*bench.scene, {}, {}, bench.snapshot, {0.4, 0, -0.1}, {0, 0, -1}).has_value())
       << "beside the board";
   // the lowest point of a hand's line lies on the board, below the tip
   bench.snapshot.instruments[instrument::kLeft].X_world_tool.translation = tip;
@@ -68,6 +72,48 @@ TEST(Guides, DropFromTheTipToTheBoard) {
   EXPECT_NEAR(lowest, kBoardTop, 0.001);
 }
 
+// The issue: rings in the box were ignored.
+TEST(Guides, MeetTheRimOfARingAndNotItsHole) {
+  const Bench bench = Bench::OfTask("peg_transfer");
+  const math::Pose& X = bench.snapshot.objects[0].X_world_object;
+  const auto& shapes = bench.scene->objects[0].body.shapes;
+  double radius = 0, section = 0;
+  for (const rigid::RigidShape& shape : shapes) {
+    if (shape.kind == rigid::RigidShape::Kind::kRing) radius = shape.size.x, section = shape.size.y;
+  }
+  ASSERT_GT(radius, 0);
+  const auto surfaces = bench.simulation.Surfaces();
+  const auto strands = bench.simulation.Strands();
+  const Vec3 above = X * Vec3{radius, 0, 0} + Vec3{0, 0, 0.03};
+  const auto rim = FindDistanceAhead(*bench.scene, surfaces, strands, bench.snapshot, above, {0, 0, -1});
+  ASSERT_TRUE(rim.has_value());
+  EXPECT_NEAR(*rim, 0.03 - section, 5e-4);
+  Bench held = Bench::OfTask("peg_transfer");
+  held.snapshot.objects[0].held_by = 1;
+  const auto below = FindDistanceAhead(*held.scene, surfaces, strands, held.snapshot, above, {0, 0, -1});
+  ASSERT_TRUE(below.has_value());
+  EXPECT_GT(*below, *rim + section) << "what the jaws hold goes with them";
+}
+
+// The issue: the fat and fibres of the triangle were ignored.
+TEST(Guides, MeetFibresUntilTheyAreDivided) {
+  const auto read = files::ReadScene(std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json");
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  Bench bench = Bench::Make(*read);
+  const auto strands = bench.simulation.Strands();
+  ASSERT_FALSE(strands.empty());
+  const Vec3 &a = bench.snapshot.positions[strands[0].a], &b = bench.snapshot.positions[strands[0].b];
+  const Vec3 middle = math::Lerp(a, b, 0.5);
+  const Vec3 across = math::Normalized(math::Cross(b - a, Vec3{0.3, 0.5, 0.8}));
+  const Vec3 from = middle + 0.02 * across;
+  const auto met = FindDistanceAhead(*bench.scene, {}, strands.first(1), bench.snapshot, from, -1.0 * across);
+  ASSERT_TRUE(met.has_value());
+  EXPECT_NEAR(*met, 0.02, 0.002);
+  bench.snapshot.operation.strand_is_intact.assign(strands.size(), 0);
+  EXPECT_FALSE(
+      FindDistanceAhead(*bench.scene, {}, strands.first(1), bench.snapshot, from, -1.0 * across).has_value());
+}
+
 TEST(Guides, MeetTissueWhereTheWheelLeads) {
   const auto read = files::ReadScene(std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json");
   ASSERT_TRUE(read.ok()) << read.error().Text();
@@ -75,8 +121,8 @@ TEST(Guides, MeetTissueWhereTheWheelLeads) {
   // down the laparoscope's axis there is an organ: the answer is the nearest vertex' distance, to a triangle's size
   const math::Pose& X = bench.snapshot.X_world_laparoscope;
   const Vec3 way = math::Rotate(X.rotation, Vec3{0, 0, -1});
-  const auto distance =
-      FindDistanceAhead(*bench.scene, bench.simulation.Surfaces(), bench.snapshot, X.translation, way);
+  const auto distance = FindDistanceAhead(*bench.scene, bench.simulation.Surfaces(),
+                                          bench.simulation.Strands(), bench.snapshot, X.translation, way);
   ASSERT_TRUE(distance.has_value());
   const Vec3 met = X.translation + *distance * way;
   double nearest = 1;

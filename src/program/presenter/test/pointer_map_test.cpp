@@ -40,6 +40,25 @@ TEST(PointerMap, MovesTheTipAlongThePicturesAxes) {
   }
 }
 
+// Property: what goes along the line of sight stays on its spot of the picture.
+TEST(PointerMap, KeepsTheTipOnItsSpotAlongTheLineOfSight) {
+  math::Random random(11);
+  for (int trial = 0; trial < 200; ++trial) {
+    const math::Pose X_world_view{
+        math::Normalized(math::Quaternion{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1),
+                                          random.Uniform(-1, 1)}),
+        {random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1)}};
+    const Vec3 p_view{random.Uniform(-0.03, 0.03), random.Uniform(-0.03, 0.03), random.Uniform(-0.12, -0.05)};
+    const Vec3 along = CalcSightLine(X_world_view, X_world_view * p_view);
+    const Vec3 later = p_view + 0.02 * along;
+    EXPECT_NEAR(later.x / later.z, p_view.x / p_view.z, 1e-12);
+    EXPECT_NEAR(later.y / later.z, p_view.y / p_view.z, 1e-12);
+    EXPECT_LT(later.z, p_view.z) << "away from the lens";
+  }
+  EXPECT_EQ(CalcSightLine({}, {0.02, 0, -0.001}), (Vec3{0, 0, -1})) << "beside the lens";
+  EXPECT_EQ(CalcSightLine({}, {0, 0, 0.1}), (Vec3{0, 0, -1})) << "behind the lens";
+}
+
 TEST(PointerMap, StaysFiniteWhereTheShaftIsSingular) {
   for (const TrocarJoints& joints :
        {TrocarJoints{0, 0, 0, 0, 0}, TrocarJoints{0.3, 1.5707963267948966, 0, 0.1, 0},

@@ -88,6 +88,30 @@ TEST_F(SessionControlTest, TheHandStaysNearAToolThatSomethingStops) {
   EXPECT_LT(control->GetInput().hands[instrument::kRight].depth, depth);
 }
 
+// The issue: the wheel moved the tip off the spot that was aimed at.
+TEST_F(SessionControlTest, TheWheelKeepsTheTipOnItsSpotOfThePicture) {
+  control->SetPaused(false);
+  control->SetDepthSnap(false);
+  const auto spot = [&] {
+    const simulation::Snapshot& now = control->Advance(1.0 / 60);
+    const math::Vec3& port = control->GetScene().instruments[instrument::kRight].p_world_port;
+    const math::Vec3 p =
+        math::Inverse(control->CalcView(now)) *
+        instrument::CalcToolPose(port, control->GetInput().hands[instrument::kRight]).translation;
+    return math::Vec3{p.x / -p.z, p.y / -p.z, -p.z};
+  };
+  const math::Vec3 before = spot();
+  for (int turn = 0; turn < 5; ++turn) {
+    control->Scroll(-1);
+    for (int frame = 0; frame < 20; ++frame) control->Advance(1.0 / 60);
+  }
+  const math::Vec3 after = spot();
+  EXPECT_LT(after.z, before.z - 0.015) << "back towards the lens";
+  // a thousandth of the picture: the joints go in steps of a frame
+  EXPECT_NEAR(after.x, before.x, 1e-3);
+  EXPECT_NEAR(after.y, before.y, 1e-3);
+}
+
 // A beginner turns the wheel until something is reached: the tip ends before it, and a further turn presses.
 TEST_F(SessionControlTest, TheWheelStopsBeforeWhatTheTipMeets) {
   Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/tasks/peg_transfer.json");

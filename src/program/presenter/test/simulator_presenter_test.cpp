@@ -46,12 +46,16 @@ struct FakeScreen : SimulatorScreen {
   bool IsPointerTaken() const override { return is_pointer_taken; }
   void FocusPicture() override { ++focused; }
   void DoInWindow(Action action) override { done.push_back(action); }
-  base::Result<std::string> BeSomebody(const std::optional<std::string>& text) override {
+  base::Result<Somebody> BeSomebody(const std::optional<std::string>& text) override {
     if (text) who = *text;
-    return who;
+    return Somebody{who, who.empty() ? "" : "T-AAAAAA"};
   }
+  void StartStep(const centre::StepName& step) override { steps.push_back(step); }
+  void OpenLastResult(const centre::NextAndLast::Result& result) override { opened = result.recording; }
 
   std::string who;
+  std::vector<centre::StepName> steps;
+  std::filesystem::path opened;
   TaskPage tasks;
   std::filesystem::path listed_patient;
   int best_requests = 0;
@@ -553,6 +557,141 @@ TEST_F(Presenter, TheTutorialIsNoAttemptAndGoesOnWhereItWasLeft) {
   presenter_.reset();
   Begin(options);
   EXPECT_EQ(screen_.page.home.tutorial, "Go on: 2 of 10");
+}
+
+// The issue: a task opened from the list after the tutorial was no attempt.
+TEST_F(Presenter, WhateverIsOpenedAfterTheTutorialIsAnAttempt) {
+  Options options;
+  options.recordings = folder_.Path() / "kept";
+  options.threads = 1;
+  Begin(options);
+  presenter_->Choose(HomeChoice::kTutorial);
+  Load();
+  EXPECT_FALSE(screen_.page.tutorial.empty());
+  TaskRequest request;
+  request.task = "instrument_navigation";
+  presenter_->Open(request);
+  Load();
+  EXPECT_EQ(screen_.page.tutorial, "") << "opening anything leaves the tutorial";
+  ASSERT_TRUE(RunTo(5));
+  EXPECT_TRUE(screen_.control->Recording().has_value()) << "and what is opened is recorded";
+}
+
+TEST_F(Presenter, ResetBeginsAnAttemptOnceTheTutorialWasLeft) {
+  Options options;
+  options.recordings = folder_.Path() / "kept";
+  options.threads = 1;
+  Begin(options);
+  presenter_->Choose(HomeChoice::kTutorial);
+  Load();
+  presenter_->Do(Action::kReset);
+  ASSERT_TRUE(RunTo(5));
+  EXPECT_FALSE(screen_.control->Recording().has_value()) << "within the tutorial it is still practice";
+  presenter_->Do(Action::kToggleTutorial);
+  presenter_->Do(Action::kReset);
+  Load();
+  ASSERT_TRUE(RunTo(5));
+  EXPECT_TRUE(screen_.control->Recording().has_value());
+  EXPECT_EQ(presenter_->GetOptions().task, kTutorialTask);
+}
+
+TEST_F(Presenter, TheTutorialEndsWithItsTaskAsAnAttempt) {
+  const test::TemporaryFolder folder;
+  Options options;
+  options.settings = folder.Path() / "window.json";
+  options.recordings = folder_.Path() / "kept";
+  options.threads = 1;
+  WindowSettings settings;
+  settings.tutorial_step = kTutorialSteps - 1;
+  ASSERT_TRUE(SaveWindowSettings(options.settings, settings).ok());
+  Begin(options);
+  presenter_->Choose(HomeChoice::kTutorial);
+  Load();
+  EXPECT_FALSE(screen_.page.is_tutorial_done);
+  presenter_->Advance(1.0, 1.0, 500);
+  presenter_->Do(Action::kTogglePause);
+  presenter_->Advance(1.1, 1.0, 500);
+  presenter_->Do(Action::kTogglePause);
+  presenter_->Advance(1.2, 1.0, 500);
+  ASSERT_TRUE(screen_.page.is_tutorial_done) << screen_.page.tutorial;
+  presenter_->StartTutorialTask();
+  Load();
+  EXPECT_FALSE(screen_.page.is_tutorial_done);
+  EXPECT_EQ(screen_.page.tutorial, "");
+  ASSERT_TRUE(RunTo(5));
+  EXPECT_TRUE(screen_.control->Recording().has_value());
+}
+
+TEST_F(Presenter, TutorialAndTheWindowsFrameAskBeforeAnAttemptIsThrownAway) {
+  BeginTask();
+  EXPECT_TRUE(presenter_->MayClose()) << "a look is worth no question";
+  ASSERT_TRUE(RunTo(700));  // beyond five seconds
+  presenter_->Advance(1.0, 1.0, 500);
+  presenter_->Do(Action::kToggleTutorial);
+  EXPECT_FALSE(screen_.page.question.empty());
+  EXPECT_EQ(screen_.page.tutorial, "");
+  presenter_->Answer(false);
+  EXPECT_TRUE(screen_.page.question.empty());
+  EXPECT_FALSE(presenter_->MayClose());
+  EXPECT_NE(screen_.page.question.find("Leave Trocar"), std::string::npos);
+  presenter_->Answer(true);
+  EXPECT_EQ(screen_.done.back(), Action::kQuit);
+  EXPECT_TRUE(presenter_->MayClose()) << "it was answered";
+}
+
+TEST_F(Presenter, EscapeLeavesFullScreenWhereNothingElseIsToBeLeft) {
+  BeginTask();
+  screen_.is_pointer_taken = true;
+  presenter_->Do(Action::kReleasePointer);
+  EXPECT_TRUE(screen_.done.empty()) << "first the pointer";
+  presenter_->Do(Action::kToggleHelp);
+  presenter_->Do(Action::kReleasePointer);
+  EXPECT_TRUE(screen_.done.empty()) << "then the card";
+  presenter_->Do(Action::kReleasePointer);
+  EXPECT_EQ(screen_.done, std::vector{Action::kReleasePointer});
+}
+
+TEST_F(Presenter, CameraTasksBeginWithTheCameraInTheMousesHand) {
+  Begin(TaskOptions("camera_navigation_0"));
+  Load();
+  EXPECT_TRUE(screen_.control->IsLaparoscopeHeld());
+  presenter_->Advance(1.0, 1.0, 500);
+  EXPECT_NE(screen_.page.hint.find("laparoscope"), std::string::npos) << screen_.page.hint;
+  screen_.control->HoldLaparoscope(false);  // as where the pointer is given back
+  EXPECT_TRUE(screen_.control->IsLaparoscopeHeld());
+  presenter_->Do(Action::kChooseRight);
+  EXPECT_FALSE(screen_.control->IsLaparoscopeHeld());
+}
+
+TEST_F(Presenter, HomeRemembersWhoOneIsAndLeadsOn) {
+  const test::TemporaryFolder folder;
+  Options options;
+  options.settings = folder.Path() / "window.json";
+  Begin(options);
+  EXPECT_FALSE(screen_.page.home.next.has_value());
+  presenter_->BeSomebody("Anna Berg");
+  EXPECT_EQ(LoadWindowSettings(options.settings).settings.person, "T-AAAAAA") << "never the name";
+  centre::HomeResults results;
+  results.leads.next =
+      centre::NextAndLast::Step{{"basic-skills", "camera"}, "Basic skills", "Camera", "peg_transfer", ""};
+  results.leads.last =
+      centre::NextAndLast::Result{"Peg transfer", "passed", "peg_transfer", {}, "/a/b.trocar"};
+  presenter_->ShowBest(results);
+  ASSERT_TRUE(screen_.page.home.next && screen_.page.home.result);
+  EXPECT_EQ(screen_.page.home.next->title, "Next in Basic skills");
+  EXPECT_FALSE(screen_.page.home.next->picture.empty());
+  presenter_->Choose(HomeChoice::kNextStep);
+  ASSERT_EQ(screen_.steps.size(), 1u);
+  EXPECT_EQ(screen_.steps[0].step, "camera");
+  presenter_->Choose(HomeChoice::kLastResult);
+  EXPECT_EQ(screen_.opened, "/a/b.trocar");
+  // the next time
+  presenter_.reset();
+  screen_.who.clear();
+  Begin(options);
+  EXPECT_EQ(screen_.who, "T-AAAAAA");
+  presenter_->BeSomebody("");
+  EXPECT_EQ(LoadWindowSettings(options.settings).settings.person, "");
 }
 
 TEST_F(Presenter, SlowMotionIsPracticeOnly) {

@@ -28,6 +28,7 @@ TEST(WindowSettings, ComeBackAsTheyWere) {
   settings.buttons = {{"close", "right"}, {"open", "left"}};
   settings.last_seed = 7;
   settings.tutorial_step = 3;
+  settings.person = "T-7F3K2Q";
   ASSERT_TRUE(SaveWindowSettings(path, settings).ok());
   const LoadedWindowSettings loaded = LoadWindowSettings(path);
   EXPECT_EQ(loaded.settings, settings);

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "trocar/gui/columns.h"
 #include "trocar/gui/labels.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/log.h"
@@ -80,13 +81,12 @@ RehearsalView::~RehearsalView() {
 }
 
 void RehearsalView::MakeSteps() {
-  auto* row = Gtk::make_managed<Gtk::Box>();
+  auto* row = Gtk::make_managed<gui::Columns>(6);
   row->add_css_class("status");
-  row->set_spacing(6);
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     steps_[i].set_hexpand(true);
     steps_[i].signal_clicked().connect([this, i] { presenter_.GoTo(static_cast<RehearsalStep>(i)); });
-    row->append(steps_[i]);
+    row->Append(steps_[i]);
   }
   auto* close = Gtk::make_managed<Gtk::Button>(host::Translate("Close"));
   close->set_tooltip_text(host::Translate("Back to the patients; it goes on here where it was left"));
@@ -94,7 +94,7 @@ void RehearsalView::MakeSteps() {
     presenter_.Leave();
     signal_closed_.emit();
   });
-  row->append(*close);
+  row->Append(*close);
   append(*row);
 }
 
@@ -120,10 +120,14 @@ void RehearsalView::MakeMiddle() {
   scroller_.set_size_request(kPanelWidth, -1);
   scroller_.set_child(*cards);
   auto* middle = Gtk::make_managed<Gtk::Box>();
-  middle->set_vexpand(true);
   middle->append(left_);
   middle->append(scroller_);
-  append(*middle);
+  // steps above and buttons below stay where they are, however much a step shows
+  auto* around = Gtk::make_managed<Gtk::ScrolledWindow>();
+  around->set_policy(Gtk::PolicyType::AUTOMATIC, Gtk::PolicyType::AUTOMATIC);
+  around->set_vexpand(true);
+  around->set_child(*middle);
+  append(*around);
 }
 
 void RehearsalView::MakeFoot() {
@@ -162,15 +166,14 @@ void RehearsalView::MakeFoot() {
     presenter_.GoOn();
     FollowWork();
   });
-  auto* foot = Gtk::make_managed<Gtk::Box>();
+  auto* foot = Gtk::make_managed<gui::Columns>(10);
   foot->add_css_class("actions");
-  foot->set_spacing(10);
-  foot->append(*texts);
+  foot->Append(*texts);
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&under_way_), static_cast<Gtk::Widget*>(&map_),
                               static_cast<Gtk::Widget*>(&forget_), static_cast<Gtk::Widget*>(&back_),
                               static_cast<Gtk::Widget*>(&next_)}) {
     widget->set_valign(Gtk::Align::CENTER);
-    foot->append(*widget);
+    foot->Append(*widget);
   }
   append(*foot);
 }

@@ -55,6 +55,7 @@ void AttemptKeeper::BeforeStep(const simulation::Simulation& simulation, bool is
       recorder_ = std::move(*recorder);
     }
     if (keeping_->on_begin) keeping_->on_begin(path);
+    if (keeping_->watch) watch_ = keeping_->watch(path, simulation);
     return;
   }
   const std::lock_guard lock(mutex_);
@@ -68,7 +69,8 @@ void AttemptKeeper::End(const simulation::Simulation& simulation) {
   if (recorder_ == nullptr) return;
   const bool is_short =
       static_cast<double>(recorder_->Status().added) * simulation.GetScene().tick_seconds < kShortestAttempt;
-  if (const base::Status finished = recorder_->Finish(simulation); !finished.ok())
+  const base::Status finished = recorder_->Finish(simulation);
+  if (!finished.ok())
     host::Log(host::LogLevel::kWarning, "the recording is not whole: " + finished.error().Text());
   std::filesystem::path path;
   {
@@ -82,6 +84,8 @@ void AttemptKeeper::End(const simulation::Simulation& simulation) {
     std::filesystem::remove(path, ignored);
     std::filesystem::remove(record::IndexPathOf(path), ignored);
   }
+  if (watch_.end) watch_.end(finished.ok());
+  watch_ = {};
   if (keeping_->on_end) keeping_->on_end(path);
 }
 

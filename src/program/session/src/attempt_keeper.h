@@ -22,7 +22,9 @@ class AttemptKeeper {
   /// \param is_demonstration  nobody's own: it begins with the script or the expert
   void BeforeStep(const simulation::Simulation& simulation, bool is_demonstration);
   void AfterStep(const scene::Input& input, const simulation::Simulation& simulation) noexcept {
-    if (recorder_ != nullptr) recorder_->Add(input, simulation);
+    if (recorder_ == nullptr) return;
+    recorder_->Add(input, simulation);
+    if (watch_.see) watch_.see(simulation.GetSnapshot(), input.controls);
   }
   /// The attempt is over: writes its ending. One that was hardly begun is taken away.
   void End(const simulation::Simulation& simulation);
@@ -34,6 +36,7 @@ class AttemptKeeper {
 
  private:
   std::optional<AttemptKeeping> keeping_;
+  AttemptWatch watch_;        // of the attempt that is recorded
   mutable std::mutex mutex_;  // of what follows, where Status may look
   std::unique_ptr<record::Recorder> recorder_;
   std::optional<record::RecorderStatus> last_;

@@ -181,7 +181,22 @@ TEST_F(RunnerTest, EndsAnAttemptAndRecordsNoMoreUntilTheReset) {
   const auto kept = folder_ / "attempts";
   AttemptKeeping keeping{kept, {}};
   keeping.description.name = (folder_ / "scene.json").string();
-  std::atomic<int> begun{0}, ended{0};
+  std::atomic<int> begun{0}, ended{0}, watched{0};
+  std::atomic<std::uint64_t> seen{0};
+  std::atomic<bool> was_whole{false}, was_before_the_end{false};
+  keeping.watch = [&](const std::filesystem::path&, const simulation::Simulation& simulation) {
+    ++watched;
+    EXPECT_EQ(simulation.GetSnapshot().tick, 0u) << "it is asked where the attempt begins";
+    seen = 0;
+    return AttemptWatch{[&](const simulation::Snapshot& now, const auto&) {
+                          ++seen;
+                          EXPECT_EQ(now.tick, seen.load());
+                        },
+                        [&](bool is_whole) {
+                          was_whole = is_whole;
+                          was_before_the_end = ended.load() < watched.load();
+                        }};
+  };
   keeping.on_begin = [&](const std::filesystem::path& path) {
     begun += path.extension() == ".trocar" ? 1 : 0;
   };
@@ -200,6 +215,9 @@ TEST_F(RunnerTest, EndsAnAttemptAndRecordsNoMoreUntilTheReset) {
     const auto recording = record::ReadRecording(path);
     ASSERT_TRUE(recording.ok()) << recording.error().Text();
     EXPECT_TRUE(recording->ending.has_value()) << "it is whole while the simulation goes on";
+    EXPECT_EQ(seen.load(), recording->inputs.size()) << "who watches sees what is recorded, and no more";
+    EXPECT_TRUE(was_whole.load());
+    EXPECT_TRUE(was_before_the_end.load());
     const auto tick = runner.Latest().tick;
     ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > tick + 100; }));
     EXPECT_EQ(begun.load(), 1) << "nothing more is recorded";
@@ -207,6 +225,7 @@ TEST_F(RunnerTest, EndsAnAttemptAndRecordsNoMoreUntilTheReset) {
     ASSERT_TRUE(Eventually([&] { return begun.load() == 2; }));
   }
   EXPECT_EQ(ended.load(), 2);
+  EXPECT_EQ(watched.load(), 2);
 }
 
 TEST_F(RunnerTest, GoesOnWhereAttemptsCannotBeKept) {

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "trocar/assessment/attempt.h"
+#include "trocar/assessment/attempt_fold.h"
 #include "trocar/assessment/course.h"
 #include "trocar/base/result.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/replay.h"
-#include "trocar/training/attempt_trace.h"
 
 namespace trocar::assessment {
 
@@ -24,16 +24,14 @@ struct ReplaySettings {
 /// "peg_transfer" of a recording's "peg_transfer" or "/data/scenes/tasks/peg_transfer.json".
 std::string TaskKeyOf(const std::string& name);
 
-/// Trace and result of a recording that was played.
-struct PlayedAttempt {
-  training::AttemptTrace trace;  ///< its outcome has a task's score, as shown
-  AttemptResult result;          ///< completed: the task, or the part of the operation
-};
-
 /// Plays a replay from where it stands to its end, or to the moment at which a part of an operation ends.
 /// \param from, until  the part; kCompleted: to the end
 /// \return kRecordingInvalid where it does not replay, kCancelled where `progress` gave up, the metrics' error
 base::Result<PlayedAttempt> PlayAttempt(record::Replay& replay, Milestone from, Milestone until,
+                                        const ReplaySettings& settings = {});
+/// As above, with what has been taken in already: after kCancelled the same replay and fold go on where they stopped.
+/// \param fold  made where the replay began
+base::Result<PlayedAttempt> PlayAttempt(record::Replay& replay, AttemptFold& fold,
                                         const ReplaySettings& settings = {});
 
 /// The whole recording as an attempt.

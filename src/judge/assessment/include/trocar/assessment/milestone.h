@@ -32,7 +32,7 @@ surgery::RetrievalObservation RetrievalOf(const simulation::OperationSnapshot& n
 class MilestoneWatch {
  public:
   /// \param procedure  of the scene; null: nothing but the start is reached
-  explicit MilestoneWatch(const scene::Procedure* procedure = nullptr) noexcept : procedure_(procedure) {}
+  explicit MilestoneWatch(const scene::Procedure* procedure) noexcept : procedure_(procedure) {}
   void See(const simulation::Snapshot& now) noexcept;
   /// Of an operation that goes on from a state in which a milestone had been reached.
   void Begin(Milestone from) noexcept { reached_ = from; }

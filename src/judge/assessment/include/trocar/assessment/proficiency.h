@@ -82,6 +82,7 @@ struct ThresholdVerdict {
   Threshold threshold;
   std::optional<double> value;  ///< nothing where it is not defined
   bool is_met = false;
+  bool is_open = false;  ///< not met because the attempt was not finished: its value misses nothing yet
   double margin =
       0;  ///< by how much it is met (> 0) or missed (< 0), in the metric's unit; 0 where undefined
 };

@@ -23,6 +23,9 @@ class TraceBuilder {
   TraceBuilder& operator=(TraceBuilder&&) noexcept;
   ~TraceBuilder();
 
+  /// Takes memory for an attempt of that length, so that Add does not copy what is there already.
+  /// \param seconds  > 0
+  void Reserve(double seconds);
   /// One tick: first the snapshot with which the attempt begins, then that after every tick. One of a tick that is there already,
   /// or of an earlier one, is left out; for ticks that were missed the last one is held, and counted.
   /// \param controls  that were given to the tick; of the first snapshot nothing

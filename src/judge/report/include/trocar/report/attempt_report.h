@@ -77,6 +77,7 @@ struct ErrorRow {
   int hand = -1;      ///< instrument::Hand, or -1
   std::string what;   ///< a sentence
   std::string where;  ///< organ; may be empty
+  double force = 0;   ///< that was the error [N]; 0 where none was
 };
 
 struct GoalRow {
@@ -118,6 +119,7 @@ struct AttemptReport {
   bool is_completed = false;
   bool is_operation = false;
   std::optional<double> score;               ///< see AttemptFacts::best_score
+  double penalty = 0;                        ///< that errors took off the score, in its unit
   double seconds = 0;                        ///< from the first tick to the last
   std::optional<double> task_seconds;        ///< of a task, from the first movement
   std::optional<double> critical_view_time;  ///< [s]
@@ -135,6 +137,11 @@ struct AttemptReport {
       origin;  ///< what else is known of where it comes from; may be empty
   std::array<HandSeries, 2> hands;
 };
+
+/// The time of an attempt that a person is told everywhere: of a task from the first movement, else from the first tick [s].
+inline double ShownSeconds(const AttemptReport& report) {
+  return report.task_seconds.value_or(report.seconds);
+}
 
 struct AttemptReportInput {
   AttemptFacts facts;

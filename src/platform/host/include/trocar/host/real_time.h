@@ -20,6 +20,9 @@ bool AskForRealTime(RealTimePolicy policy, int above_lowest) noexcept;
 /// The calling thread takes its turn with all others again: a thread inherits the priority of the one that started it.
 void LeaveRealTime() noexcept;
 
+/// The calling thread, and what it starts from now on, runs only while nobody else wants the processor.
+void TakeIdleTimeOnly() noexcept;
+
 /// Sleeps until NowNanoseconds() is `time` [ns], through every signal; returns at once where it is past.
 /// \note Real-time safe but for the sleep.
 void SleepUntil(std::int64_t time) noexcept;

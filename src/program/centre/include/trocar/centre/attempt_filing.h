@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file attempt_filing.h  The way of every attempt from its recording into the store, beside the window: it is noted when it begins,
-/// measured when it has ended, and spooled; nothing is asked.
+/// \file attempt_filing.h  The way of every attempt into the store, beside the window: it is noted when it begins, measured while it
+/// is played, and spooled when it has ended; nothing is asked. What was not measured while it was played is played again.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -17,11 +18,20 @@
 
 namespace trocar::centre {
 
+/// An attempt that has ended and is not in the store yet.
+struct PendingAttempt {
+  std::filesystem::path recording;
+  std::string person;    ///< pseudonym; may be empty
+  double progress = -1;  ///< share that has been measured; < 0: it waits
+};
+
 struct FilingStatus {
-  std::size_t measuring = 0;           ///< attempts that are being measured, or wait for it
-  double progress = 0;                 ///< of the one that is being measured, 0 to 1
-  std::size_t waiting = 0;             ///< attempts in the spool
-  std::optional<base::Error> failure;  ///< why they wait, or why the last could not be kept
+  std::size_t measuring = 0;            ///< attempts that are being measured, or wait for it
+  std::size_t measured = 0;             ///< since nothing waited
+  double progress = 0;                  ///< of the one that is being measured, 0 to 1
+  std::vector<PendingAttempt> pending;  ///< those attempts, the next one first
+  std::size_t waiting = 0;              ///< attempts in the spool
+  std::optional<base::Error> failure;   ///< why they wait, or why the last could not be kept
 };
 
 /// An attempt that has been measured.
@@ -31,8 +41,28 @@ struct FiledAttempt {
   std::optional<base::Error> failure;  ///< why it could not be measured; it is stored nevertheless
 };
 
+/// An attempt that is measured while it is played. Add and End are called by the simulation's thread.
+class LiveAttempt {
+ public:
+  explicit LiveAttempt(assessment::AttemptFold fold) : fold_(std::move(fold)) {}
+  /// After each tick. \note Some microseconds.
+  void Add(const simulation::Snapshot& now,
+           const std::array<scene::HandControls, instrument::kHandCount>& controls) {
+    fold_.Add(now, controls);
+  }
+  /// \param is_whole  its recording has every tick that was added: else the recording is measured
+  void End(bool is_whole) { is_whole_ = is_whole; }
+
+ private:
+  friend class AttemptFiling;
+  assessment::AttemptFold fold_;
+  bool is_whole_ = false;
+};
+
 /// Files attempts in the store. The next instance finishes what this one leaves: an attempt is noted on the disk when it begins.
-/// Begin and End are called by the simulation's thread, all else by the window's.
+/// One thread writes notes and files what was measured while it was played, at once. Another one plays what was not, the newest
+/// first, in time that nobody else wants; it gives way to a newer one and goes on with the older one where it stopped.
+/// Begin, Follow and End are called by the simulation's thread, all else by the window's.
 class AttemptFiling {
  public:
   /// \param threads  of the solver
@@ -47,6 +77,11 @@ class AttemptFiling {
   /// A recording begins, or has ended. \note Hands over and returns.
   /// \param step  for which it is made
   void Begin(const std::filesystem::path& recording, const StepName& step = {});
+  /// Measures the attempt while it is played; call it where the attempt begins.
+  /// \param from, until  the part of an operation; kCompleted: to the end
+  std::shared_ptr<LiveAttempt> Follow(const std::filesystem::path& recording,
+                                      const simulation::Simulation& simulation, assessment::Milestone from,
+                                      assessment::Milestone until);
   void End(const std::filesystem::path& recording);
 
   FilingStatus Status() const;

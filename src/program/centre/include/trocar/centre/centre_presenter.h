@@ -7,6 +7,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,7 +37,7 @@ struct CentrePage {
   ExamPage exam;
   std::string busy;      ///< what is being done; empty: nothing
   double progress = -1;  ///< of that, 0 to 1; < 0: not known
-  std::string notice;    ///< of what waits for the store; empty: nothing waits
+  std::string notice;    ///< of what is being measured or waits for the store; empty: nothing
   bool is_help_open = false, is_who_open = false;
   std::uint64_t version = 0;  ///< another number: the shown page is another
 };
@@ -78,6 +79,10 @@ class CentrePresenter {
   /// Sets who works here from now on. \param text  name or pseudonym; empty: nobody in particular
   void BeSomebody(const std::string& text);
   const Access& GetAccess() const { return access_; }
+  /// Draws a moment of a recording, on a thread beside the window's. \return the picture's file
+  using DrawMoment = std::function<base::Result<std::filesystem::path>(
+      const std::filesystem::path& recording, double time, const std::function<bool()>& goes_on)>;
+  void SetDrawMoment(DrawMoment draw) { draw_moment_ = std::move(draw); }
   /// Told the pseudonym when somebody else works here.
   void SignalPerson(std::function<void(const std::string&)> on_person) { on_person_ = std::move(on_person); }
 
@@ -103,7 +108,15 @@ class CentrePresenter {
   void ChooseCourse(const std::string& course);
   void StartStep(const StepName& step);
   void ChooseGroup(const std::string& group);
+  // what an instructor changes of groups
+  void MakeGroup(const std::string& name);
+  void JoinGroup(const std::string& who);
+  void LeaveGroup(const std::string& pseudonym);
+  void AssignCourse(const std::string& course, const std::string& due);
   void OpenExamFile(const std::filesystem::path& file);
+  void SealExam(const std::string& name, const std::string& task, const std::string& level,
+                const std::filesystem::path& file);
+  void MakeKeys(const std::filesystem::path& file, const std::string& passphrase);
   void StartExam();
   /// The exam's recording has ended.
   void EndExam(const ExamSitting& sitting, const std::filesystem::path& recording);
@@ -124,10 +137,16 @@ class CentrePresenter {
   void Read();
   void ReadHistory(const HistoryQuery& query);
   void ReadReview();
+  void ShowMoment();
+  void ReadExamChoices();
+  void ChangeGroup(std::function<base::Status(const Access&)> change, const std::string& group,
+                   const std::string& done);
   void ReadRole();
   void UseResult(const JudgedAttempt& judged);
   void SetExaminee();
   void FollowFiling();
+  void ShowPending(const FilingStatus& status);
+  void UseFiled(const FiledAttempt& filed, bool is_expected);
   void Fail(const base::Error& error);
   void Refresh(bool is_other);
 
@@ -138,12 +157,15 @@ class CentrePresenter {
   CentrePage page_;
   store::Attempt shown_;  // of the result page
   std::filesystem::path expected_;
-  bool is_trainee_ = false;  // who works here is one
+  std::deque<FiledAttempt> recent_;  // the newest last
+  std::map<std::filesystem::path, HistoryPage::Pending> pending_;  // that have been read
+  bool is_trainee_ = false;                                        // who works here is one
   std::atomic<double> share_{-1};
   std::atomic<bool> is_given_up_{false}, is_done_{false};
   std::deque<Request> waiting_;
   std::function<void(const std::string&)> on_person_;
   std::function<void()> on_done_;
+  DrawMoment draw_moment_;
   gui::BackgroundJob<Apply> job_;
 };
 

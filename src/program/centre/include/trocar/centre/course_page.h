@@ -40,6 +40,7 @@ struct CoursePage {
   };
   struct Step {
     std::string key, name, goal, what, briefing;
+    std::string task;       ///< key; empty of an operation
     std::string progress;   ///< "2 of 3 passes, 1 in a row"
     std::string due;        ///< "due 2026-11-30", "overdue since ..."; may be empty
     std::string locked_by;  ///< names; empty where it is not locked

@@ -16,6 +16,12 @@
 
 namespace trocar::centre {
 
+/// What an examiner chooses: tasks and operations with their levels.
+struct ExamChoice {
+  std::string key, name;
+  std::vector<std::string> levels;  ///< keys; empty of an operation
+};
+
 struct ExamPage {
   std::filesystem::path file;  ///< empty: none is open
   std::string name;
@@ -26,8 +32,21 @@ struct ExamPage {
   std::filesystem::path recording;      ///< of the exam that was sat; empty before
   std::filesystem::path certificate;    ///< that was issued; empty before
   bool is_passed = false;
-  std::string finding;  ///< of the certificate, in words
+  std::string finding;              ///< of the certificate, in words
+  std::vector<ExamChoice> choices;  ///< of an exam to seal
 };
+
+base::Result<std::vector<ExamChoice>> ListExamChoices();
+
+/// Draws a secret seed and seals the settings; what passes are the delivered thresholds of task and level, where there are.
+/// \param file  of the exam, for its examiner alone; beside it lies what is published before
+/// \return the page of the sealed exam; the seal's error
+base::Result<ExamPage> SealExamFile(const std::string& name, const std::string& task,
+                                    const std::string& level, const std::filesystem::path& file);
+
+/// Makes a centre's pair of keys: FILE.key stays secret, FILE.pub is published.
+/// \return as assessment::MakeKeys
+base::Status MakeCentreKeys(const std::filesystem::path& file, const std::string& passphrase);
 
 /// \return the exam's error
 base::Result<ExamPage> OpenExam(const std::filesystem::path& file);

@@ -32,11 +32,18 @@ struct HistoryPage {
   struct Task {
     std::string key, name;
   };
+  /// An attempt that has ended and is not in the store yet.
+  struct Pending {
+    std::string when, task;
+    std::filesystem::path recording;
+    bool is_measured_now = false;
+  };
   HistoryQuery query;
   std::string who;
-  std::vector<Task> tasks;  ///< to choose from
-  std::vector<Row> rows;    ///< the newest first
-  std::string next;         ///< empty after the last page
+  std::vector<Task> tasks;       ///< to choose from
+  std::vector<Pending> pending;  ///< the next one first
+  std::vector<Row> rows;         ///< the newest first
+  std::string next;              ///< empty after the last page
   /// Of one task at the level of its newest attempt; empty for all tasks.
   std::string level;
   std::vector<report::Drawing> drawings;  ///< learning curve and CUSUM

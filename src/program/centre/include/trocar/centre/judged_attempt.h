@@ -4,12 +4,15 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "trocar/assessment/attempt_fold.h"
 #include "trocar/assessment/proficiency.h"
 #include "trocar/base/result.h"
 #include "trocar/record/outcome.h"
+#include "trocar/record/replay.h"
 #include "trocar/report/attempt_report.h"
 #include "trocar/store/attempts.h"
 
@@ -35,10 +38,23 @@ struct JudgedAttempt {
   bool is_demonstration = false;  ///< of the script or the expert in the window: nobody's own
 };
 
+/// A recording that is being played again, to be judged: what was given up goes on where it stopped.
+struct Replaying {
+  record::Replay replay;
+  assessment::AttemptFold fold;
+};
+
 /// Plays the recording again and judges it, until the step's last moment where it is of a part of an operation.
+/// \param[in,out] going_on  nothing, or where an earlier call was given up; where this one is, it is set
 /// \return the recording's error, kRecordingInvalid where it does not replay; kCancelled where `progress` gave up
 /// \note Takes about as long as the attempt took, or less.
-base::Result<JudgedAttempt> JudgeRecording(const std::filesystem::path& path, const JudgeSettings& settings);
+base::Result<JudgedAttempt> JudgeRecording(const std::filesystem::path& path, const JudgeSettings& settings,
+                                           std::unique_ptr<Replaying>* going_on = nullptr);
+
+/// Judges an attempt that this program has measured while it was played. All numbers are those of JudgeRecording.
+/// \param path  of its recording, which is whole
+base::Result<JudgedAttempt> JudgePlayed(const std::filesystem::path& path,
+                                        const assessment::AttemptFold& fold, const JudgeSettings& settings);
 
 /// Attempt as far as it is known without playing the recording again: no metrics, no verdict.
 base::Result<store::Attempt> DescribeRecording(const std::filesystem::path& path, const std::string& person,

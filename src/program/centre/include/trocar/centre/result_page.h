@@ -25,6 +25,7 @@ struct ResultPage {
   struct ThresholdRow {
     std::string name, value, limit, source;
     bool is_met = false;
+    bool is_open = false;  ///< neither met nor missed: the attempt was not finished
   };
   struct AdviceRow {
     std::string sentence, why, practise;
@@ -44,6 +45,9 @@ struct ResultPage {
   std::string verdict;  ///< in words
   Tone tone = Tone::kPlain;
   std::string outcome, debriefing;
+  std::optional<double> first_time;  ///< of the moment that shows it, since the attempt's first tick [s]
+  std::filesystem::path moment;      ///< picture of it; empty before it is drawn
+  std::string first;                 ///< what to do better first, a sentence; empty where nothing stands out
   std::vector<Tile> tiles;
   std::vector<ThresholdRow> thresholds;
   std::vector<AdviceRow> advice;

@@ -27,6 +27,7 @@ struct CentreServices {
   std::function<void(const Start&)> start;
   std::function<void(const std::string& task, const std::string& level)> start_task;
   std::function<void(const std::filesystem::path& recording, double time)> replay;
+  CentrePresenter::DrawMoment draw_moment;
 };
 
 class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {
@@ -35,6 +36,8 @@ class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {
   CentreWindow(const Access& access, int threads, AttemptFiling* filing, CentreServices services);
   ~CentreWindow() override;
 
+  /// Whether a person can still see it: GTK forgets a window that was closed.
+  bool IsOpen() const { return is_open_; }
   CentrePresenter& Presenter() { return *presenter_; }
   /// The filing has news. From any thread.
   void Wake() { news_.emit(); }
@@ -76,6 +79,7 @@ class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {
   Gtk::ProgressBar progress_;
   std::uint64_t shown_version_ = 0;
   std::optional<base::Error> failure_;
+  bool is_open_ = true;
   Glib::Dispatcher news_;
   std::unique_ptr<CentrePresenter> presenter_;
 };

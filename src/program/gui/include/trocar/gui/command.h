@@ -57,8 +57,7 @@ struct CommandButton {
   const char* label = "";
   const char* tip = "";
   bool is_toggle = false, is_primary = false;
-  bool is_linked = false;  ///< joined to its neighbours that are, too
-  int least_width = 0;     ///< holds each of its labels [pixels]
+  int least_width = 0;  ///< holds each of its labels [pixels]
 };
 
 /// How a button looks now; the window's presenter says it.

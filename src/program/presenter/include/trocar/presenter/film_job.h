@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -40,6 +41,15 @@ inline constexpr double kClipSeconds = 60;
 /// file is there only where all went well
 base::Result<Film> MakeFilm(const FilmRequest& request, gui::JobProgress& progress,
                             const std::atomic<bool>& is_cancelled);
+
+/// Draws one moment of a recording; where an index lies beside it, it goes on from the state before that moment.
+/// \param time     of the simulation [s]; clamped to what was recorded
+/// \param picture  PNG that is written
+/// \return the recording's or the picture's error, kCancelled
+/// \note Takes an OpenGL context of its own on the calling thread.
+base::Status DrawMoment(const std::filesystem::path& recording, double time,
+                        const std::filesystem::path& picture, int threads,
+                        const std::function<bool()>& goes_on);
 
 /// Where pictures and clips go that nobody named a file for: the user's folder for pictures, "Trocar" in it.
 /// \param pictures  of the desktop; empty: host::FindUserDataFolder()/pictures

@@ -17,6 +17,7 @@ struct Situation {
   bool is_demonstration_over = false;
   bool is_pointer_taken = false;
   bool is_laparoscope_held = false;
+  bool is_camera_task = false;  ///< the mouse has the laparoscope without holding a key
   bool has_camera_holder = false;
   bool is_right_hand = true;
   bool is_fulcrum_mirrored = false;
@@ -34,7 +35,7 @@ std::string BadgeText(const Situation& situation);
 /// Current functions of mouse and keys, in one line; no longer than kLongestMode characters while the keys are the default ones.
 std::string ModeText(const Situation& situation);
 inline constexpr std::size_t kLongestMode = 170;
-/// "Running", "Paused", "Demonstration", "Loading the patient"
+/// "Running", "Paused", "Demonstration", "Loading"
 std::string StateText(const Situation& situation);
 
 }  // namespace trocar::presenter

@@ -49,6 +49,7 @@ class OperationEnd {
              const simulation::Snapshot& now) noexcept;
   /// Tick by tick, or as often as pictures are drawn. \return the reason for as long as it holds
   Reason See(const simulation::Snapshot& now) noexcept;
+  assessment::Milestone Reached() const noexcept { return watch_.Reached(); }
   /// [s], infinite without a limit
   double TimeLimit() const noexcept { return time_limit_; }
   /// Since the attempt began [s].
@@ -56,7 +57,7 @@ class OperationEnd {
 
  private:
   const scene::Procedure* procedure_ = nullptr;
-  assessment::MilestoneWatch watch_;
+  assessment::MilestoneWatch watch_{nullptr};
   assessment::Milestone from_ = assessment::Milestone::kStart, until_ = assessment::Milestone::kCompleted;
   double begin_ = 0, last_ = 0, time_limit_ = 0;  // [s]
 };

@@ -43,6 +43,11 @@ struct Options {
   std::filesystem::path exam;  ///< with `page` "exam": sealed file to open; empty: none
   int igtl_port = -1;          ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
   bool is_fullscreen = false;
+  int width = 1280, height = 800;  ///< of a window at first, where the screen is no smaller [pixels]
+  int text_percent = 0;            ///< size of texts; 0: as the desktop has it
+  bool is_high_contrast = false;   ///< also where the desktop's theme is one
+  std::filesystem::path
+      layout;  ///< every page is opened and looked at, and what was found is written here; empty: none
   bool is_demonstration = false;  ///< start with the script moving both hands
   gui::RunOptions run;            ///< its time is simulated
 

@@ -13,11 +13,16 @@ namespace trocar::presenter {
 ///
 /// \param joints        where the shaft is
 /// \param X_world_view  camera: +x right and +y up in the picture, looking along -z
+/// \param p_view_away   unit vector in the camera's frame along which "away" goes
 /// \return  joint rates for one metre along each of the picture's axes; finite also where the shaft lies
 /// along the
 ///          pan axis or the tip in the port, where the true rates would be infinite
-device::PointerMap CalcPointerMap(const instrument::TrocarJoints& joints,
-                                  const math::Pose& X_world_view) noexcept;
+device::PointerMap CalcPointerMap(const instrument::TrocarJoints& joints, const math::Pose& X_world_view,
+                                  const math::Vec3& p_view_away = {0, 0, -1}) noexcept;
+
+/// Line of sight through a point: a tip that goes along it stays on its spot of the picture.
+/// \return unit vector in the camera's frame, away from it; straight ahead for a point that is not well before the lens
+math::Vec3 CalcSightLine(const math::Pose& X_world_view, const math::Vec3& p_world) noexcept;
 
 /// Size of one pixel at the tip, so that the tip stays under the pointer.
 ///

@@ -15,6 +15,9 @@ namespace trocar::presenter {
 /// Pedal under the foot, or a key in its place.
 enum class Pedal { kCut, kCoagulate, kRinse, kAspirate, kClutch };
 
+/// Whether all that a task asks for is done with the laparoscope.
+bool IsCameraTask(const scene::Scene& scene);
+
 /// Owns a session, and the mouse and keyboard that hold its instruments. What is asked for takes effect in the session's next
 /// tick. Called from one thread.
 class SessionControl {
@@ -84,8 +87,10 @@ class SessionControl {
   void ChooseHand(device::Channel hand);
   void SwitchHand();
   device::Channel GetHand() const { return hand_; }
-  /// While held, the pointer and the keys move the laparoscope.
+  /// While held, the pointer and the keys move the laparoscope. In a camera task they do from the start, and from the next hold
+  /// on, until a hand is chosen.
   void HoldLaparoscope(bool is_held);
+  bool IsCameraTask() const { return is_camera_task_; }
   /// The automatic holder keeps both tips in the picture; taking the laparoscope ends it, where it is.
   void SetCameraHolder(bool is_on);
   bool HasCameraHolder() const { return input_.settings.holds_camera; }
@@ -154,6 +159,7 @@ class SessionControl {
   scene::Input input_;  // as it stands in the session
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;
+  bool is_camera_task_ = false, has_camera_ = false;  // the mouse has the laparoscope without holding a key
   bool is_fulcrum_mirrored_ = false, has_depth_snap_ = false;
   double wheel_under_way_ = 0;  // turned and not walked yet [m]
   double field_of_view_ = 1.0;  // [rad]

@@ -18,6 +18,7 @@
 #include "trocar/presenter/hints.h"
 #include "trocar/presenter/home.h"
 #include "trocar/presenter/key_bindings.h"
+#include "trocar/presenter/operation_guide.h"
 #include "trocar/presenter/operation_part.h"
 #include "trocar/presenter/options.h"
 #include "trocar/presenter/read_outs.h"
@@ -41,7 +42,10 @@ struct SimulatorPage {
   std::string mode;      ///< what mouse and keys do now
   std::string progress;  ///< of the task or the operation: time, goals or phase, what comes next
   std::string tutorial;  ///< what is to be done now; empty: it is off
-  std::string question;  ///< before something is thrown away; empty: none
+  std::string
+      next_step;  ///< of an operation: what comes next, with tool and key; empty: no help is wanted or there is none
+  bool is_tutorial_done = false;  ///< all its steps: its task can be begun as an attempt
+  std::string question;           ///< before something is thrown away; empty: none
   HomePage home;
   TaskPage tasks;
   std::string opening;  ///< what is prepared beside the window; empty: nothing that takes long
@@ -59,6 +63,15 @@ struct AttemptHooks {
   /// \param step  of a course, for which the attempt is made
   std::function<void(const std::filesystem::path&, const centre::StepName& step)> on_begin;
   std::function<void(const std::filesystem::path&)> on_end;
+  /// Asked who measures an attempt that begins, of which part of an operation; may be empty.
+  std::function<session::AttemptWatch(const std::filesystem::path&, const simulation::Simulation&,
+                                      assessment::Milestone from, assessment::Milestone until)>
+      watch;
+};
+
+/// Who operates: a name for the eye, and what attempts are kept under; the pseudonym is empty of nobody in particular.
+struct Somebody {
+  std::string name, pseudonym;
 };
 
 /// View interface that the presenter drives; a window implements it.
@@ -88,8 +101,12 @@ class SimulatorScreen {
   virtual void ReleasePointer() = 0;
   virtual bool IsPointerTaken() const = 0;
   virtual void FocusPicture() = 0;
-  /// Name of who operates; turns a name or pseudonym into that person first, where there is a text.
-  virtual base::Result<std::string> BeSomebody(const std::optional<std::string>& text) = 0;
+  /// Who operates; turns a name or pseudonym into that person first, where there is a text.
+  virtual base::Result<Somebody> BeSomebody(const std::optional<std::string>& text) = 0;
+  /// The training centre begins a step of a course.
+  virtual void StartStep(const centre::StepName& step) = 0;
+  /// The training centre shows what an attempt came to.
+  virtual void OpenLastResult(const centre::NextAndLast::Result& result) = 0;
   /// Carries out an action of the window itself: full screen, panes, the page of devices, the end.
   virtual void DoInWindow(Action action) = 0;
 };
@@ -114,7 +131,7 @@ class SimulatorPresenter {
   void FinishLoading();
   /// Gives up what is being read or prepared.
   void CancelOpening();
-  /// Gives up the scene that is shown and reads the one that was chosen; nothing while one is being read.
+  /// Gives up the scene that is shown and reads the one that was chosen; nothing while one is being read. Ends the tutorial.
   void Open(const TaskRequest& request);
   /// As above, with a step of a course or an exam.
   void Open(const centre::Start& start);
@@ -122,6 +139,8 @@ class SimulatorPresenter {
   /// Gives up the scene that is shown and goes on from a moment of a recording: paused, until the person's hands are ready;
   /// the expert begins at once. Nothing while a scene is being read.
   void TakeOver(Branch branch);
+  /// Somebody closes the window by its frame. \return false: an attempt would end, and the person is asked first
+  bool MayClose();
   /// The window has closed: nothing runs any more, and the attempt's recording ends.
   void Close();
 
@@ -140,11 +159,13 @@ class SimulatorPresenter {
   void BeSomebody(const std::string& text);
   /// To the question that is asked. \param is_yes  does what was asked for
   void Answer(bool is_yes);
+  /// Begins the tutorial's task as an attempt; what the tutorial ends with.
+  void StartTutorialTask();
 
   void OpenTaskList(TaskSection section = TaskSection::kAll);
   void CloseTaskList();
   /// Of the person who is there now.
-  void ShowBest(const centre::BestResults& results);
+  void ShowBest(const centre::HomeResults& results);
 
   /// Sets the patient of the next operation and those after it.
   /// \param folder  empty: the built-in one
@@ -206,6 +227,8 @@ class SimulatorPresenter {
   const Options& GetOptions() const { return options_; }
   const SimulatorPage& Page() const { return page_; }
   bool HasGuides() const { return settings_.has_guides && IsGuided(); }
+  /// What comes next in the operation that is shown; nothing where it is none, or without guides.
+  OperationStep NextOperationStep() const;
 
  private:
   bool Meets(SimulatorNeeds needs) const;
@@ -228,10 +251,15 @@ class SimulatorPresenter {
   void Refresh();
   Situation MakeSituation();
   void RefreshFirstMeeting();
+  void FindLeads();
+  void MeetAgain();
   void FollowTutorial(const simulation::Snapshot& snapshot);
   void ToggleTutorial();
+  void BeginTutorial();
+  void LeaveTutorial();
   bool MustAsk(Action action) const;
   void CloseCards();
+  bool HasCard() const;
   void LeadOn(const base::Error& error);
   void KeepLast();
   void KeepSettings();
@@ -261,6 +289,8 @@ class SimulatorPresenter {
   KeyBindings bindings_;
   std::vector<KeyBindings::Own> former_bindings_;  // the newest last
   centre::BestResults best_;
+  centre::NextAndLast leads_;
+  std::optional<HomeLead> next_lead_, result_lead_;  // of them
   OperationEnd operation_end_;
   Tutorial tutorial_;
   Action asked_ = Action::kNone;  // that waits for an answer
@@ -274,6 +304,7 @@ class SimulatorPresenter {
   bool is_recording_stopped_ = false, is_space_low_ = false;  // they have been said
   bool is_result_known_ = false;                              // it has been shown
   bool is_attempt_over_ = false;
+  bool is_practice_ = false;  // the scene was opened by the tutorial: nothing of it is kept
   std::uint64_t seen_events_ = 0;
   double first_picture_ = 0;                                  // since the start of the program [s]
   double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]

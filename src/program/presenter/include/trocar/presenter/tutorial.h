@@ -17,6 +17,9 @@ inline constexpr int kTutorialSteps = 10;
 /// Task in which it is held: the first that has rings.
 inline constexpr const char* kTutorialTask = "peg_transfer";
 
+/// That task for a person: "peg transfer".
+std::string TutorialTaskName();
+
 /// Texts of the steps, with placeholders for keys and buttons; translated where they are shown.
 std::span<const std::string_view> TutorialTexts() noexcept;
 

@@ -18,6 +18,7 @@ struct WindowSettings {
   bool has_guides = true;
   bool has_panel = false;
   bool has_depth_snap = true;               ///< the wheel ends where the tip meets something, for beginners
+  std::string person;                       ///< pseudonym of who operated last; empty: nobody in particular
   std::string patient;                      ///< folder of who is operated on; empty: the built-in one
   std::map<std::string, std::string> keys;  ///< of a command, by its id: name of the key that does it
   std::map<std::string, std::string> buttons;  ///< "close", "open", "look": "left", "middle" or "right"

@@ -2,6 +2,7 @@
 /// \file runner.h  The simulation on its own thread at its fixed rate; drawing never holds it up.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -26,6 +27,18 @@ struct RunnerStatistics {
   bool is_real_time = false;
 };
 
+/// Sees an attempt while it is played. Called by the simulation's thread between two ticks; either may be empty.
+struct AttemptWatch {
+  /// After each tick that is recorded.
+  /// \param controls  that were given to the tick
+  std::function<void(const simulation::Snapshot& now,
+                     const std::array<scene::HandControls, instrument::kHandCount>& controls)>
+      see;
+  /// The attempt is over, before AttemptKeeping::on_end.
+  /// \param is_whole  the recording has every tick that was seen
+  std::function<void(bool is_whole)> end;
+};
+
 /// Where attempts are kept, and what they are of.
 struct AttemptKeeping {
   std::filesystem::path folder;     ///< made when the first attempt begins
@@ -33,6 +46,8 @@ struct AttemptKeeping {
   /// Told of a file with an attempt that has just begun, and of one that is whole or cannot be. By the simulation's thread between
   /// two ticks: they hand over and return. May be empty.
   std::function<void(const std::filesystem::path&)> on_begin, on_end;
+  /// Asked, after on_begin, who watches the attempt that begins where the simulation stands. May be empty.
+  std::function<AttemptWatch(const std::filesystem::path&, const simulation::Simulation&)> watch{};
 };
 
 struct RunnerSettings {

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+# Opens every page of the windows at the sizes, text sizes and languages that people have, and looks at each widget whether all of it
+# is seen; and, as a control, at a window in which it is not.
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER}/recordings)
+set(ENV{GTK_A11Y} none)
+set(ENV{LC_ALL} C.UTF-8)
+set(ENV{TROCAR_STORE} ${FOLDER}/store.sqlite)
+set(ENV{XDG_CONFIG_HOME} ${FOLDER}/config)
+execute_process(COMMAND ${XVFB} -a -s "-screen 0 800x600x24" ${CONTROL} RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said TIMEOUT 60)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "the walk does not see what is cut off: ${said}")
+endif()
+# an attempt whose result is shown, by somebody with a name
+foreach(command "play;novice;--task;instrument_navigation;--level;easy;--seed;3;--record;${FOLDER}/recordings/2026-11-01_100000_instrument_navigation.trocar"
+    "store;add;${FOLDER}/recordings/2026-11-01_100000_instrument_navigation.trocar;--store;${FOLDER}/store.sqlite")
+  execute_process(COMMAND ${TROCAR} ${command} RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said TIMEOUT 300)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "trocar ${command}: ${said}")
+  endif()
+endforeach()
+set(reports)
+foreach(size IN LISTS SIZES)
+  foreach(percent IN LISTS PERCENTS)
+    foreach(language en es)
+      set(ENV{LANGUAGE} ${language})
+      set(report ${FOLDER}/${size}_${percent}_${language}.json)
+      execute_process(
+        COMMAND ${DBUS} -- ${XVFB} -a -s "-screen 0 ${size}x24" ${WINDOW} --size ${size} --text-percent ${percent} --check-layout ${report}
+          --settings ${FOLDER}/window_${language}.json --recordings ${FOLDER}/recordings --store ${FOLDER}/store.sqlite --threads 1
+        RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said TIMEOUT 300)
+      file(WRITE ${FOLDER}/${size}_${percent}_${language}.txt "${said}")
+      if(NOT status EQUAL 0)
+        message(FATAL_ERROR "the window at ${size}, ${percent} %, ${language} ended with ${status}: ${said}")
+      endif()
+      if(said MATCHES "Gtk-(WARNING|CRITICAL)")
+        message(FATAL_ERROR "GTK complains at ${size}, ${percent} %, ${language}: ${said}")
+      endif()
+      list(APPEND reports ${report})
+    endforeach()
+  endforeach()
+endforeach()
+execute_process(COMMAND ${CHECK} ${reports} RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said)
+message(STATUS "${said}")
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "not all is seen")
+endif()

@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+# Ends the tutorial with real keys and a click; what follows is recorded, measured and in the store, though nobody waits for it.
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER}/recordings)
+include(${CMAKE_CURRENT_LIST_DIR}/window_run.cmake)
+file(WRITE ${FOLDER}/window.json [[{"format": "trocar-window-settings", "version": 1, "tutorial_step": 9}]])
+use_window(--settings ${FOLDER}/window.json --recordings ${FOLDER}/recordings --store ${FOLDER}/store.sqlite --threads 1)
+check_warnings()
+find_recording(info)
+trocar(text store attempts --store ${FOLDER}/store.sqlite --json)
+string(JSON count LENGTH "${text}" attempts)
+string(JSON task GET "${text}" attempts 0 task)
+if(NOT count EQUAL 1 OR NOT task STREQUAL "peg_transfer")
+  message(FATAL_ERROR "one attempt at peg transfer was made, and the store has: ${text}")
+endif()
