@@ -248,7 +248,7 @@ void TraceBuilder::Content::AddForces(const Snapshot& now) {
       entry.force = force;
       entry.position = trace.hands[hand].back().tip;
       entry.is_error = true;
-      entry.severity = cholecystectomy::Severity::kMinor;
+      entry.severity = surgery::Severity::kMinor;
       entry.text = training::kExcessForceOfTaskText;
       pressing[hand] = trace.events.size();
       trace.events.push_back(std::move(entry));

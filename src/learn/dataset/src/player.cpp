@@ -30,7 +30,7 @@ class SurgeonPlayer : public Player {
   const simulation::Simulation& GetSimulation() const override { return simulation_; }
   bool HasFinished() const override { return surgeon_->HasFinished(); }
   std::string_view Doing() const override { return surgeon_->Doing(); }
-  std::optional<cholecystectomy::Phase> OwnPhase() const override { return surgeon_->OwnPhase(); }
+  std::optional<std::uint8_t> OwnPhase() const override { return surgeon_->OwnPhase(); }
   void Step() override {
     input_ = surgeon_->Act(simulation_.GetSnapshot());
     simulation_.Step(input_);

@@ -25,7 +25,7 @@ class Player {
   virtual const scene::Input& LastInput() const = 0;
   /// The work under way by the surgeon's own words, and the phase to which it belongs by its plan; of a recording nobody says so.
   virtual std::string_view Doing() const { return {}; }
-  virtual std::optional<cholecystectomy::Phase> OwnPhase() const { return std::nullopt; }
+  virtual std::optional<std::uint8_t> OwnPhase() const { return std::nullopt; }
   /// After the last tick. \return kRecordingInvalid where other states were computed than were recorded
   virtual base::Status Finish() const { return {}; }
 };

@@ -96,7 +96,7 @@ void TruthTable::Add(std::size_t index, std::uint64_t number, const Player& play
   add(std::to_string(number));
   add(Shortest(now.time));
   add(scene::PhaseName(procedure, operation.procedure.phase));
-  add(own ? NameOf(*own) : std::string_view());
+  add(own ? scene::PhaseName(procedure, *own) : std::string_view());
   add(Quote(player.Doing()));
   add(Shortest(measure("cleared_share")));
   add(Shortest(measure("detached_share")));

@@ -11,8 +11,8 @@
 #include "cholecystectomy_steps.h"
 #include "patient_knowledge.h"
 #include "surgeon_act.h"
+#include "trocar/cholecystectomy/triplet.h"
 #include "trocar/scene/scene.h"
-#include "trocar/simulation/operation_snapshot.h"
 
 namespace trocar::agent {
 

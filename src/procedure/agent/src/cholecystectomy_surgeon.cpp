@@ -163,9 +163,10 @@ scene::Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   return input;
 }
 
-std::optional<cholecystectomy::Phase> CholecystectomySurgeon::OwnPhase() const {
+std::optional<std::uint8_t> CholecystectomySurgeon::OwnPhase() const {
   if (!has_goals_ || course_.acts.empty()) return std::nullopt;
-  return FindPlannedPhase(course_.acts, scene_->instruments);
+  const auto phase = FindPlannedPhase(course_.acts, scene_->instruments);
+  return phase ? std::optional(static_cast<std::uint8_t>(*phase)) : std::nullopt;
 }
 
 // The order is that of states that have been saved.

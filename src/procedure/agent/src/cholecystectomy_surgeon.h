@@ -34,7 +34,7 @@ class CholecystectomySurgeon final : public Surgeon {
   scene::Input Act(const simulation::Snapshot& seen) override;
   bool HasFinished() const override { return course_.has_finished; }
   std::string_view Doing() const override { return course_.doing; }
-  std::optional<cholecystectomy::Phase> OwnPhase() const override;
+  std::optional<std::uint8_t> OwnPhase() const override;
   std::string_view BailOutReason() const override { return memory_.bail_out; }
   void VisitState(base::StateArchive& archive) override;
   void KnowFirstView(const instrument::TrocarJoints& laparoscope) override;

@@ -21,7 +21,7 @@ class SkilledSurgeon final : public Surgeon {
   scene::Input Act(const simulation::Snapshot& seen) override;
   bool HasFinished() const override { return hands_->HasFinished(); }
   std::string_view Doing() const override { return hands_->Doing(); }
-  std::optional<cholecystectomy::Phase> OwnPhase() const override { return hands_->OwnPhase(); }
+  std::optional<std::uint8_t> OwnPhase() const override { return hands_->OwnPhase(); }
   std::string_view BailOutReason() const override { return hands_->BailOutReason(); }
   void VisitState(base::StateArchive& archive) override;
   void KnowFirstView(const instrument::TrocarJoints& laparoscope) override {

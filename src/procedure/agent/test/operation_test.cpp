@@ -140,7 +140,7 @@ double PlayForAgreement(std::uint64_t seed, double most_seconds) {
     const auto own = (*surgeon)->OwnPhase();
     if (!own) continue;
     ++ticks;
-    agreed += simulation.GetSnapshot().operation.phase == *own ? 1 : 0;
+    agreed += simulation.GetSnapshot().operation.procedure.phase == *own ? 1 : 0;
   }
   EXPECT_GT(ticks, 0);
   return static_cast<double>(agreed) / ticks;

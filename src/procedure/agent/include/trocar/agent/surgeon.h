@@ -13,7 +13,6 @@
 #include "trocar/base/result.h"
 #include "trocar/base/state_archive.h"
 #include "trocar/scene/scene.h"
-#include "trocar/simulation/operation_snapshot.h"
 #include "trocar/simulation/snapshot.h"
 
 namespace trocar::agent {
@@ -34,8 +33,9 @@ class Surgeon {
   virtual void KnowFirstView(const instrument::TrocarJoints& /*laparoscope*/) {}
   /// The work under way, for a person: "ring_3: hand over".
   virtual std::string_view Doing() const = 0;
-  /// Phase of an operation that it means to be in, by its own plan and not by what is judged; nothing where it has no such plan.
-  virtual std::optional<cholecystectomy::Phase> OwnPhase() const { return std::nullopt; }
+  /// Phase of an operation that it means to be in, by its own plan and not by what is judged: a row of Procedure::phases. Nothing
+  /// where it has no such plan.
+  virtual std::optional<std::uint8_t> OwnPhase() const { return std::nullopt; }
   /// Why an operation was ended before its end because going on would not be safe; "" while it goes on, where it was
   /// finished, and where nobody meant to finish it.
   virtual std::string_view BailOutReason() const { return {}; }
