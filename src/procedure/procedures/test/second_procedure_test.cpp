@@ -213,7 +213,9 @@ TEST(SecondProcedure, ItsOrganIsHollowAndLiesInItsBed) {
   EXPECT_TRUE(scene::MayBeDivided(&Appendectomy(), kAppendicularArtery));
   EXPECT_FALSE(scene::MayBeDivided(&Appendectomy(), TubeRole::kCysticArtery));
   Simulation simulation = MakeSimulation();
+  simulation.Step(Press(simulation));
   EXPECT_FALSE(simulation.GetSnapshot().operation.is_organ_free) << "its bed holds it";
+  EXPECT_GT(simulation.GetSnapshot().organs[static_cast<std::size_t>(beds[0].organ)].volume, 0.0);
 }
 
 TEST(SecondProcedure, ItsJudgeIsSavedAndRestoredWithTheWorld) {
