@@ -11,6 +11,7 @@ published code does, key by key; what a loader would index is indexed here.
 Exit status 77 where torch is missing.
 """
 import csv
+import hashlib
 import importlib.machinery
 import importlib.util
 import json
@@ -174,7 +175,7 @@ def make(program, folder, layout, seeds, seconds):
 
 
 def read_endoscapes(root):
-    # seeds 1 (train), 3 (val), 4 (test) and 5
+    # seeds 1, 2 and 5 go to train, 3 to val, 4 to test
     for split, videos in (("train", 3), ("val", 1), ("test", 1)):
         frames = CocoDatasetWithDS(root, f"{split}/annotation_coco.json", split)
         judged = CocoDatasetWithDS(root, f"{split}/annotation_ds_coco.json", split)
@@ -229,11 +230,66 @@ def read_cholec80(root):
     assert len(tools) == 9 and any(row[1] == "1" for row in tools[1:])
 
 
+def reseal(root):
+    """Sums and card of a set that was changed on purpose."""
+    lines = (root / "SHA256SUMS").read_text().splitlines()
+    names = [line.split("  ", 1)[1] for line in lines]
+    (root / "SHA256SUMS").write_text("".join(f"{hashlib.sha256((root / n).read_bytes()).hexdigest()}  {n}\n" for n in names))
+    card = json.loads((root / "card.json").read_text())
+    card["sha256sums"] = hashlib.sha256((root / "SHA256SUMS").read_bytes()).hexdigest()
+    (root / "card.json").write_text(json.dumps(card))
+
+
+def complaints(root):
+    return subprocess.run([sys.executable, ROOT / "tools" / "verify-dataset", root], capture_output=True, text=True).stdout
+
+
+def change_truth(root, video, change):
+    path = root / "truth" / f"video_{video:05d}.csv"
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    change(rows)
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def verifier_asks_for_meaning(root):
+    """Planted states: triangle clear, plate in part, no two structures. Only one order of the three is right."""
+    def plant(rows):
+        rows[0].update(triangle_cleared="0.95", plate_detached="0.2", structures_entering="3", criterion_triangle="2",
+                       criterion_plate="1", criterion_structures="0")
+
+    assert "good" in complaints(root), complaints(root)
+    change_truth(root, 3, plant)
+    files = [root / "val" / f"annotation_{kind}.json" for kind in ("coco", "ds_coco", "coco_vid")] + [root / "val_seg" / "annotation_coco.json"]
+    for ds, is_right in (([0, 1, 0.5], True), ([0, 0.5, 1], False), ([1, 0, 0.5], False)):
+        for file in files:
+            coco = json.loads(file.read_text())
+            coco["images"][0]["ds"] = ds
+            file.write_text(json.dumps(coco))
+        rows = list(csv.reader(open(root / "all_metadata.csv", newline="")))
+        for row in rows:
+            if row[:2] == ["3", "0"]:
+                row[2:6] = [json.dumps(ds), *map(str, ds)]
+        with open(root / "all_metadata.csv", "w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
+        reseal(root)
+        assert ("simulation's own" not in complaints(root)) == is_right, (ds, complaints(root))
+    # what was spread is no idle hand
+    change_truth(root, 3, lambda rows: rows[2].update(facts="right:strand_spread:triangle_strand::4"))
+    reseal(root)
+    assert "strand_spread by the right hand is labelled hook:null_verb:null_target" in complaints(root), complaints(root)
+
+
 def main():
     program = sys.argv[1]
     torch.set_num_threads(1)
     with tempfile.TemporaryDirectory() as folder:
-        read_endoscapes(make(program, f"{folder}/endoscapes", "endoscapes", "1:5", 7))
+        endoscapes = make(program, f"{folder}/endoscapes", "endoscapes", "1:5", 7)
+        read_endoscapes(endoscapes)
+        verifier_asks_for_meaning(endoscapes)
         read_cholect50(make(program, f"{folder}/cholect50", "cholect50", "1:1", 7))
         read_cholec80(make(program, f"{folder}/cholec80", "cholec80", "1:1", 7))
     print("three layouts are read as their users do")
