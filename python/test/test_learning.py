@@ -13,15 +13,21 @@ import numpy as np
 
 import trocar
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "samples" / "python"))
+SAMPLES = pathlib.Path(__file__).parents[2] / "samples" / "python"
+sys.path[:0] = [str(SAMPLES), str(SAMPLES / "baselines")]
 MISSING = [name for name in ("torch", "h5py") if importlib.util.find_spec(name) is None]
 if MISSING:
     print(f"skipped: {', '.join(MISSING)} cannot be imported; run tools/install-packages --test")
     sys.exit(77)
 
 import clone  # noqa: E402
+import cloning  # noqa: E402
+import common  # noqa: E402
 import learning  # noqa: E402
+import ppo  # noqa: E402
 import reach  # noqa: E402
+import run as baselines  # noqa: E402
+import sac  # noqa: E402
 import sight  # noqa: E402
 import torch  # noqa: E402
 
@@ -149,6 +155,67 @@ class Learning(unittest.TestCase):
         self.assertEqual(len(lines), 2)
         heights = [float(point.split(",")[1]) for point in lines[0].get("points").split()]
         self.assertEqual(heights, sorted(heights, reverse=True))
+
+
+class Baselines(unittest.TestCase):
+    """The published figures are of longer training; here it is seen that each learns, is judged and gets its line."""
+
+    @classmethod
+    def setUpClass(cls):
+        torch.set_num_threads(1)
+
+    @staticmethod
+    def nearer(act, seeds):
+        """By how many millimetres the tip comes nearer to the cage in the first second, on average."""
+        ways = []
+        for seed in seeds:
+            with common.make("reach", observation=("state", "scaled")) as env:
+                seen, _ = env.reset(seed=seed)
+                tip, target = (learning.columns(env.state_fields, [name]) for name in ("right.tip", "region.target.centre"))
+                distance = lambda: np.linalg.norm(seen["state"][tip] - seen["state"][target])
+                before = distance()
+                for _ in range(10):
+                    seen, *_ = env.step(act(seen["scaled"]))
+                ways.append(1e3 * (before - distance()))
+        return np.mean(ways)
+
+    def test_a_clone_comes_nearer_and_the_others_learn_something(self):
+        seeds = range(10_001, 10_009)
+        untrained = ppo.train("reach", 0.0, 1)[0]
+        act, _ = cloning.train("reach", 16, 1)
+        self.assertGreater(self.nearer(act, seeds), self.nearer(untrained, seeds) + 5)
+        for algorithm, actions in ((ppo, 2_048), (sac, 2_080)):
+            with self.subTest(algorithm=algorithm.__name__):
+                act, curve = algorithm.train("reach", 600, 1, actions)
+                self.assertEqual(curve.taken, actions)
+                with common.make("reach") as env:
+                    seen, _ = env.reset(seed=1)
+                    self.assertFalse(np.allclose(act(seen), untrained(seen)))
+                    self.assertTrue(np.isfinite(act(seen)).all())
+
+    def test_expert_and_chance_are_judged_on_the_same_starts(self):
+        expert = common.judge(lambda seed: common.play_expert("reach", seed), range(10_001, 10_006))
+        self.assertEqual(expert, {"success": 1.0, "goals": 1.0, "episodes": 5})
+        self.assertLess(common.judge(lambda seed: common.play_random("reach", seed), range(10_001, 10_006))["success"], 1)
+
+    def test_page_says_what_was_measured_and_what_was_not(self):
+        curve = {"actions": [0, 2048, 4096], "success": [0, 0.2, 0.6], "goals": [0, 0.2, 0.6]}
+        runs = [{"task": "reach", "algorithm": algorithm, "seed": seed, "minutes": 2 if "ppo" == algorithm else 0, "date": "2026-11-30", "machine": "2 cores", "success": success,
+                 "goals": success, "episodes": 100, **({"actions": 4096, "processor_seconds": 9, "curve": curve} if algorithm == "ppo" else {})}
+                for algorithm, seed, success in (("random", 1, 0.0), ("expert", 1, 1.0), ("ppo", 1, 0.4), ("ppo", 2, 0.6))]
+        with tempfile.TemporaryDirectory() as folder:
+            before = baselines.PAGE, baselines.PICTURES
+            baselines.PAGE, baselines.PICTURES = pathlib.Path(folder) / "page.md", pathlib.Path(folder)
+            try:
+                baselines.write_page(runs)
+                page = baselines.PAGE.read_text()
+                root = xml.etree.ElementTree.parse(pathlib.Path(folder) / "reach.svg").getroot()
+            finally:
+                baselines.PAGE, baselines.PICTURES = before
+        self.assertIn("| PPO | 2 | 2 min of processor time, 4,096 actions | 50 % (40 to 60) | 50 % | 100 |", page)
+        self.assertIn("- reach: SAC, behaviour cloning", page)
+        self.assertIn("- peg_transfer: PPO, SAC, behaviour cloning", page)
+        self.assertEqual(sum(element.tag.endswith("polyline") for element in root.iter()), 2)
 
 
 if __name__ == "__main__":

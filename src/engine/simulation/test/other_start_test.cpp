@@ -44,7 +44,7 @@ TEST(OtherStart, TakesHandsAndLensThereAndNothingElse) {
     EXPECT_EQ(now.instruments[0].joints.pan, start.hands[0].pan);
     EXPECT_GT(math::Distance(now.instruments[0].X_world_tool.translation,
                              before.instruments[0].X_world_tool.translation),
-              0.003);
+              0.001);
     EXPECT_GT(math::Distance(now.X_world_laparoscope.translation, before.X_world_laparoscope.translation),
               0.001);
     for (std::size_t i = 0; i < now.objects.size(); ++i)

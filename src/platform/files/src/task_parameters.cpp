@@ -32,8 +32,7 @@ double ReadValue(const JsonView& view, const std::vector<std::string>& levels, c
 }
 
 /// Rows of names whose values change places as wholes; nothing where it complained.
-std::vector<std::vector<std::string>> ReadShuffle(const JsonView& list,
-                                                  const TaskParameters& parameters) {
+std::vector<std::vector<std::string>> ReadShuffle(const JsonView& list, const TaskParameters& parameters) {
   const auto is_known = [&](const std::string& name) {
     return std::any_of(parameters.all.begin(), parameters.all.end(),
                        [&](const TaskParameters::Parameter& one) { return one.name == name; });

@@ -100,7 +100,7 @@ TEST_F(TaskFile, WhatVariesIsDrawnBesideWhatIsStandardised) {
   // a new parameter stands before the old one in the alphabet
   replace(
       R"("x": {"value": 3, "spread": 2})",
-      R"("a": {"value": 0, "vary": 4}, "b": {"value": 1}, "c": {"value": 2}, "x": {"value": 3, "spread": 2})");
+      R"("a": {"value": 0, "vary": 4}, "b": {"value": 1, "vary": 0}, "c": {"value": 2, "vary": 0}, "x": {"value": 3, "spread": 2})");
   replace(R"("at_mm": ["{x}", "-{x}", -136])",
           R"("at_mm": ["{a} + {x}", "2*{b}-{c} - {x}", " - 0.5*{c} - 135 "])");
   replace(R"("scene": {)", R"("shuffle": [[["b"], ["c"]]], "scene": {)");
