@@ -115,8 +115,9 @@ Gtk::Box& ExamView::MakeKeys() {
   card.set_hexpand(true);
   card.set_valign(Gtk::Align::START);
   card.append(MakeText(
-      host::Translate("Made once. The private key signs certificates and stays secret; the public one "
-                      "is published, and anybody checks certificates with it. A passphrase protects the private key."),
+      host::Translate(
+          "Made once. The private key signs certificates and stays secret; the public one "
+          "is published, and anybody checks certificates with it. A passphrase protects the private key."),
       "value"));
   auto* passphrase = Gtk::make_managed<Gtk::PasswordEntry>();
   passphrase->property_placeholder_text() = host::Translate("Passphrase");

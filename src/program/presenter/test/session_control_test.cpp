@@ -72,8 +72,8 @@ TEST_F(SessionControlTest, TheHandStaysNearAToolThatSomethingStops) {
   // to the lower part of the picture, where the line of sight meets the board steeply
   control->Device().SetKey(Motion::kDown, true);
   ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
-    const math::Vec3 p = math::Inverse(control->CalcView(now)) *
-                         now.instruments[instrument::kRight].X_world_tool.translation;
+    const math::Vec3 p =
+        math::Inverse(control->CalcView(now)) * now.instruments[instrument::kRight].X_world_tool.translation;
     return p.y < 0.15 * p.z;  // z < 0 ahead of the lens: below the middle
   }));
   control->Device().SetKey(Motion::kDown, false);
