@@ -221,7 +221,8 @@ base::Status ImportPool::Decode(const ImportFile& file, const ImportFile* data_f
 
 Error NameFile(const fs::path& path, const Error& error) {
   if (error.code == ErrorCode::kImportProgramMissing) return error;
-  const std::string_view remedy = std::string_view(FindRemedy(error.code)).substr(std::string_view("{1}: {2}; ").size());
+  const std::string_view remedy =
+      std::string_view(FindRemedy(error.code)).substr(std::string_view("{1}: {2}; ").size());
   return {error.code, host::Printable(path.string()) + ": " + error.message + "; " + std::string(remedy)};
 }
 

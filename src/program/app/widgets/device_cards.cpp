@@ -28,9 +28,9 @@ FoundCard::FoundCard(presenter::DevicePresenter& presenter) : gui::Card("DEVICES
   found_.signal_row_activated().connect([&presenter](Gtk::ListBoxRow* row) {
     presenter.ChooseFound(static_cast<std::size_t>(row->get_index()));
   });
-  spec_.set_placeholder_text(host::Translate("KIND:ADDRESS, for example liberty:/dev/ttyUSB0"));
-  spec_.set_tooltip_text(
-      host::Translate("Device to try; a + joins hands and jaws. `trocar devices list` names the kinds"));
+  spec_.set_placeholder_text("liberty:/dev/ttyUSB0");
+  spec_.set_tooltip_text(host::Translate(
+      "Device to try, as KIND:ADDRESS; a + joins hands and jaws. `trocar devices list` names the kinds"));
   spec_.signal_changed().connect([this, &presenter] { presenter.SetSpec(spec_.get_text().raw()); });
   spec_.signal_activate().connect([&presenter] { presenter.Test(); });
   append(spec_);

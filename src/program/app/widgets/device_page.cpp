@@ -59,7 +59,11 @@ void DevicePage::MakeContent() {
   middle->append(*scroller);
   middle->append(plot_);
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
-  all->append(*middle);
+  auto* around = Gtk::make_managed<Gtk::ScrolledWindow>();
+  around->set_policy(Gtk::PolicyType::AUTOMATIC, Gtk::PolicyType::AUTOMATIC);
+  around->set_vexpand(true);
+  around->set_child(*middle);
+  all->append(*around);
   all->append(status_);
   set_child(*all);
 }

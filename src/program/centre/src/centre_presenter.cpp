@@ -13,7 +13,7 @@ namespace trocar::centre {
 namespace {
 
 constexpr std::size_t kMostRecent = 3;  // results that nobody has asked for
-constexpr double kLead = 2;  // before an error, so that one sees how it came [s]
+constexpr double kLead = 2;             // before an error, so that one sees how it came [s]
 
 PageKind KindOf(CentreAction action) {
   switch (action) {

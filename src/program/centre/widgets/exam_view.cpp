@@ -15,7 +15,7 @@ constexpr int kPassphraseWidth = 300;  // [pixels]
 }  // namespace
 
 ExamView::ExamView() : Gtk::Box(Gtk::Orientation::VERTICAL) {
-  passphrase_.property_placeholder_text() = host::Translate("Passphrase of the key, if it has one");
+  passphrase_.property_placeholder_text() = host::Translate("Passphrase");
   passphrase_.set_show_peek_icon(true);
   passphrase_.set_size_request(kPassphraseWidth, -1);
   passphrase_.set_valign(Gtk::Align::CENTER);
@@ -115,11 +115,12 @@ Gtk::Box& ExamView::MakeKeys() {
   card.set_hexpand(true);
   card.set_valign(Gtk::Align::START);
   card.append(MakeText(
-      host::Translate("Made once. The private key signs certificates and stays secret; the public one "
-                      "is published, and anybody checks certificates with it."),
+      host::Translate(
+          "Made once. The private key signs certificates and stays secret; the public one "
+          "is published, and anybody checks certificates with it. A passphrase protects the private key."),
       "value"));
   auto* passphrase = Gtk::make_managed<Gtk::PasswordEntry>();
-  passphrase->property_placeholder_text() = host::Translate("Passphrase that protects the private key");
+  passphrase->property_placeholder_text() = host::Translate("Passphrase");
   passphrase->set_show_peek_icon(true);
   Gtk::Button& make = MakeButton(
       host::Translate("Make keys…"), [this, passphrase] { ChooseNewKeys(passphrase->get_text().raw()); },

@@ -55,7 +55,8 @@ Gtk::Label* MakeLabel(const std::string& text, const char* style) {
   label->add_css_class(style);
   label->set_xalign(0);
   label->set_hexpand(true);
-  label->set_ellipsize(Pango::EllipsizeMode::END);
+  label->set_wrap(true);
+  label->set_wrap_mode(Pango::WrapMode::WORD_CHAR);
   return label;
 }
 

@@ -21,9 +21,15 @@ Size Measure(const Gtk::Widget& widget, Gtk::Orientation orientation, int for_si
 
 Columns::Columns(int spacing) : spacing_(spacing) {
   set_hexpand(true);
+  // where its parent ends first, GTK ends it before its own destructor is called
+  signal_destroy().connect([this] { LetGo(); });
 }
 
 Columns::~Columns() {
+  if (gobj() != nullptr) LetGo();
+}
+
+void Columns::LetGo() {
   // those that are members of others may have gone before
   while (Gtk::Widget* child = get_first_child()) child->unparent();
 }

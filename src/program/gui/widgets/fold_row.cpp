@@ -21,6 +21,8 @@ int NaturalWidth(const Gtk::Widget& widget, int height) {
 
 FoldRow::FoldRow() {
   set_hexpand(true);
+  // where its parent ends first, GTK ends it before its own destructor is called
+  signal_destroy().connect([this] { LetGo(); });
   more_.set_label("\u22ef");
   more_.set_always_show_arrow(true);
   SetAccessibleName(more_, host::Translate("More"));
@@ -34,6 +36,11 @@ FoldRow::FoldRow() {
 }
 
 FoldRow::~FoldRow() {
+  if (gobj() != nullptr) LetGo();
+}
+
+void FoldRow::LetGo() {
+  children_.clear();
   // those that are members of others may have gone before
   while (Gtk::Widget* child = get_first_child()) child->unparent();
 }

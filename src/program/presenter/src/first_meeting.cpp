@@ -138,7 +138,8 @@ void SimulatorPresenter::Choose(HomeChoice choice) {
     case HomeChoice::kLastResult:
       return leads_.last ? screen_->OpenLastResult(*leads_.last) : Refresh();
     case HomeChoice::kTutorial:
-      if (!tutorial_.IsOn()) return Do(Action::kToggleTutorial);
+      // what is open may be an attempt, which is asked for
+      if (control_ != nullptr && !tutorial_.IsOn()) return Do(Action::kToggleTutorial);
       return BeginTutorial();
     case HomeChoice::kBasicSkills:
       return OpenTaskList(TaskSection::kBasicSkills);

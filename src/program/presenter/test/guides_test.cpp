@@ -97,9 +97,7 @@ TEST(Guides, MeetTheRimOfARingAndNotItsHole) {
 
 // The issue: the fat and fibres of the triangle were ignored.
 TEST(Guides, MeetFibresUntilTheyAreDivided) {
-  const auto read = files::ReadScene(std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json");
-  ASSERT_TRUE(read.ok()) << read.error().Text();
-  Bench bench = Bench::Make(*read);
+  Bench bench = Bench::OfTask("hook_dissection");
   const auto strands = bench.simulation.Strands();
   ASSERT_FALSE(strands.empty());
   const Vec3 &a = bench.snapshot.positions[strands[0].a], &b = bench.snapshot.positions[strands[0].b];

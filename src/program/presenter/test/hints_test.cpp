@@ -11,7 +11,7 @@ TEST(Hints, LeadThroughTheFirstMinute) {
   EXPECT_EQ(HintText(now), "") << "at home";
   EXPECT_EQ(StateText(now), "");
   now.is_loading = true;
-  EXPECT_EQ(HintText(now), "Loading the patient …");
+  EXPECT_EQ(HintText(now), "Loading …");
   EXPECT_EQ(BadgeText(now), "");
   now.is_loaded = true;
   EXPECT_EQ(HintText(now), "Paused. Space goes on.");

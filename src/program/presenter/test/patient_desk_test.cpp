@@ -55,7 +55,7 @@ TEST_F(Patients, OneIsMadeFromASeedAndListed) {
   EXPECT_EQ(*made, Kept() / "seed-7");
   const PatientPage& page = desk_->Look();
   ASSERT_EQ(page.patients.size(), 2u);
-  EXPECT_EQ(page.patients[1].name, "Generated patient, seed 7");
+  EXPECT_EQ(page.patients[1].name, "generated patient 7");
   EXPECT_NE(page.patients[1].about.find("cystic duct"), std::string::npos) << page.patients[1].about;
   EXPECT_FALSE(page.patients[1].problem);
   EXPECT_NE(page.patients[1].picture, page.patients[0].picture);

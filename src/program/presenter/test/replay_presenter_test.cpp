@@ -100,7 +100,7 @@ TEST_F(ReplayPresenterTest, OpensARecordingAndSaysWhatItIs) {
   EXPECT_NE(screen_.replays[0], nullptr);
   EXPECT_EQ(screen_.replays[1], nullptr);
   EXPECT_EQ(screen_.page.title, "Trocar: replay of a.trocar");
-  EXPECT_THAT(screen_.page.about[0], testing::HasSubstr("peg transfer, normal, seed 3  ·  novice"));
+  EXPECT_THAT(screen_.page.about[0], testing::HasSubstr("peg transfer, normal, variant 3  ·  novice"));
   EXPECT_EQ(screen_.page.clock, "0:00.0 / 0:15.0");
   EXPECT_DOUBLE_EQ(screen_.page.end, 15);
   EXPECT_FALSE(presenter_->IsPlaying());

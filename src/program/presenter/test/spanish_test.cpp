@@ -103,13 +103,17 @@ TEST_F(Spanish, ErrorsSayWhatMendsThem) {
                            "/a.json: at levels[0]: is 9, but must lie between 0 and 5"};
   EXPECT_EQ(Message(nested), "/a.json: en levels[0]: es 9, pero debe estar entre 0 y 5");
   // the issue: "de for instance con 3D Slicer, a DICOM"
-  const base::Error image{base::ErrorCode::kImageUnsupported,
-                          "/a/b.dcm: nobody has heard of this; convert it, for instance with 3D Slicer, to DICOM, NIfTI "
-                          "or NRRD"};
-  EXPECT_EQ(Message(image),
-            "/a/b.dcm: nobody has heard of this; conviértala, por ejemplo con 3D Slicer, a DICOM, NIfTI o NRRD");
-  const base::Error unknown{base::ErrorCode::kImageUnsupported, "take this old thing, for a moment, to somebody who knows"};
-  EXPECT_EQ(Message(unknown), unknown.message) << "a sentence that has no Spanish is English, and not half of each";
+  const base::Error image{
+      base::ErrorCode::kImageUnsupported,
+      "/a/b.dcm: nobody has heard of this; convert it, for instance with 3D Slicer, to DICOM, NIfTI "
+      "or NRRD"};
+  EXPECT_EQ(
+      Message(image),
+      "/a/b.dcm: nobody has heard of this; conviértala, por ejemplo con 3D Slicer, a DICOM, NIfTI o NRRD");
+  const base::Error unknown{base::ErrorCode::kImageUnsupported,
+                            "take this old thing, for a moment, to somebody who knows"};
+  EXPECT_EQ(Message(unknown), unknown.message)
+      << "a sentence that has no Spanish is English, and not half of each";
 }
 
 }  // namespace

@@ -157,7 +157,7 @@ class CentrePresenter {
   CentrePage page_;
   store::Attempt shown_;  // of the result page
   std::filesystem::path expected_;
-  std::deque<FiledAttempt> recent_;  // the newest last
+  std::deque<FiledAttempt> recent_;                                // the newest last
   std::map<std::filesystem::path, HistoryPage::Pending> pending_;  // that have been read
   bool is_trainee_ = false;                                        // who works here is one
   std::atomic<double> share_{-1};

@@ -31,7 +31,7 @@ class Card : public Gtk::Box {
 void SetStyle(Gtk::Label& label, const char* style, Gtk::Align align = Gtk::Align::START);
 /// Lets a text take the panel's width and as many lines as it needs.
 void Wrap(Gtk::Label& label);
-/// A label that its parent owns; it ends in an ellipsis where there is no room.
+/// A label that its parent owns; it takes another line where there is no room.
 Gtk::Label* MakeLabel(const std::string& text, const char* style);
 /// Widgets side by side; its parent owns it.
 Gtk::Box& MakeRow(int spacing, std::initializer_list<Gtk::Widget*> widgets);

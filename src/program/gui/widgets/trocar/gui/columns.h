@@ -24,6 +24,7 @@ class Columns : public Gtk::Widget {
 
  private:
   std::vector<Gtk::Widget*> Shown() const;
+  void LetGo();
   /// Widths side by side, which share what is left over; empty where they do not fit.
   std::vector<int> FindWidths(const std::vector<Gtk::Widget*>& shown, int width) const;
 

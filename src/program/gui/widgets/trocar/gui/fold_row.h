@@ -42,6 +42,7 @@ class FoldRow : public Gtk::Widget {
   };
   void Fold(int width, int height);
   bool HasFolded() const;
+  void LetGo();
 
   std::vector<Child> children_;
   std::size_t end_begins_ = static_cast<std::size_t>(-1);
