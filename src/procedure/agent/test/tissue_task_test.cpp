@@ -13,6 +13,7 @@
 #include "task_monitor.h"
 #include "task_play.h"
 #include "trocar/agent/hand_motion.h"
+#include "trocar/cholecystectomy/operation_error.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/safe_file.h"
 #include "trocar_test/temporary_folder.h"
