@@ -76,22 +76,22 @@ TEST(CriticalViewDoublet, DrawsEachSideAtItsOwnMoment) {
 TEST(CriticalViewMoments, AreThoseAtWhichTheViewsOfTheVerdictCameToCount) {
   CriticalViewMoments moments;
   int saved = 0;
-  const auto step = [&](double time, int points, bool from_front, bool from_behind) {
-    moments.AfterStep({{points, points, points}, from_front, from_behind}, time,
+  const auto step = [&](double time, std::uint8_t points, std::uint8_t from_front, std::uint8_t from_behind) {
+    moments.AfterStep({{points, points, points}, {from_front, from_behind}}, time,
                       [&](std::vector<std::byte>& state) {
                         state.assign(1, std::byte{1});
                         ++saved;
                       });
   };
-  step(1, 1, false, false);
-  step(2, 2, true, false);
+  step(1, 1, 0, 0);
+  step(2, 2, 1, 0);
   EXPECT_FALSE(moments.IsAchieved());
-  step(3, 1, false, false);  // a criterion was lost: what was seen is forgotten
-  step(4, 2, false, true);
-  step(5, 2, false, true);
-  step(6, 2, true, true);
-  step(7, 2, true, true);
-  step(8, 1, false, false);
+  step(3, 1, 0, 0);  // a criterion was lost: what was seen is forgotten
+  step(4, 2, 0, 1);
+  step(5, 2, 0, 1);
+  step(6, 2, 1, 1);
+  step(7, 2, 1, 1);
+  step(8, 1, 0, 0);
   EXPECT_TRUE(moments.IsAchieved());
   EXPECT_EQ(moments.Front().time, 6);
   EXPECT_EQ(moments.Behind().time, 4);
