@@ -175,7 +175,9 @@ class Baselines(unittest.TestCase):
                 distance = lambda: np.linalg.norm(seen["state"][tip] - seen["state"][target])
                 before = distance()
                 for _ in range(10):
-                    seen, *_ = env.step(act(seen["scaled"]))
+                    seen, _, terminated, *_ = env.step(act(seen["scaled"]))
+                    if terminated:
+                        break
                 ways.append(1e3 * (before - distance()))
         return np.mean(ways)
 
