@@ -159,7 +159,11 @@ void RigidStage::FindContacts(const Scene& scene,
     const double clearance = math::Dot(one.normal, one.point - X_device_proxy * one.point) - one.depth;
     if (!(-clearance > deepest)) continue;
     deepest = -clearance;
-    contact = {one.point, -1.0 * one.normal, (kObstacleStiffness * clearance) * one.normal, hand, -1,
+    contact = {one.point,
+               -1.0 * one.normal,
+               (kObstacleStiffness * clearance) * one.normal,
+               hand,
+               -1,
                static_cast<std::int32_t>(one.body)};
   }
   if (deepest > 0) contacts.push_back(contact);

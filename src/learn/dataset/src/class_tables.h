@@ -10,8 +10,8 @@
 #include <span>
 #include <string_view>
 
-#include "trocar/scene/procedure_snapshot.h"
 #include "trocar/cholecystectomy/triplet.h"
+#include "trocar/scene/procedure_snapshot.h"
 #include "trocar/view/labels.h"
 
 namespace trocar::dataset {

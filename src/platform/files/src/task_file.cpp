@@ -85,8 +85,8 @@ base::Result<TaskForm> TaskForm::Parse(const std::string& text, const fs::path& 
 base::Result<scene::Scene> TaskForm::MakeScene(std::uint64_t seed, bool is_varied,
                                                const fs::path& patient_folder) const {
   const Content& c = *content_;
-  auto document = host::JsonDocument::Parse(
-      SubstituteParameters(c.text, c.parameters.Draw(seed, is_varied)), c.source.string());
+  auto document = host::JsonDocument::Parse(SubstituteParameters(c.text, c.parameters.Draw(seed, is_varied)),
+                                            c.source.string());
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly({"format", "version", "name", "about", "levels", "level_scores", "parameters", "shuffle",

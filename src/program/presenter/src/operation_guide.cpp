@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "trocar/cholecystectomy/cholecystectomy.h"
 #include "trocar/host/translate.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/presenter/guides.h"
@@ -102,17 +103,19 @@ OperationStep Say(Text text, std::optional<Vec3> target = std::nullopt) {
 /// Until the view stands.
 OperationStep FindViewStep(const scene::Scene& scene, std::span<const scene::StrandInfo> strands,
                            const simulation::Snapshot& now) {
-  const auto& view = now.operation.critical_view;
+  const scene::ViewScore& view = now.operation.procedure.view;
   if (!now.instruments[instrument::kLeft].is_grasping) return Say(kTakeNeck);
-  const bool is_dissected = view.criteria[0] == 2 && view.criteria[1] == 2 && view.criteria[2] == 2;
-  if (!is_dissected && HasToolInTray(scene, instrument::kRight, ToolKind::kHook) &&
+  if (!view.AreCriteriaWhole() && HasToolInTray(scene, instrument::kRight, ToolKind::kHook) &&
       !HasTool(scene, now, instrument::kRight, ToolKind::kHook))
     return Say(kTakeHook);
   const std::array triangle{StrandRole::kPeritoneum, StrandRole::kTriangle};
-  if (view.criteria[0] < 2) return Say(kClearTriangle, FindFibre(strands, now, triangle));
-  if (view.criteria[1] < 2) return Say(kFreePlate, FindFibre(strands, now, std::array{StrandRole::kBed}));
-  if (view.criteria[2] < 2) return Say(kFreeStructures, FindFibre(strands, now, triangle));
-  return Say(view.is_seen_from_front ? kShowBack : kShowFront);
+  if (!view.IsWhole(cholecystectomy::kTriangle))
+    return Say(kClearTriangle, FindFibre(strands, now, triangle));
+  if (!view.IsWhole(cholecystectomy::kPlate))
+    return Say(kFreePlate, FindFibre(strands, now, std::array{StrandRole::kBed}));
+  if (!view.IsWhole(cholecystectomy::kTwoStructures))
+    return Say(kFreeStructures, FindFibre(strands, now, triangle));
+  return Say(view.IsSeen(cholecystectomy::kFromFront) ? kShowBack : kShowFront);
 }
 
 }  // namespace
@@ -125,18 +128,19 @@ OperationStep FindOperationStep(const scene::Scene& scene, std::span<const scene
                                 const simulation::Snapshot& now, Milestone reached) {
   const simulation::OperationSnapshot& operation = now.operation;
   if (operation.is_completed) return {};
-  const bool is_dissecting = reached < Milestone::kCriticalView && operation.facts.structures_entering > 0;
-  if (!operation.is_gallbladder_free && operation.assistant.is_there && !operation.assistant.is_holding)
+  const double entering = operation.procedure.Measure(cholecystectomy::kStructuresEntering);
+  const bool is_dissecting = reached < Milestone::kCriticalView && entering > 0;
+  if (!operation.is_organ_free && operation.assistant.is_there && !operation.assistant.is_holding)
     return Say(kLift);
   if (is_dissecting) return FindViewStep(scene, strands, now);
-  if (operation.facts.structures_entering > 0) {
+  if (entering > 0) {
     // three clips for each that enters: two stay, one leaves with the gallbladder
-    const auto wanted = static_cast<std::size_t>(3 * operation.facts.structures_entering);
+    const auto wanted = static_cast<std::size_t>(3 * entering);
     if (operation.clip_count < wanted)
       return Say(HasTool(scene, now, instrument::kRight, ToolKind::kClipApplier) ? kClip : kTakeClips);
     return Say(HasTool(scene, now, instrument::kRight, ToolKind::kScissors) ? kDivide : kTakeScissors);
   }
-  if (!operation.is_gallbladder_free) {
+  if (!operation.is_organ_free) {
     if (!HasTool(scene, now, instrument::kRight, ToolKind::kHook) &&
         HasToolInTray(scene, instrument::kRight, ToolKind::kHook))
       return Say(kTakeHook);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/presenter/operation_guide.h"
+#include "trocar/cholecystectomy/cholecystectomy.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +37,8 @@ struct Table {
                {4, 5, roles::StrandRole::kBed, -1}};
     now.operation.strand_is_intact = {1, 1, 1};
     now.operation.assistant.is_there = true;
-    now.operation.facts.structures_entering = 2;
+    scene::SizeSnapshot(cholecystectomy::Cholecystectomy(), now.operation.procedure);
+    now.operation.procedure.measures[cholecystectomy::kStructuresEntering] = 2;
   }
   void Take(ToolKind kind) {
     for (std::size_t i = 0; i < scene.instruments[kRight].tray.size(); ++i) {
@@ -57,13 +59,13 @@ TEST(OperationGuide, LeadsFromTheFirstLookToTheBag) {
   EXPECT_TRUE(table.Says("the hook"));
   table.Take(ToolKind::kHook);
   EXPECT_TRUE(table.Says("fibre of the triangle"));
-  table.now.operation.critical_view.criteria = {2, 0, 0};
+  table.now.operation.procedure.view.criteria = {2, 0, 0};
   EXPECT_TRUE(table.Says("lowest third"));
-  table.now.operation.critical_view.criteria = {2, 2, 0};
+  table.now.operation.procedure.view.criteria = {2, 2, 0};
   EXPECT_TRUE(table.Says("all round"));
-  table.now.operation.critical_view.criteria = {2, 2, 2};
+  table.now.operation.procedure.view.criteria = {2, 2, 2};
   EXPECT_TRUE(table.Says("Show the front"));
-  table.now.operation.critical_view.is_seen_from_front = true;
+  table.now.operation.procedure.view.sights[cholecystectomy::kFromFront] = 1;
   EXPECT_TRUE(table.Says("Show the back"));
   table.reached = Milestone::kCriticalView;
   EXPECT_TRUE(table.Says("the clip applier"));
@@ -73,12 +75,12 @@ TEST(OperationGuide, LeadsFromTheFirstLookToTheBag) {
   EXPECT_TRUE(table.Says("the scissors"));
   table.Take(ToolKind::kScissors);
   EXPECT_TRUE(table.Says("Cut duct and artery"));
-  table.now.operation.facts.structures_entering = 0;
+  table.now.operation.procedure.measures[cholecystectomy::kStructuresEntering] = 0;
   table.reached = Milestone::kDivided;
   EXPECT_TRUE(table.Says("the hook"));
   table.Take(ToolKind::kHook);
   EXPECT_TRUE(table.Says("off its bed"));
-  table.now.operation.is_gallbladder_free = true;
+  table.now.operation.is_organ_free = true;
   EXPECT_TRUE(table.Says("the bag, "));
   table.Take(ToolKind::kBag);
   EXPECT_TRUE(table.Says("into the bag"));
@@ -98,7 +100,7 @@ TEST(OperationGuide, MarksTheNearestFibreThatIsStillThere) {
   EXPECT_NEAR(table.Next().target->x, 0.001, 1e-12);
   table.now.operation.strand_is_intact[0] = 0;
   EXPECT_NEAR(table.Next().target->x, 0.051, 1e-12);
-  table.now.operation.critical_view.criteria = {2, 0, 0};
+  table.now.operation.procedure.view.criteria = {2, 0, 0};
   EXPECT_NEAR(table.Next().target->y, 0.091, 1e-12) << "now the bed";
   const auto mark = MarkOperationStep(table.Next(), {});
   ASSERT_TRUE(mark.has_value());

@@ -80,8 +80,8 @@ Ranges StandardRanges() noexcept;
 Ranges UsualRanges() noexcept;
 
 struct EnvironmentSettings {
-  std::string task = "peg_transfer";  ///< key of a delivered task or operation, or a file of either
-  std::string level = "normal";       ///< of a task or an operation
+  std::string task = "peg_transfer";            ///< key of a delivered task or operation, or a file of either
+  std::string level = "normal";                 ///< of a task or an operation
   std::vector<std::filesystem::path> patients;  ///< in place of the scene's; of several a seed chooses one
   /// Of the row of episodes where no reset names one, and of the first of `layouts`.
   std::uint64_t seed = 1;

@@ -21,7 +21,7 @@ struct BenchmarkOptions {
   int steps = 3000;        ///< random actions of the soak, over all environments
   std::uint64_t seed = 1;  ///< of those actions
   std::string labels;      ///< label map that growth draws its phantom of; empty: of generated patients
-  std::string beside;         ///< another build's program, which the operation is timed by turns with; empty: none
+  std::string beside;  ///< another build's program, which the operation is timed by turns with; empty: none
   bool judges_errors = true;  ///< whether the operation's ticks are held against their equilibrium, too
   std::string url;  ///< an empty database for the store; empty: a SQLite file for the time of the benchmark
 };
