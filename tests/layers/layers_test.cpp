@@ -148,15 +148,15 @@ TEST_F(Planted, DownwardIncludeIsFound) {
 
 // The arrow between the modules is there, that between the wings is not.
 TEST_F(Planted, IncludeThroughAWallIsFoundUnlessItIsOwed) {
-  const std::string text = "#include \"trocar/cholecystectomy/injury.h\"\n";
-  Find("procedure/cholecystectomy/include/trocar/cholecystectomy/injury.h", "int x;\n");
-  const auto breaches = Find("engine/scene/src/a.cpp", text);
+  const std::string text = "#include \"trocar/anatomy/drawn.h\"\n";
+  Find("imaging/anatomy/include/trocar/anatomy/drawn.h", "int x;\n");
+  const auto breaches = Find("judge/assessment/src/a.cpp", text);
   ASSERT_THAT(breaches, SizeIs(1));
-  EXPECT_THAT(breaches[0].what, HasSubstr("the wing engine must not see procedure"));
+  EXPECT_THAT(breaches[0].what, HasSubstr("the wing judge must not see imaging"));
   Rules rules = WithoutDebts();
-  rules.debts = {{"engine/scene/src/a.cpp", "cholecystectomy/injury.h"}};
+  rules.debts = {{"judge/assessment/src/a.cpp", "anatomy/drawn.h"}};
   EXPECT_THAT(FindBreaches(rules, Folder()), IsEmpty());
-  Find("engine/scene/src/a.cpp", "int x;\n");
+  Find("judge/assessment/src/a.cpp", "int x;\n");
   EXPECT_THAT(FindBreaches(rules, Folder()), SizeIs(1)) << "a debt that is paid has to leave the list";
 }
 
