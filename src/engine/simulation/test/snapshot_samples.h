@@ -57,6 +57,7 @@ inline SnapshotLayout MakeSampleLayout() {
   layout.shape.fact_count = layout.shape.operation.topology.tube_piece_count = kSampleLength;
   layout.model = 0x0123456789abcdef;
   layout.surfaces = layout.neighbours = layout.rules = 4;
+  layout.phases = layout.procedure_errors = 4;
   layout.tools = {4, 4};
   layout.goal_steps.assign(kSampleLength, 5);
   return layout;

@@ -6,6 +6,7 @@
 
 #include "recorded_scene.h"
 #include "trocar/cholecystectomy/operation_error.h"
+#include "trocar/files/scene_file.h"
 #include "trocar/training/attempt_metrics.h"
 #include "trocar/training/trace_file.h"
 
@@ -146,6 +147,13 @@ TEST_F(TraceTest, WhatGoesOnIsOneSpanAndAPauseParts) {
 }
 
 TEST_F(TraceTest, AnErrorOfTheOperationSaysWhichAndWhere) {
+  auto found = files::FindOperation("cholecystectomy", {}, 1);
+  ASSERT_TRUE(found.ok() && *found);
+  auto made = simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(**found)));
+  ASSERT_TRUE(made.ok());
+  simulation_ = std::move(*made);
+  snapshot_ = simulation_->GetSnapshot();
+  builder_.emplace(*simulation_);
   Add();
   Emit(FactKind::kVerdict, instrument::kRight,
        static_cast<int>(cholecystectomy::OperationError::kWrongStructureCut));

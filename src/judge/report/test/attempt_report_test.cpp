@@ -113,7 +113,7 @@ TEST(AttemptDocument, AddsUpAPhaseThatComesAgain) {
 TEST(AttemptDocument, MarksMeasuresThatDoNotSeparateLevels) {
   const std::string page = FormatHtml(MakeDocument(test::MakeTaskReport()));
   EXPECT_THAT(page, HasSubstr("Mean speed †"));
-  EXPECT_THAT(page, HasSubstr("does not tell novices from experts"));
+  EXPECT_THAT(page, HasSubstr("does not tell scripted novices from scripted experts"));
   EXPECT_THAT(page, Not(HasSubstr("Path length †")));
 }
 
