@@ -109,13 +109,12 @@ TEST_F(RendererTest, LightDoesNotBurnOutTissueNearTheLens) {
 }
 
 // A highlight of smooth tissue near the lens would be one white patch.
-TEST_F(RendererTest, AHighlightOnTissueNearTheLensIsBrokenByItsGrain) {
+TEST_F(RendererTest, AHighlightOnTissueNearTheLensIsBroadAndALittleBrokenByItsGrain) {
   const auto measure = [this](const Looks& looks) {
     auto renderer = Renderer::Make(looks);
     EXPECT_TRUE(renderer.ok());
     Frame frame = PlainFrame();
-    frame.surfaces = {
-        {renderer->AddSurface(MakeSphere({0, 0, 0}, 0.03, 5), Material::kLiver), {{}, {0, 0, -0.08}}}};
+    frame.surfaces = {{renderer->AddSurface(MakeSphere({0, 0, 0}, 0.03, 5), Material::kLiver), {{}, {0, 0, -0.08}}}};
     target_->Bind();
     renderer->Draw(frame, kWidth, kHeight);
     Image image;
@@ -136,13 +135,14 @@ TEST_F(RendererTest, AHighlightOnTissueNearTheLensIsBrokenByItsGrain) {
   ASSERT_TRUE(looks.ok());
   const auto [white, edge] = measure(*looks);
   EXPECT_GT(white, 20);
-  EXPECT_GT(edge, 0.4 * white);
+  EXPECT_GT(edge, 0.2 * white);
+  EXPECT_LT(edge, 0.4 * white) << "like spilled salt";
   // negative control: without grain it is a patch
   Looks smooth = *looks;
   smooth.materials[static_cast<std::size_t>(Material::kLiver)].bump = 0;
   const auto [patch, rim] = measure(smooth);
   EXPECT_GT(patch, 20);
-  EXPECT_LT(static_cast<double>(rim) / patch, 0.7 * edge / white);
+  EXPECT_LT(static_cast<double>(rim) / patch, 0.8 * edge / white);
 }
 
 TEST_F(RendererTest, AnInsulatedShaftIsGreyAndWorn) {

@@ -173,6 +173,8 @@ TEST_F(OperationViewTest, StrandsAreSeenWhileTheyHold) {
     }
   }
   MakeView(strands);
+  // drawn: what the bed's strands span is hidden under peritoneum at rest
+  for (const scene::StrandInfo& strand : strands) now_.positions[strand.b].y -= 0.0025;
   now_.operation.strand_is_intact.assign(strands.size(), 0);
   const Image none = Draw();
   for (std::size_t kind = 0; kind < 4; ++kind) {

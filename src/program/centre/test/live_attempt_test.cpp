@@ -86,12 +86,12 @@ TEST(LiveAttempt, ComesToTheReplaysNumbers) {
   CompareAttempts(11, 700);
 }
 
-TEST(SlowLiveAttempt, ComesToTheReplaysNumbersInTwoHundredAttempts) {
+TEST(LiveAttemptSlow, ComesToTheReplaysNumbersInTwoHundredAttempts) {
   CompareAttempts(200, test::kUntilOver);
 }
 
 // An operation of twenty minutes: a tick may wait for the fold some microseconds, and a person for the result five seconds.
-TEST(SlowLiveAttempt, CostsLittleInATickAndAtTheEnd) {
+TEST(LiveAttemptSlow, CostsLittleInATickAndAtTheEnd) {
   const auto path = files::FindTask("peg_transfer");
   ASSERT_TRUE(path.ok());
   const auto scene = std::make_shared<const scene::Scene>(*files::ReadTask(*path));

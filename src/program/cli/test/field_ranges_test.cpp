@@ -309,7 +309,8 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnOperationParameters) {
 Json TaskAround(Json scene) {
   for (const char* key : {"format", "version", "name", "seed"}) scene.erase(key);
   Json task = {{"format", "trocar-task"}, {"version", 1}, {"name", "Task"}, {"about", "Of a test"}};
-  task["parameters"] = {{"a", {{"value", 1}, {"spread", 0}}}, {"b", {{"by_level", {{"normal", 1}}}}}};
+  task["parameters"] = {{"a", {{"value", 1}, {"spread", 0}, {"vary", 0}}},
+                        {"b", {{"by_level", {{"normal", 1}}}}}};
   task["scene"] = std::move(scene);
   task["regions"] = {{{"name", "ball"}, {"centre_mm", {0, 0, -100}}, {"radius_mm", 5}, {"facing", {0, 0, 1}}},
                      {{"name", "box"}, {"centre_mm", {0, 0, -100}}, {"half_mm", {5, 5, 5}}}};

@@ -269,6 +269,7 @@ OperationStep SimulatorPresenter::NextOperationStep() const {
 bool SimulatorPresenter::MustAsk(Action action) const {
   if (action != Action::kQuit && action != Action::kToggleDemonstration && action != Action::kToggleTutorial)
     return false;
+  if (action == Action::kQuit && may_leave_) return false;
   if (asked_ == action || unattended_.IsOn() || control_ == nullptr || page_.failure) return false;
   return !control_->IsDemonstration() && !is_attempt_over_ && !is_practice_ &&
          attempt_seconds_ > kWorthAsking;
@@ -276,6 +277,8 @@ bool SimulatorPresenter::MustAsk(Action action) const {
 
 void SimulatorPresenter::Answer(bool is_yes) {
   const Action asked = asked_;
+  // the window's frame asks once more as it closes
+  may_leave_ = may_leave_ || (is_yes && asked == Action::kQuit);
   if (is_yes && asked != Action::kNone) return Do(asked);
   asked_ = Action::kNone;
   screen_->FocusPicture();

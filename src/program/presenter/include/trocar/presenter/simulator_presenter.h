@@ -294,6 +294,7 @@ class SimulatorPresenter {
   OperationEnd operation_end_;
   Tutorial tutorial_;
   Action asked_ = Action::kNone;  // that waits for an answer
+  bool may_leave_ = false;        // it was asked and answered whether to leave
   double attempt_seconds_ = 0;    // of the newest snapshot
   bool has_script_ = false, is_closed_ = false;
   std::unique_ptr<SessionControl> control_;  // null while loading
