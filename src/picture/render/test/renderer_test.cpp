@@ -114,7 +114,8 @@ TEST_F(RendererTest, AHighlightOnTissueNearTheLensIsBroadAndALittleBrokenByItsGr
     auto renderer = Renderer::Make(looks);
     EXPECT_TRUE(renderer.ok());
     Frame frame = PlainFrame();
-    frame.surfaces = {{renderer->AddSurface(MakeSphere({0, 0, 0}, 0.03, 5), Material::kLiver), {{}, {0, 0, -0.08}}}};
+    frame.surfaces = {
+        {renderer->AddSurface(MakeSphere({0, 0, 0}, 0.03, 5), Material::kLiver), {{}, {0, 0, -0.08}}}};
     target_->Bind();
     renderer->Draw(frame, kWidth, kHeight);
     Image image;
