@@ -362,7 +362,7 @@ void RehearsalView::MakePane(const editor::ContourOptions& slices) {
   pane_bar_ = std::make_unique<gui::CommandBar<editor::ContourAction, editor::ContourNeeds>>(
       PaneCommands(), *pane_tips_,
       [this](const editor::ContourCommand& command) { pane_->Presenter().Do(command.action); });
-  pane_bar_->set_show_title_buttons(false);
+  pane_bar_->SetShowTitleButtons(false);
   pane_->Sizes().property_visible().signal_changed().connect([this] { Show(presenter_.Page()); });
   pane_->SetReadOnly(!IsDrawing());
   pane_bar_->set_visible(IsDrawing());

@@ -54,7 +54,7 @@ class CommandBar : public Gtk::WindowHandle {
   }
 
   /// Whether the bar also has what closes and hides the window.
-  void set_show_title_buttons(bool is_shown) { controls_.set_visible(is_shown); }
+  void SetShowTitleButtons(bool is_shown) { controls_.set_visible(is_shown); }
 
   /// The window's title between the buttons, without the program's name that stands before it for the desktop: where buttons are
   /// wide little room is left.
