@@ -22,6 +22,10 @@ const std::set<std::string> kEnglish = {
 
 /// Names that are English in every language: of people, programs, files and commands.
 bool IsName(const std::string& text) {
+  // rating forms keep their published titles, which the Spanish explains
+  for (const char* title : {"Global Operative Assessment of", "Objective Structured Assessment of"}) {
+    if (text.find(title) == 0) return true;
+  }
   for (const char* name : {"Visible Human", "3D Slicer", ".trocar", "trocar ", "DICOM"}) {
     if (text.find(name) != std::string::npos) return true;
   }
