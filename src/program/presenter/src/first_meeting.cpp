@@ -277,8 +277,6 @@ bool SimulatorPresenter::MustAsk(Action action) const {
 
 void SimulatorPresenter::Answer(bool is_yes) {
   const Action asked = asked_;
-  // the window's frame asks once more as it closes
-  may_leave_ = may_leave_ || (is_yes && asked == Action::kQuit);
   if (is_yes && asked != Action::kNone) return Do(asked);
   asked_ = Action::kNone;
   screen_->FocusPicture();

@@ -106,6 +106,8 @@ void SimulatorPresenter::Do(Action action) {
     return Refresh();
   }
   asked_ = Action::kNone;
+  // the window's frame asks once more as it closes
+  may_leave_ = may_leave_ || action == Action::kQuit;
   const Handler* handler = gui::FindHandler(Handlers(), action);
   if (handler == nullptr) {
     screen_->DoInWindow(action);
