@@ -101,8 +101,10 @@ class HandDriver {
     return math::Rotate(math::Inverse(X_world_view_.rotation), p_world - Tip());
   }
   void Approach(const math::Vec3& p_world) {
+    // a turn of the wheel goes along the line of sight, which is a little longer than straight ahead
+    const double ahead = -presenter::CalcSightLine(X_world_view_, Tip()).z * kWheelStep;
     const double away = -InView(p_world).z;
-    for (int n = static_cast<int>(std::lround(away / kWheelStep)); n != 0; n += n > 0 ? -1 : 1) {
+    for (int n = static_cast<int>(std::lround(away / ahead)); n != 0; n += n > 0 ? -1 : 1) {
       screen_->Turn(n > 0 ? 1 : -1);
       Go(0, 0, n > 0 ? kWheelStep : -kWheelStep);
       std::this_thread::sleep_for(std::chrono::milliseconds(60));
@@ -125,7 +127,10 @@ class HandDriver {
     constexpr int kParts = 4;
     instrument::TrocarJoints& joints = joints_[hand_];
     for (int part = 0; part < kParts; ++part) {
-      const device::PointerMap map = presenter::CalcPointerMap(joints, X_world_view_);
+      const math::Vec3 tip =
+          instrument::CalcToolPose(scene_->instruments[hand_].p_world_port, joints).translation;
+      const device::PointerMap map =
+          presenter::CalcPointerMap(joints, X_world_view_, presenter::CalcSightLine(X_world_view_, tip));
       const auto sum = [&](double device::JointRates::*rate) {
         return (right * map.right.*rate + up * map.up.*rate + away * map.away.*rate) / kParts;
       };
