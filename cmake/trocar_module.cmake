@@ -35,6 +35,12 @@ function(trocar_module name)
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "trocar_module(${name}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()
+  # else its headers would be missing in the middle of a build
+  set(absent ${arg_DEPENDS})
+  list(REMOVE_ITEM absent ${TROCAR_MODULES})
+  if(absent)
+    message(FATAL_ERROR "trocar_module(${name}): needs ${absent}, which TROCAR_MODULES lacks")
+  endif()
   list(TRANSFORM arg_DEPENDS PREPEND trocar_)
   # in a browser the engine's own tests run, and those of what judges in it
   if(EMSCRIPTEN AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/src/(engine/[a-z]+|procedure/(cholecystectomy|procedures))$")

@@ -32,7 +32,7 @@ done
 builds=("$@")
 
 # no tests, no windows, no programs: what scene_bits is linked with
-modules="base;roles;math;geometry;collision;tissue;instrument;rigid;surgery;patient;cholecystectomy;scene;simulation;host;files;training;images;meshing;contours;anatomy;record;agent"
+modules="base;roles;math;geometry;collision;tissue;instrument;rigid;surgery;patient;scene;simulation;cholecystectomy;procedures;host;files;training;images;meshing;contours;anatomy;record;agent"
 
 # find_libcxx: compiler and linker options for libc++: the system's, or, because Debian's package of its headers takes the place
 # of one that GStreamer's need, the packages' content in the scratch folder

@@ -19,6 +19,7 @@
 #include "judge/store/src/database.h"
 #include "platform/files/src/material_file.h"
 #include "platform/files/src/script.h"
+#include "program/bench/src/measured_cases.h"
 #include "program/study/src/study_folder.h"
 #include "trocar/assessment/attempt.h"
 #include "trocar/assessment/certificate.h"
@@ -30,6 +31,7 @@
 #include "trocar/cli/run_command.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/device/device_store.h"
+#include "trocar/environment/environment.h"
 #include "trocar/files/find_scene.h"
 #include "trocar/files/operation_level_file.h"
 #include "trocar/files/operation_parameters_file.h"
@@ -498,6 +500,9 @@ std::vector<Door> MakeDoors() {
       {"scene of a text",
        {"src/platform/files/src/find_scene.cpp ParseScene"},
        OfText([](const string& text) { return files::ParseScene(text, kRoot / "scenes/given.json"); })},
+      {"scene by its name",
+       {"src/platform/files/src/find_scene.cpp FindSceneFile"},
+       OfData("scenes/cholecystectomy.json", [] { return files::FindSceneFile("cholecystectomy"); })},
       {"scene of a file",
        {"src/platform/files/src/operation_level_file.cpp ParsePatched"},
        OfFile([](const fs::path& path) { return files::ReadScene(path); })},
@@ -537,11 +542,27 @@ std::vector<Door> MakeDoors() {
        }),
        "scenes/demonstration.script.json"},
       {"task",
-       {"src/platform/files/src/task_file.cpp ParseTask"},
+       {"src/platform/files/src/task_file.cpp TaskForm::Parse",
+        "src/platform/files/src/task_file.cpp TaskForm::MakeScene"},
        OfFile([](const fs::path& path) { return files::ReadTask(path); }),
        "scenes/tasks/peg_transfer.json",
        false,
        60},
+      {"task of an environment",
+       {"src/learn/environment/src/environment_model.cpp IsTask"},
+       OfText([](const string& text) {
+         environment::EnvironmentSettings settings;
+         settings.task = (kRoot / "scenes/tasks/given.json").string();
+         settings.document = text.empty() ? " " : text;  // none would be the file's
+         return environment::EnvironmentModel::Make(settings);
+       }),
+       "scenes/tasks/peg_transfer.json",
+       false,
+       60},
+      {"what another build measured",
+       {"src/program/bench/src/measured_cases.cpp ReadMeasuredCases"},
+       OfText([](const string& text) { return bench::ReadMeasuredCases(text, "given"); }),
+       R"({"cases": [{"name": "operation/ticks_per_s", "value": 210.5, "unit": "1/s"}]})"},
       {"list of tasks",
        {"src/platform/files/src/task_file.cpp ListTasks"},
        OfData("scenes/tasks/given.json", [] { return files::ListTasks(); }),

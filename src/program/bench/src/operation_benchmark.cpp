@@ -11,12 +11,12 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "measured_cases.h"
 #include "processor_time.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/assessment/play_state.h"
@@ -220,12 +220,10 @@ base::Result<std::map<std::string, double>> AskOther(const std::string& program,
     text.append(block.data(), read);
   }
   const int status = pipe != nullptr ? ::pclose(pipe) : -1;
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  std::map<std::string, double> values;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && json.is_object() && json.contains("cases")) {
-    for (const auto& entry : json["cases"]) values[entry.value("name", "")] = entry.value("value", 0.0);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+    auto values = ReadMeasuredCases(text, program);
+    if (values.ok() && values->contains("operation/ticks_per_s")) return values;
   }
-  if (values.contains("operation/ticks_per_s")) return values;
   return base::Error{base::ErrorCode::kUsage, program +
                                                   " does not answer \"bench operation --json\"; give "
                                                   "--beside a trocar program that has this benchmark"};

@@ -3,7 +3,6 @@
 
 #include "review_view.h"
 #include "trocar/gui/card.h"
-#include "trocar/gui/columns.h"
 #include "trocar/host/translate.h"
 #include "trocar/report/attempt_report.h"
 #include "view_parts.h"
@@ -211,18 +210,17 @@ void ResultView::ShowNumbers(const ResultPage& page, Gtk::Box& into) {
   into.append(card);
 }
 
-Gtk::Box& ResultView::MakeActions(const ResultPage& page) {
-  auto* line = Gtk::make_managed<Gtk::Box>();
+gui::Columns& ResultView::MakeActions(const ResultPage& page) {
+  auto* line = Gtk::make_managed<gui::Columns>(8);
   line->add_css_class("actions");
-  line->set_spacing(8);
-  line->append(MakeButton(
+  line->Append(MakeButton(
       host::Translate("Again"), [this] { presenter_->PlayAgain(); }, "primary"));
   const bool is_course = page.step.IsSet() || page.advice.empty();
-  line->append(
+  line->Append(
       MakeButton(is_course ? host::Translate("Next exercise") : host::Translate("Exercise that helps"),
                  [this] { presenter_->PlayNext(); }));
-  line->append(MakeButton(host::Translate("See the replay"), [this] { presenter_->Jump(0); }));
-  line->append(MakeButton(host::Translate("Save the report…"), [this] { ChooseReport(); }));
+  line->Append(MakeButton(host::Translate("See the replay"), [this] { presenter_->Jump(0); }));
+  line->Append(MakeButton(host::Translate("Save the report…"), [this] { ChooseReport(); }));
   return *line;
 }
 

@@ -5,6 +5,7 @@
 #include <gtkmm.h>
 
 #include "trocar/centre/centre_presenter.h"
+#include "trocar/gui/columns.h"
 #include "trocar/gui/file_dialog.h"
 
 namespace trocar::centre {
@@ -22,7 +23,7 @@ class ResultView : public Gtk::Box {
   void ShowAdvice(const ResultPage& page, Gtk::Box& into);
   void ShowErrors(const ResultPage& page, Gtk::Box& into);
   void ShowNumbers(const ResultPage& page, Gtk::Box& into);
-  Gtk::Box& MakeActions(const ResultPage& page);
+  gui::Columns& MakeActions(const ResultPage& page);
   void ChooseReport();
 
   CentrePresenter* presenter_ = nullptr;

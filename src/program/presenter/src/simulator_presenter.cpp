@@ -105,9 +105,9 @@ void SimulatorPresenter::Do(Action action) {
     if (control_ != nullptr) control_->SetPaused(true);
     return Refresh();
   }
-  asked_ = Action::kNone;
   // the window's frame asks once more as it closes
-  may_leave_ = may_leave_ || action == Action::kQuit;
+  may_leave_ = may_leave_ || (action == Action::kQuit && asked_ == action);
+  asked_ = Action::kNone;
   const Handler* handler = gui::FindHandler(Handlers(), action);
   if (handler == nullptr) {
     screen_->DoInWindow(action);
