@@ -6,12 +6,8 @@
 namespace trocar::gui {
 namespace {
 
-struct Size {
-  int minimum = 0, natural = 0;
-};
-
-Size Measure(const Gtk::Widget& widget, Gtk::Orientation orientation, int for_size) {
-  Size size;
+Columns::Size Measure(const Gtk::Widget& widget, Gtk::Orientation orientation, int for_size) {
+  Columns::Size size;
   int ignored = 0;
   widget.measure(orientation, for_size, size.minimum, size.natural, ignored, ignored);
   return size;
@@ -68,6 +64,23 @@ std::vector<int> Columns::FindWidths(const std::vector<Gtk::Widget*>& shown, int
   return widths;
 }
 
+/// Those that stand side by side in so much width, row by row: as many as their least widths allow.
+std::vector<std::vector<Gtk::Widget*>> Columns::FindRows(int width) const {
+  std::vector<std::vector<Gtk::Widget*>> rows;
+  int used = 0;
+  for (Gtk::Widget* child : Shown()) {
+    const int own = Measure(*child, Gtk::Orientation::HORIZONTAL, -1).minimum;
+    if (rows.empty() || used + spacing_ + own > width) {
+      rows.emplace_back();
+      used = own;
+    } else {
+      used += spacing_ + own;
+    }
+    rows.back().push_back(child);
+  }
+  return rows;
+}
+
 Gtk::SizeRequestMode Columns::get_request_mode_vfunc() const {
   return Gtk::SizeRequestMode::HEIGHT_FOR_WIDTH;
 }
@@ -86,32 +99,39 @@ void Columns::measure_vfunc(Gtk::Orientation orientation, int for_size, int& min
     natural = std::max(natural, minimum);
     return;
   }
-  const std::vector<int> widths = for_size < 0 ? std::vector<int>() : FindWidths(shown, for_size);
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    if (!widths.empty()) {
-      const Size size = Measure(*shown[i], orientation, widths[i]);
-      minimum = std::max(minimum, size.minimum), natural = std::max(natural, size.natural);
-    } else {
-      const Size size = Measure(*shown[i], orientation, for_size);
-      minimum += size.minimum + (i > 0 ? spacing_ : 0);
-      natural += size.natural + (i > 0 ? spacing_ : 0);
-    }
+  // without a width: one below the other
+  for (const auto& row : FindRows(std::max(for_size, 0))) {
+    const Size size = MeasureRow(row, for_size);
+    minimum += size.minimum + (row.front() == shown.front() ? 0 : spacing_);
+    natural += size.natural + (row.front() == shown.front() ? 0 : spacing_);
   }
 }
 
+/// Height of a row.
+Columns::Size Columns::MeasureRow(const std::vector<Gtk::Widget*>& row, int width) const {
+  const std::vector<int> widths = FindWidths(row, width);
+  Size height;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    // what is wider than all of it, and stands alone, is given what there is
+    const Size own = Measure(*row[i], Gtk::Orientation::VERTICAL, widths.empty() ? width : widths[i]);
+    height = {std::max(height.minimum, own.minimum), std::max(height.natural, own.natural)};
+  }
+  return height;
+}
+
 void Columns::size_allocate_vfunc(int width, int height, int baseline) {
-  const auto shown = Shown();
-  const std::vector<int> widths = FindWidths(shown, width);
-  int x = 0, y = 0;
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    if (!widths.empty()) {
-      shown[i]->size_allocate({x, 0, widths[i], height}, baseline);
-      x += widths[i] + spacing_;
-    } else {
-      const int own = Measure(*shown[i], Gtk::Orientation::VERTICAL, width).natural;
-      shown[i]->size_allocate({0, y, width, own}, baseline);
-      y += own + spacing_;
+  const auto rows = FindRows(width);
+  int y = 0;
+  for (const auto& row : rows) {
+    const std::vector<int> widths = FindWidths(row, width);
+    const int own = rows.size() == 1 ? height : MeasureRow(row, width).natural;
+    int x = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const int across = widths.empty() ? width : widths[i];
+      row[i]->size_allocate({x, y, across, own}, baseline);
+      x += across + spacing_;
     }
+    y += own + spacing_;
   }
 }
 

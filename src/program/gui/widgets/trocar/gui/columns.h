@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file columns.h  Widgets side by side where there is room, else one below the other.
+/// \file columns.h  Widgets side by side, in as many rows as the width asks for.
 #pragma once
 
 #include <gtkmm.h>
@@ -10,6 +10,10 @@ namespace trocar::gui {
 
 class Columns : public Gtk::Widget {
  public:
+  struct Size {
+    int minimum = 0, natural = 0;  ///< [pixels]
+  };
+
   /// \param spacing  between them [pixels]
   explicit Columns(int spacing);
   ~Columns() override;
@@ -25,7 +29,9 @@ class Columns : public Gtk::Widget {
  private:
   std::vector<Gtk::Widget*> Shown() const;
   void LetGo();
-  /// Widths side by side, which share what is left over; empty where they do not fit.
+  std::vector<std::vector<Gtk::Widget*>> FindRows(int width) const;
+  Size MeasureRow(const std::vector<Gtk::Widget*>& row, int width) const;
+  /// Widths of a row, which share what is left over; empty where they do not fit.
   std::vector<int> FindWidths(const std::vector<Gtk::Widget*>& shown, int width) const;
 
   int spacing_;
