@@ -8,7 +8,7 @@
 set -euo pipefail
 kind=$1 root=$2 folder=$3
 command -v clang++ >/dev/null || { echo "there is no clang++ here" >&2; exit 77; }
-modules="base;roles;math;geometry;collision;tissue;instrument;rigid;surgery;patient;cholecystectomy;scene;simulation;host;tissue_cuda;files;training;device;haptics"
+modules="base;roles;math;geometry;collision;tissue;instrument;rigid;surgery;patient;scene;simulation;cholecystectomy;procedures;host;tissue_cuda;files;training;device;haptics"
 
 case $kind in
   memory)
