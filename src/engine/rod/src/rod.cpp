@@ -59,7 +59,7 @@ RodState MakeRodState(const RodModel& model, std::span<const Vec3> nodes) {
   RodState state;
   const std::size_t segments = model.SegmentCount();
   state.position.assign(nodes.begin(), nodes.end());
-  state.angle.resize(segments), state.is_angle_held.resize(segments);
+  state.angle.resize(segments), state.tension.resize(segments), state.is_angle_held.resize(segments);
   state.reference_twist.resize(nodes.size()), state.is_held.resize(nodes.size());
   Vec3 direction, reference;
   for (std::size_t s = 0; s < segments; ++s) {
@@ -78,6 +78,7 @@ void VisitState(base::StateArchive& archive, RodState& state) {
   archive.FixedField("direction", state.direction);
   archive.FixedField("reference", state.reference);
   archive.FixedField("reference_twist", state.reference_twist);
+  archive.FixedField("tension", state.tension);
   archive.FixedField("is_held", state.is_held);
   archive.FixedField("is_angle_held", state.is_angle_held);
 }

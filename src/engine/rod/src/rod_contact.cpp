@@ -10,8 +10,11 @@
 
 namespace trocar::base {
 template <>
-inline constexpr bool kIsPlainState<rod::RodContact> =
-    sizeof(rod::RodContact) == 2 * sizeof(std::uint32_t) + 10 * sizeof(double);
+inline constexpr bool kIsPlainState<rod::RodContact> = sizeof(rod::RodContact) ==
+                                                       2 * sizeof(std::uint32_t) + 10 * sizeof(double);
+template <>
+inline constexpr bool kIsPlainState<rod::RodCrossing> = sizeof(rod::RodCrossing) ==
+                                                        2 * sizeof(std::uint32_t) + 9 * sizeof(double);
 }  // namespace trocar::base
 
 namespace trocar::rod {
@@ -40,6 +43,19 @@ Nearest FindNearest(const Vec3& p, const Vec3& along_rod, const Vec3& a, const V
     on_rod = std::clamp((ra * on_axis - rd) / rr, 0.0, 1.0);
   }
   return {on_rod, on_axis};
+}
+
+/// From b's point to a's.
+Vec3 CalcApart(std::span<const Vec3> position, const RodCrossing& c) noexcept {
+  return math::Lerp(position[c.a], position[c.a + 1], c.at_a) -
+         math::Lerp(position[c.b], position[c.b + 1], c.at_b);
+}
+
+/// Direction from b's point to a's; square to both segments where the points are one.
+Vec3 CalcNormal(std::span<const Vec3> position, const RodCrossing& c) noexcept {
+  return math::Normalized(
+      CalcApart(position, c),
+      math::Normalized(math::Cross(position[c.a + 1] - position[c.a], position[c.b + 1] - position[c.b])));
 }
 
 /// \return how far the surfaces are apart [m]
@@ -89,6 +105,55 @@ void FollowContacts(const RodModel& model, const RodState& state, std::span<cons
     }
   }
   contacts.erase(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(before));
+}
+
+void MoveCrossing(std::span<const Vec3> position, RodCrossing& crossing) noexcept {
+  const Vec3 before = CalcApart(position, crossing);
+  const Nearest nearest = FindNearest(position[crossing.a], position[crossing.a + 1] - position[crossing.a],
+                                      position[crossing.b], position[crossing.b + 1] - position[crossing.b]);
+  crossing.at_a = nearest.on_rod, crossing.at_b = nearest.on_axis;
+  const Vec3 normal = CalcNormal(position, crossing);
+  crossing.normal = math::Dot(normal, crossing.normal) < 0.0 ? -normal : normal;
+  const Vec3 now = CalcApart(position, crossing);
+  crossing.anchor = crossing.pressure > 0.0 ? crossing.anchor + now - before : now;
+}
+
+void FollowCrossings(const RodModel& model, const RodState& state, const RodContactSettings& settings,
+                     std::vector<RodCrossing>& crossings) {
+  const auto is_before = [](const RodCrossing& x, const RodCrossing& y) {
+    return x.a != y.a ? x.a < y.a : x.b < y.b;
+  };
+  const std::size_t before = crossings.size();
+  const double reach = 2.0 * model.material.radius + settings.margin;
+  const auto segments = static_cast<std::uint32_t>(model.SegmentCount());
+  for (std::uint32_t a = 0; a < segments; ++a) {
+    const Vec3 &pa = state.position[a], &qa = state.position[a + 1];
+    const Vec3 middle = 0.5 * (pa + qa);
+    for (std::uint32_t b = a + kLeastApart; b < segments; ++b) {
+      const Vec3 &pb = state.position[b], &qb = state.position[b + 1];
+      const double far = reach + 0.75 * (model.length[a] + model.length[b]);
+      if (math::SquaredDistance(middle, 0.5 * (pb + qb)) > far * far) continue;
+      const Nearest nearest = FindNearest(pa, qa - pa, pb, qb - pb);
+      const auto old = crossings.begin() + static_cast<std::ptrdiff_t>(before);
+      RodCrossing crossing{.a = a, .b = b, .at_a = nearest.on_rod, .at_b = nearest.on_axis};
+      const Vec3 apart = CalcApart(state.position, crossing);
+      if (math::SquaredNorm(apart) > reach * reach) continue;
+      const auto same = std::lower_bound(crossings.begin(), old, crossing, is_before);
+      if (same != old && !is_before(crossing, *same)) {
+        crossing = *same;
+        MoveCrossing(state.position, crossing);
+      } else {
+        crossing.normal = CalcNormal(state.position, crossing);
+        crossing.anchor = apart;
+      }
+      crossings.push_back(crossing);
+    }
+  }
+  crossings.erase(crossings.begin(), crossings.begin() + static_cast<std::ptrdiff_t>(before));
+}
+
+void VisitState(base::StateArchive& archive, std::vector<RodCrossing>& crossings) {
+  archive.Field("crossings", crossings);
 }
 
 void VisitState(base::StateArchive& archive, std::vector<RodContact>& contacts) {

@@ -99,8 +99,10 @@ void AddJoint(const Joint& joint, bool has_stiffness, ElementDerivatives& sum) n
   const double cosine = math::Dot(t1, t2), chi = math::Max(1.0 + cosine, kLeastChi);
   // bending: 2 B (1 - c) / (1 + c), a function of the cosine alone; by the sine it is exact for small angles, too
   const Vec3 sine = math::Cross(t1, t2);
-  const double slope = -4.0 * joint.bending / (chi * chi), curvature = 8.0 * joint.bending / (chi * chi * chi);
-  sum.energy += 2.0 * joint.bending * (cosine > 0.0 ? math::SquaredNorm(sine) / (chi * chi) : (1.0 - cosine) / chi);
+  const double slope = -4.0 * joint.bending / (chi * chi),
+               curvature = 8.0 * joint.bending / (chi * chi * chi);
+  sum.energy +=
+      2.0 * joint.bending * (cosine > 0.0 ? math::SquaredNorm(sine) / (chi * chi) : (1.0 - cosine) / chi);
   const Vec3 p1 = (t2 - cosine * t1), p2 = (t1 - cosine * t2);
   const Vec3 c1 = p1 / l1, c2 = p2 / l2;  // of the cosine by the segments
   // twist: the reference frames' twist turns with the binormal
@@ -126,8 +128,7 @@ void AddJoint(const Joint& joint, bool has_stiffness, ElementDerivatives& sum) n
   const auto own_twist = [&](const Vec3& t, double length) {
     return -1.0 / (2.0 * length * length) * Symmetrised(Outer(binormal, t + mean));
   };
-  const Matrix3 before_behind =
-      1.0 / (2.0 * l1 * l2) * (2.0 / chi * CrossMatrix(t1) - Outer(binormal, mean));
+  const Matrix3 before_behind = 1.0 / (2.0 * l1 * l2) * (2.0 / chi * CrossMatrix(t1) - Outer(binormal, mean));
   h.before = h.before + joint.twisting * Outer(m1, m1) + moment * own_twist(t1, l1);
   h.behind = h.behind + joint.twisting * Outer(m2, m2) + moment * own_twist(t2, l2);
   h.mixed = h.mixed + joint.twisting * Outer(m2, m1) + moment * Transposed(before_behind);

@@ -23,10 +23,10 @@ struct ElementDerivatives {
 
 /// Two segments that meet in a node.
 struct Joint {
-  math::Vec3 before, behind;    // the segments as vectors [m]
-  double bending = 0;           // E I over the node's reach [N m]
-  double twisting = 0;          // G J over the node's reach [N m]
-  double twist = 0;             // of the material from one segment to the next [rad]
+  math::Vec3 before, behind;  // the segments as vectors [m]
+  double bending = 0;         // E I over the node's reach [N m]
+  double twisting = 0;        // G J over the node's reach [N m]
+  double twist = 0;           // of the material from one segment to the next [rad]
 };
 
 /// Bending E I / (2 r) |kappa b|^2 and twist G J / (2 r) m^2 of a joint, added to `sum`.

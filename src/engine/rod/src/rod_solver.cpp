@@ -3,8 +3,8 @@
 #include <cmath>
 #include <span>
 
-#include "band_matrix.h"
 #include "rod_elements.h"
+#include "rod_stiffness.h"
 #include "trocar/base/assert.h"
 #include "trocar/rod/rod.h"
 
@@ -14,11 +14,6 @@ using math::Vec3;
 
 namespace {
 
-/// Where the stiffness is not positive definite, so much of its largest diagonal entry is added to the diagonal at first [-], then
-/// kMoreShift times more until it is.
-constexpr double kFirstShift = 1e-11;
-constexpr double kMoreShift = 10.0;
-constexpr int kMaxShifts = 13;
 /// A step is taken where the potential falls by this part of what its slope promises [-] (Armijo); else it is halved.
 constexpr double kArmijo = 1e-4;
 constexpr int kMaxHalvings = 12;
@@ -28,19 +23,41 @@ constexpr double kPositionRounding = 1e-15;
 constexpr int kLengthPasses = 3;
 /// Of a chain that is held at both ends and straight no segment can give way [-].
 constexpr double kLeastFreedom = 1e-3;
+/// How deep a step may let the rod sink in, and how much deeper where it is deeper already, over its radius [-].
+constexpr double kMostDepth = 0.3;
+constexpr double kMoreDepth = 0.1;
+/// A solve ends where so little of a step is allowed [-].
+constexpr double kLeastShare = 1e-3;
 /// Differences of the potential below this part of its terms are rounding [-].
 constexpr double kRounding = 1e-13;
 
-std::size_t PositionAt(std::size_t node) {
-  return kNodeUnknowns * node;
+/// Huber's function of how far what sticks is drawn: it pulls with its stiffness up to the limit, and with the limit beyond.
+struct Friction {
+  double potential = 0;  // [J]
+  double across = 0;     // force over the way [N/m]
+  Vec3 slips;            // direction, zero where it sticks
+};
+Friction CalcFriction(const Vec3& drawn, double limit, double stiffness) noexcept {
+  const double length = math::Norm(drawn);
+  if (!(stiffness * length > limit)) return {0.5 * stiffness * length * length, stiffness, {}};
+  return {limit * (length - 0.5 * limit / stiffness), limit / length, drawn / length};
 }
-std::size_t AngleAt(std::size_t segment) {
-  return kNodeUnknowns * segment + 3;
+
+/// Of a vector what is square to a unit vector.
+Vec3 Across(const Vec3& v, const Vec3& normal) noexcept {
+  return v - math::Dot(v, normal) * normal;
+}
+
+/// What is left of a stretch when what is beyond the limit has slipped.
+Vec3 LimitStretch(const Vec3& drawn, double limit, double stiffness) noexcept {
+  const double length = math::Norm(drawn), most = limit / stiffness;
+  return length > most ? most / length * drawn : drawn;
 }
 
 }  // namespace
 
-RodSolver::RodSolver(const RodModel& model) : model_(&model) {
+RodSolver::RodSolver(const RodModel& model)
+    : model_(&model), stiffness_(std::make_unique<RodStiffness>(model.NodeCount())) {
   const std::size_t n = model.NodeCount(), segments = model.SegmentCount(), unknowns = kNodeUnknowns * n;
   shortest_ = *std::min_element(model.length.begin(), model.length.end());
   for (const double length : model.length) mean_length_ += length / static_cast<double>(segments);
@@ -49,10 +66,13 @@ RodSolver::RodSolver(const RodModel& model) : model_(&model) {
     shape->direction.resize(segments), shape->reference.resize(segments), shape->angle.resize(segments);
   }
   start_.resize(n);
-  for (auto* list : {&tension_, &elongation_, &foreseen_, &diagonal_, &beside_, &pull_}) list->resize(segments);
+  for (auto* list : {&tension_, &wanted_, &elongation_, &foreseen_, &diagonal_, &beside_, &pull_})
+    list->resize(segments);
   gradient_.resize(unknowns), step_.resize(unknowns), is_fixed_.resize(unknowns);
-  band_.resize(unknowns * kBandWidth), factor_.resize(unknowns * kBandWidth);
 }
+RodSolver::~RodSolver() = default;
+RodSolver::RodSolver(RodSolver&&) noexcept = default;
+RodSolver& RodSolver::operator=(RodSolver&&) noexcept = default;
 
 void RodSolver::Take(const RodState& state) noexcept {
   here_.position = state.position, here_.direction = state.direction, here_.reference = state.reference;
@@ -102,10 +122,10 @@ void RodSolver::AddSegment(const Shape& at, std::size_t segment, bool has_stiffn
     for (int j = 0; j < 3; ++j) {
       const auto column = static_cast<std::size_t>(j);
       const double entry = (stiffness - across) * u[i] * u[j] + (i == j ? across : 0.0);
-      band_[BandAt(b + row, a + column)] -= entry;
+      stiffness_->At(b + row, a + column) -= entry;
       if (j > i) continue;
-      band_[BandAt(a + row, a + column)] += entry;
-      band_[BandAt(b + row, b + column)] += entry;
+      stiffness_->At(a + row, a + column) += entry;
+      stiffness_->At(b + row, b + column) += entry;
     }
   }
 }
@@ -124,7 +144,7 @@ void RodSolver::AddBend(const Shape& at, std::size_t node, bool has_stiffness, S
     const double of_force = i % kNodeUnknowns == 3 ? 1.0 / mean_length_ : 1.0;
     sums.force_scale = math::Max(sums.force_scale, of_force * std::fabs(joint.gradient[i]));
     if (!has_stiffness) continue;
-    for (std::size_t j = 0; j <= i; ++j) band_[BandAt(first + i, first + j)] += joint.stiffness[i][j];
+    for (std::size_t j = 0; j <= i; ++j) stiffness_->At(first + i, first + j) += joint.stiffness[i][j];
   }
 }
 
@@ -138,17 +158,16 @@ void RodSolver::AddLoad(const RodLoad& load, const Shape& at, std::size_t node, 
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t row = PositionAt(node) + static_cast<std::size_t>(axis);
     gradient_[row] += load.drag * moved[axis] - force[axis];
-    if (has_stiffness) band_[BandAt(row, row)] += load.drag;
+    if (has_stiffness) stiffness_->At(row, row) += load.drag;
   }
 }
 
-/// Adds the gradient of a potential at a contact's point.
-void RodSolver::AddPointForce(const RodContact& contact, const Vec3& force) noexcept {
-  const std::size_t a = PositionAt(contact.segment), b = PositionAt(contact.segment + 1);
+/// Adds the gradient of a potential at a place on a segment.
+void RodSolver::AddPointForce(std::size_t segment, double at, const Vec3& force) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     const auto row = static_cast<std::size_t>(axis);
-    gradient_[a + row] += (1.0 - contact.at) * force[axis];
-    gradient_[b + row] += contact.at * force[axis];
+    gradient_[PositionAt(segment) + row] += (1.0 - at) * force[axis];
+    gradient_[PositionAt(segment + 1) + row] += at * force[axis];
   }
 }
 
@@ -161,13 +180,12 @@ void RodSolver::AddPointStiffness(const RodContact& contact, double along, doubl
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const auto row = static_cast<std::size_t>(i), column = static_cast<std::size_t>(j);
-      const double entry =
-          (along - across) * contact.normal[i] * contact.normal[j] +
-          across * ((i == j ? 1.0 : 0.0) - slips[i] * slips[j]);
-      band_[BandAt(b + row, a + column)] += of_a * of_b * entry;
+      const double entry = (along - across) * contact.normal[i] * contact.normal[j] +
+                           across * ((i == j ? 1.0 : 0.0) - slips[i] * slips[j]);
+      stiffness_->At(b + row, a + column) += of_a * of_b * entry;
       if (j > i) continue;
-      band_[BandAt(a + row, a + column)] += of_a * of_a * entry;
-      band_[BandAt(b + row, b + column)] += of_b * of_b * entry;
+      stiffness_->At(a + row, a + column) += of_a * of_a * entry;
+      stiffness_->At(b + row, b + column) += of_b * of_b * entry;
     }
   }
 }
@@ -180,94 +198,117 @@ void RodSolver::AddContact(const RodContactSettings& settings, const RodContact&
   const double pressure = settings.normal * depth;
   sums.potential += 0.5 * pressure * depth;
   sums.force_scale = math::Max(sums.force_scale, pressure);
-  AddPointForce(contact, -pressure * contact.normal);
-  // what sticks pulls with its stiffness up to the limit, and with the limit beyond: Huber's function
-  const double limit = contact.friction * contact.pressure;
-  Vec3 drawn = point - contact.anchor;
-  drawn -= math::Dot(drawn, contact.normal) * contact.normal;
-  const double length = math::Norm(drawn);
-  const bool slips = settings.across * length > limit;
-  const double across = slips ? (length > 0.0 ? limit / length : 0.0) : settings.across;
-  sums.potential += slips ? limit * (length - 0.5 * limit / settings.across) : 0.5 * across * length * length;
-  AddPointForce(contact, across * drawn);
-  if (has_stiffness) {
-    AddPointStiffness(contact, settings.normal, across, slips && length > 0.0 ? drawn / length : Vec3{});
+  const Vec3 drawn = Across(point - contact.anchor, contact.normal);
+  const Friction friction = CalcFriction(drawn, contact.friction * contact.pressure, settings.across);
+  sums.potential += friction.potential;
+  AddPointForce(contact.segment, contact.at, friction.across * drawn - pressure * contact.normal);
+  if (has_stiffness) AddPointStiffness(contact, settings.normal, friction.across, friction.slips);
+}
+
+/// The point of `a` as it is seen from that of `b`.
+static Vec3 CalcApart(std::span<const Vec3> position, const RodCrossing& c) noexcept {
+  return math::Lerp(position[c.a], position[c.a + 1], c.at_a) -
+         math::Lerp(position[c.b], position[c.b + 1], c.at_b);
+}
+
+void RodSolver::AddCrossing(const RodContactSettings& settings, const RodCrossing& crossing, const Shape& at,
+                            bool has_stiffness, Sums& sums) noexcept {
+  const Vec3 apart = CalcApart(at.position, crossing);
+  const double depth = 2.0 * model_->material.radius - math::Dot(crossing.normal, apart);
+  if (!(depth > 0.0)) return;
+  const double pressure = settings.normal * depth;
+  sums.potential += 0.5 * pressure * depth;
+  sums.force_scale = math::Max(sums.force_scale, pressure);
+  const Vec3 drawn = Across(apart - crossing.anchor, crossing.normal);
+  const Friction friction = CalcFriction(drawn, settings.self_friction * crossing.pressure, settings.across);
+  sums.potential += friction.potential;
+  const Vec3 force = friction.across * drawn - pressure * crossing.normal;
+  AddPointForce(crossing.a, crossing.at_a, force);
+  AddPointForce(crossing.b, crossing.at_b, -force);
+  if (!has_stiffness) return;
+  const RodPoint a{crossing.a, crossing.at_a}, b{crossing.b, crossing.at_b};
+  stiffness_->AddPull(a, b, crossing.normal, settings.normal);
+  // two directions square to the normal; what slips resists only square to its way
+  const bool slips = math::SquaredNorm(friction.slips) > 0.0;
+  const Vec3 first = slips ? friction.slips : math::AnyPerpendicular(crossing.normal);
+  if (!slips) stiffness_->AddPull(a, b, first, friction.across);
+  stiffness_->AddPull(a, b, math::Cross(crossing.normal, first), friction.across);
+}
+
+/// Takes over what presses, which is the friction's limit in the next step, and where crossings are nearest now.
+void RodSolver::UpdateContacts(const RodLoad& load) const noexcept {
+  for (RodContact& contact : load.contacts) {
+    const Vec3 point =
+        math::Lerp(here_.position[contact.segment], here_.position[contact.segment + 1], contact.at);
+    contact.pressure =
+        math::Max(0.0, load.contact.normal * (contact.offset - math::Dot(contact.normal, point)));
   }
-}
-
-/// How far a contact's point is inside, at here_ [m].
-double RodSolver::CalcDepth(const RodContact& contact) const noexcept {
-  return contact.offset - math::Dot(contact.normal, math::Lerp(here_.position[contact.segment],
-                                                               here_.position[contact.segment + 1], contact.at));
-}
-
-/// Takes over what presses, which is the friction's limit in the next step.
-void RodSolver::UpdatePressures(const RodLoad& load) const noexcept {
-  for (RodContact& contact : load.contacts)
-    contact.pressure = math::Max(0.0, load.contact.normal * CalcDepth(contact));
+  for (RodCrossing& crossing : load.crossings) {
+    MoveCrossing(here_.position, crossing);
+    const double between = math::Dot(crossing.normal, CalcApart(here_.position, crossing));
+    crossing.pressure = math::Max(0.0, load.contact.normal * (2.0 * model_->material.radius - between));
+  }
 }
 
 /// What has slipped sticks where it has come to.
 void RodSolver::LetSlip(const RodLoad& load) const noexcept {
+  const double stiffness = load.contact.across;
   for (RodContact& contact : load.contacts) {
     const Vec3 point =
         math::Lerp(here_.position[contact.segment], here_.position[contact.segment + 1], contact.at);
-    Vec3 drawn = point - contact.anchor;
-    drawn -= math::Dot(drawn, contact.normal) * contact.normal;
-    const double length = math::Norm(drawn), most = contact.friction * contact.pressure / load.contact.across;
-    contact.anchor = point - (length > most ? most / length : 1.0) * drawn;
+    contact.anchor = point - LimitStretch(Across(point - contact.anchor, contact.normal),
+                                          contact.friction * contact.pressure, stiffness);
+  }
+  for (RodCrossing& crossing : load.crossings) {
+    const Vec3 apart = CalcApart(here_.position, crossing);
+    crossing.anchor = apart - LimitStretch(Across(apart - crossing.anchor, crossing.normal),
+                                           load.contact.self_friction * crossing.pressure, stiffness);
   }
 }
 
 RodSolver::Sums RodSolver::Assemble(const RodLoad& load, const Shape& at, bool has_stiffness) noexcept {
   Sums sums;
   std::fill(gradient_.begin(), gradient_.end(), 0.0);
-  if (has_stiffness) std::fill(band_.begin(), band_.end(), 0.0);
+  if (has_stiffness) stiffness_->Clear();
   for (std::size_t s = 0; s < model_->SegmentCount(); ++s) AddSegment(at, s, has_stiffness, sums);
   for (std::size_t i = 1; i + 1 < model_->NodeCount(); ++i) AddBend(at, i, has_stiffness, sums);
   for (std::size_t i = 0; i < model_->NodeCount(); ++i) AddLoad(load, at, i, has_stiffness, sums);
   for (const RodContact& contact : load.contacts) AddContact(load.contact, contact, at, has_stiffness, sums);
+  for (const RodCrossing& crossing : load.crossings)
+    AddCrossing(load.contact, crossing, at, has_stiffness, sums);
   return sums;
 }
 
-/// Takes what is fixed out of the system: its row and column become the identity's.
-void RodSolver::HoldFixed() noexcept {
-  for (std::size_t row = 0; row < is_fixed_.size(); ++row) {
-    const std::size_t first = row - std::min(row, kBandWidth - 1);
-    for (std::size_t column = first; column < row; ++column) {
-      if (is_fixed_[row] || is_fixed_[column]) band_[BandAt(row, column)] = 0.0;
-    }
-    if (is_fixed_[row]) band_[BandAt(row, row)] = 1.0;
+/// Share of step_ that lets nothing sink in by more than a part of the rod's radius. A crossing that does not press yet is not in
+/// the stiffness, and the energy that a hand's move has put into one segment would hide what it costs to go through another.
+double RodSolver::LimitByContacts(const RodLoad& load) const noexcept {
+  const auto move_at = [this](std::size_t segment, double at, const Vec3& along) {
+    const double *const a = &step_[PositionAt(segment)], *const b = &step_[PositionAt(segment + 1)];
+    return math::Dot(along, math::Lerp(Vec3{a[0], a[1], a[2]}, Vec3{b[0], b[1], b[2]}, at));
+  };
+  const double radius = model_->material.radius;
+  double share = 1.0;
+  const auto limit = [&](double depth, double deeper) {
+    const double most = math::Max(kMostDepth * radius, depth + kMoreDepth * radius);
+    if (depth + share * deeper > most) share = (most - depth) / deeper;
+  };
+  for (const RodContact& c : load.contacts) {
+    const Vec3 point = math::Lerp(here_.position[c.segment], here_.position[c.segment + 1], c.at);
+    limit(c.offset - math::Dot(c.normal, point), -move_at(c.segment, c.at, c.normal));
   }
+  for (const RodCrossing& c : load.crossings) {
+    limit(2.0 * radius - math::Dot(c.normal, CalcApart(here_.position, c)),
+          move_at(c.b, c.at_b, c.normal) - move_at(c.a, c.at_a, c.normal));
+  }
+  return share;
 }
 
-/// Factors band_, with as much added to its diagonal as makes it positive definite.
+/// Newton's step, in step_, no longer than the settings and what presses allow.
 ///
-/// \return whether nothing had to be
-bool RodSolver::Factor() noexcept {
-  double largest = 0;
-  for (std::size_t row = 0; row < is_fixed_.size(); ++row) {
-    if (!is_fixed_[row]) largest = math::Max(largest, band_[BandAt(row, row)]);
-  }
-  if (!(largest > 0.0)) largest = 1.0;
-  double shift = 0;
-  for (int tries = 0; tries <= kMaxShifts; ++tries) {
-    factor_ = band_;
-    for (std::size_t row = 0; row < is_fixed_.size(); ++row) {
-      if (is_fixed_[row]) continue;
-      const bool is_angle = row % kNodeUnknowns == 3;
-      factor_[BandAt(row, row)] += is_angle ? shift * mean_length_ * mean_length_ : shift;
-    }
-    if (FactorBand(factor_)) return tries == 0;
-    shift = tries == 0 ? kFirstShift * largest : kMoreShift * shift;
-  }
-  return false;
-}
-
-/// Newton's step, in step_, no node farther than `max_move` [m].
-bool RodSolver::CalcStep(double max_move) noexcept {
+/// \return false where there is no such step
+bool RodSolver::CalcStep(const RodSettings& settings, const RodLoad& load) noexcept {
   for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = is_fixed_[i] ? 0.0 : -gradient_[i];
-  SolveBand(factor_, step_);
+  stiffness_->Solve(step_);
   double longest2 = 0, sum = 0;
   for (std::size_t i = 0; i < model_->NodeCount(); ++i) {
     const double* const move = &step_[PositionAt(i)];
@@ -275,14 +316,23 @@ bool RodSolver::CalcStep(double max_move) noexcept {
   }
   for (const double each : step_) sum += each;
   if (!std::isfinite(sum) || !std::isfinite(longest2)) return false;
-  const double share = longest2 > max_move * max_move ? max_move / std::sqrt(longest2) : 1.0;
+  const double max_move = settings.max_move * mean_length_;
+  const double whole =
+      math::Min(LimitByContacts(load), longest2 > max_move * max_move ? max_move / std::sqrt(longest2) : 1.0);
+  // what a node has left of its way in this solve
+  double share = whole;
+  for (std::size_t i = 0; i < model_->NodeCount() && settings.max_way < INFINITY; ++i) {
+    const double* const move = &step_[PositionAt(i)];
+    const double length = math::Norm({move[0], move[1], move[2]});
+    const double left = settings.max_way - math::Distance(here_.position[i], start_[i]);
+    if (share * length > left) share = math::Max(0.0, left / length);
+  }
   for (double& each : step_) each *= share;
-  return true;
+  return share > kLeastShare * whole;
 }
 
-/// Moves trial_'s free nodes along their segments until these are as long as the linear system foresaw after this share of the
-/// step: what a turn adds to a length is of second order, and a stiff segment would answer it with a force of first.
-void RodSolver::RestoreLengths(double share) noexcept {
+/// Moves trial_'s free nodes along their segments until these are as long as is wanted.
+void RodSolver::RestoreLengths() noexcept {
   const std::size_t segments = model_->SegmentCount();
   const auto is_free = [this](std::size_t node) { return is_fixed_[PositionAt(node)] ? 0.0 : 1.0; };
   for (int pass = 0; pass < kLengthPasses; ++pass) {
@@ -292,7 +342,7 @@ void RodSolver::RestoreLengths(double share) noexcept {
       trial_.direction[s] = math::Normalized(along, here_.direction[s]);
       const double freedom = is_free(s) + is_free(s + 1);
       diagonal_[s] = freedom > 0.0 ? freedom : 1.0;
-      pull_[s] = freedom > 0.0 ? length - model_->length[s] - (elongation_[s] + share * foreseen_[s]) : 0.0;
+      pull_[s] = freedom > 0.0 ? length - model_->length[s] - wanted_[s] : 0.0;
       beside_[s] = s > 0 ? -is_free(s) * math::Dot(trial_.direction[s - 1], trial_.direction[s]) : 0.0;
     }
     // a tridiagonal system in the segments
@@ -327,7 +377,10 @@ bool RodSolver::SearchLine(const RodLoad& load, const Sums& before) noexcept {
       trial_.position[i] = here_.position[i] + share * Vec3{move[0], move[1], move[2]};
       if (i < model_->SegmentCount()) trial_.angle[i] = here_.angle[i] + share * step_[AngleAt(i)];
     }
-    RestoreLengths(share);
+    // what a turn adds to a length is of second order, and a stiff segment would answer it with a force of first
+    for (std::size_t s = 0; s < model_->SegmentCount(); ++s)
+      wanted_[s] = elongation_[s] + share * foreseen_[s];
+    RestoreLengths();
     FollowFrames(here_, trial_);
     const Sums sums = Assemble(load, trial_, false);
     if (!(sums.potential <= before.potential + kArmijo * share * slope + rounding)) continue;
@@ -361,22 +414,26 @@ RodReport RodSolver::Solve(const RodSettings& settings, const RodLoad& load, Rod
   TROCAR_ASSERT(load.force.empty() || load.force.size() == model_->NodeCount());
   RodReport report;
   Take(state);
-  UpdatePressures(load);
+  UpdateContacts(load);
   for (;;) {
     const Sums sums = Assemble(load, here_, true);
     report.is_finite = std::isfinite(sums.potential);
     if (!report.is_finite) return report;
     report.converged = Judge(settings, sums, report);
-    HoldFixed();
-    report.is_stable = Factor();
+    report.is_stable = stiffness_->Factor(is_fixed_, mean_length_);
     // a saddle is no end: the step from it goes where the energy falls, if a force shows the way
     if (report.converged || report.steps >= settings.max_steps) break;
-    if (!CalcStep(settings.max_move * mean_length_) || !SearchLine(load, sums)) break;
+    if (!CalcStep(settings, load)) break;
+    if (!SearchLine(load, sums)) {
+      (void)Assemble(load, here_, false);  // forces where it stays, not where it was tried
+      break;
+    }
     ++report.steps;
-    UpdatePressures(load);
+    UpdateContacts(load);
   }
   state.position = here_.position, state.direction = here_.direction, state.reference = here_.reference;
   state.angle = here_.angle, state.reference_twist = here_.reference_twist;
+  state.tension = tension_;
   LetSlip(load);
   return report;
 }

@@ -34,7 +34,8 @@ TEST(BandMatrix, SolvesAsTheWholeMatrixWould) {
   std::vector<double> expected(kRows), x(kRows);
   for (std::size_t i = 0; i < kRows; ++i) expected[i] = std::sqrt(static_cast<double>(i)) - 2.0;
   for (std::size_t row = 0; row < kRows; ++row) {
-    for (std::size_t column = 0; column < kRows; ++column) x[row] += EntryOf(band, row, column) * expected[column];
+    for (std::size_t column = 0; column < kRows; ++column)
+      x[row] += EntryOf(band, row, column) * expected[column];
   }
   std::vector<double> factor = band;
   ASSERT_TRUE(FactorBand(factor));

@@ -40,7 +40,12 @@ double CalcPullRatio(double friction, double ticks_down) {
   RodState state = MakeRodState(model, nodes);
   RodSolver solver(model);
   std::vector<RodContact> contacts;
-  const RodObstacle obstacle{.a = {0, -0.05, 0}, .b = {0, 0.05, 0}, .outward = {}, .radius = shaft, .friction = friction, .motion = {}};
+  const RodObstacle obstacle{.a = {0, -0.05, 0},
+                             .b = {0, 0.05, 0},
+                             .outward = {},
+                             .radius = shaft,
+                             .friction = friction,
+                             .motion = {}};
   std::vector<Vec3> forces(nodes.size());
   forces.back() = {0, 0, -force};
   state.is_held.front() = 1;
@@ -49,7 +54,9 @@ double CalcPullRatio(double friction, double ticks_down) {
   for (int tick = 0; tick < 150; ++tick) {
     state.position.front().z -= ticks_down;
     FollowContacts(model, state, std::span(&obstacle, 1), {}, contacts);
-    const RodReport report = solver.Solve({.max_steps = 60}, {.gravity = {}, .force = forces, .drag = 1e-4, .contacts = contacts, .contact = {}}, state);
+    const RodReport report = solver.Solve(
+        {.max_steps = 60},
+        {.gravity = {}, .force = forces, .drag = 1e-4, .contacts = contacts, .contact = {}}, state);
     EXPECT_TRUE(report.is_finite);
     pull = -solver.Reaction(0).z;
   }
@@ -59,7 +66,8 @@ double CalcPullRatio(double friction, double ticks_down) {
 TEST(RodContact, AThreadOverAShaftFollowsTheCapstanLaw) {
   EXPECT_NEAR(CalcPullRatio(0.0, 2e-5), 1.0, 0.01);
   for (const double friction : {0.1, 0.2, 0.4}) {
-    const double drawn = std::log(CalcPullRatio(friction, 2e-5)), let = std::log(CalcPullRatio(friction, -2e-5));
+    const double drawn = std::log(CalcPullRatio(friction, 2e-5)),
+                 let = std::log(CalcPullRatio(friction, -2e-5));
     EXPECT_NEAR(drawn, friction * M_PI, 0.05 * friction * M_PI) << friction;
     EXPECT_NEAR(let, -friction * M_PI, 0.05 * friction * M_PI) << "let go";
   }
@@ -67,7 +75,8 @@ TEST(RodContact, AThreadOverAShaftFollowsTheCapstanLaw) {
 
 TEST(RodContact, AThreadThatIsLetGoComesToRestOnWhatLiesBelow) {
   std::vector<Vec3> nodes;
-  for (int i = 0; i <= 60; ++i) nodes.push_back({1e-3 * i, 0.004 * std::sin(0.2 * i), 0.01 + 0.003 * std::cos(0.3 * i)});
+  for (int i = 0; i <= 60; ++i)
+    nodes.push_back({1e-3 * i, 0.004 * std::sin(0.2 * i), 0.01 + 0.003 * std::cos(0.3 * i)});
   const RodModel model = MakeRodModel({nodes, MakeThread()}).value();
   RodState state = MakeRodState(model, nodes);
   RodSolver solver(model);
@@ -78,9 +87,15 @@ TEST(RodContact, AThreadThatIsLetGoComesToRestOnWhatLiesBelow) {
   for (; tick < 2000 && moved > 1e-9; ++tick) {
     const std::vector<Vec3> before = state.position;
     FollowContacts(model, state, std::span(&floor, 1), {}, contacts);
-    ASSERT_TRUE(solver.Solve({}, {.gravity = {0, 0, -9.81}, .force = {}, .drag = 1e-3, .contacts = contacts, .contact = {}}, state).is_finite);
+    ASSERT_TRUE(
+        solver
+            .Solve({},
+                   {.gravity = {0, 0, -9.81}, .force = {}, .drag = 1e-3, .contacts = contacts, .contact = {}},
+                   state)
+            .is_finite);
     moved = 0;
-    for (std::size_t i = 0; i < before.size(); ++i) moved = std::max(moved, math::Distance(before[i], state.position[i]));
+    for (std::size_t i = 0; i < before.size(); ++i)
+      moved = std::max(moved, math::Distance(before[i], state.position[i]));
   }
   EXPECT_LT(tick, 2000) << "still moves by " << moved;
   for (const Vec3& p : state.position) {
@@ -99,10 +114,13 @@ TEST(RodContact, AThreadOnASlopeStaysOrSlidesAsItsFrictionSays) {
     RodState state = MakeRodState(model, nodes);
     RodSolver solver(model);
     std::vector<RodContact> contacts;
-    const RodObstacle plane{.a = {}, .b = {}, .outward = outward, .radius = 0, .friction = friction, .motion = {}};
+    const RodObstacle plane{
+        .a = {}, .b = {}, .outward = outward, .radius = 0, .friction = friction, .motion = {}};
     for (int tick = 0; tick < 100; ++tick) {
       FollowContacts(model, state, std::span(&plane, 1), {}, contacts);
-      (void)solver.Solve({}, {.gravity = {0, 0, -9.81}, .force = {}, .drag = 1e-3, .contacts = contacts, .contact = {}}, state);
+      (void)solver.Solve(
+          {}, {.gravity = {0, 0, -9.81}, .force = {}, .drag = 1e-3, .contacts = contacts, .contact = {}},
+          state);
     }
     return math::Dot(state.position[15] - nodes[15], down);
   };
@@ -118,12 +136,16 @@ TEST(RodContact, AShaftThatMovesDragsTheThreadAlong) {
   std::vector<RodContact> contacts;
   std::vector<Vec3> forces(nodes.size());
   forces.front() = forces.back() = {0, 0, -0.2};
-  RodObstacle shaft{.a = {0, -0.05, 0}, .b = {0, 0.05, 0}, .outward = {}, .radius = 0.01, .friction = 0.5, .motion = {}};
+  RodObstacle shaft{
+      .a = {0, -0.05, 0}, .b = {0, 0.05, 0}, .outward = {}, .radius = 0.01, .friction = 0.5, .motion = {}};
   for (int tick = 0; tick < 100; ++tick) {
-    shaft.motion = {0, tick < 20 ? 0.0 : 1e-4, 0};  // along its own axis: it slides under the thread but for friction
+    shaft.motion = {0, tick < 20 ? 0.0 : 1e-4,
+                    0};  // along its own axis: it slides under the thread but for friction
     shaft.a += shaft.motion, shaft.b += shaft.motion;
     FollowContacts(model, state, std::span(&shaft, 1), {}, contacts);
-    (void)solver.Solve({.max_steps = 20}, {.gravity = {}, .force = forces, .drag = 1e-4, .contacts = contacts, .contact = {}}, state);
+    (void)solver.Solve({.max_steps = 20},
+                       {.gravity = {}, .force = forces, .drag = 1e-4, .contacts = contacts, .contact = {}},
+                       state);
   }
   EXPECT_NEAR(state.position[nodes.size() / 2].y, 8e-3, 2e-4);
 }
@@ -132,8 +154,14 @@ TEST(RodContact, ContactsAreSortedAndKeepWhatSticks) {
   const std::vector<Vec3> nodes = {{0, 0, 1.4e-4}, {1e-3, 0, 1.4e-4}, {2e-3, 0, 1.4e-4}};
   const RodModel model = MakeRodModel({nodes, MakeThread()}).value();
   RodState state = MakeRodState(model, nodes);
-  const RodObstacle obstacles[] = {{.a = {}, .b = {}, .outward = {0, 0, 1}, .radius = 0, .friction = 0.3, .motion = {1e-5, 0, 0}},
-                                   {.a = {1e-3, 1e-3, 0}, .b = {1e-3, 1e-3, 0}, .outward = {}, .radius = 8e-4, .friction = 0.1, .motion = {}}};
+  const RodObstacle obstacles[] = {
+      {.a = {}, .b = {}, .outward = {0, 0, 1}, .radius = 0, .friction = 0.3, .motion = {1e-5, 0, 0}},
+      {.a = {1e-3, 1e-3, 0},
+       .b = {1e-3, 1e-3, 0},
+       .outward = {},
+       .radius = 8e-4,
+       .friction = 0.1,
+       .motion = {}}};
   std::vector<RodContact> contacts;
   FollowContacts(model, state, obstacles, {}, contacts);
   ASSERT_EQ(contacts.size(), 4u);

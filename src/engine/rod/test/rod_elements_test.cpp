@@ -40,7 +40,8 @@ class JointTest : public testing::TestWithParam<int> {
 
   static ElementDerivatives Derive(const Unknowns& base, const Unknowns& x) {
     ElementDerivatives sum;
-    AddJoint({At(x, 4) - At(x, 0), At(x, 8) - At(x, 4), 0.7, 1.3, x[7] - x[3] + ReferenceTwist(base, x)}, true, sum);
+    AddJoint({At(x, 4) - At(x, 0), At(x, 8) - At(x, 4), 0.7, 1.3, x[7] - x[3] + ReferenceTwist(base, x)},
+             true, sum);
     return sum;
   }
 };
@@ -70,7 +71,8 @@ TEST_P(JointTest, StiffnessIsTheEnergysSecondDerivative) {
         moved[i] += a * kStep, moved[j] += b * kStep;
         return Derive(x, moved).energy;
       };
-      const double second = (energy(1, 1) - energy(1, -1) - energy(-1, 1) + energy(-1, -1)) / (4 * kStep * kStep);
+      const double second =
+          (energy(1, 1) - energy(1, -1) - energy(-1, 1) + energy(-1, -1)) / (4 * kStep * kStep);
       EXPECT_NEAR(here.stiffness[i][j], second, 2e-6) << i << " " << j;
     }
   }
@@ -94,7 +96,8 @@ TEST(Joint, EnergyOfAnArcIsTheContinuousRods) {
   double energy = 0;
   for (int i = 0; i < kJoints; ++i) {
     ElementDerivatives sum;
-    AddJoint({{length, 0, 0}, {length * std::cos(turn), length * std::sin(turn), 0}, 3.0 / length, 1.0, 0.0}, false, sum);
+    AddJoint({{length, 0, 0}, {length * std::cos(turn), length * std::sin(turn), 0}, 3.0 / length, 1.0, 0.0},
+             false, sum);
     energy += sum.energy;
   }
   EXPECT_NEAR(energy, 0.5 * 3.0 * 0.5 * M_PI, 1e-4);

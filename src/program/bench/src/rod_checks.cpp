@@ -132,13 +132,13 @@ double PercentOff(double value, double expected) {
 }  // namespace
 
 PhysicsCheck CheckRodCantilever() {
-  PhysicsCheck check{
-      "Rod: cantilever under its tip's load",
-      "A thread of 0.1 m in 100 segments is clamped level and loaded at its tip by up to ten times E I / l^2; how far the tip "
-      "sinks against the elastica (Bisshopp and Drucker 1945).",
-      {},
-      {"How far the tip sinks", "load over E I / l^2", "sunk, over the length"},
-      {{"simulated", {}}, {"elastica", {}}}};
+  PhysicsCheck check{"Rod: cantilever under its tip's load",
+                     "A thread of 0.1 m in 100 segments is clamped level and loaded at its tip by up to ten "
+                     "times E I / l^2; how far the tip "
+                     "sinks against the elastica (Bisshopp and Drucker 1945).",
+                     {},
+                     {"How far the tip sinks", "load over E I / l^2", "sunk, over the length"},
+                     {{"simulated", {}}, {"elastica", {}}}};
   const double length = 0.1;
   constexpr int kSegments = 100;
   const rod::RodMaterial thread = MakeThread();
@@ -161,7 +161,8 @@ PhysicsCheck CheckRodCantilever() {
 PhysicsCheck CheckRodBuckling() {
   PhysicsCheck check{
       "Rod: Euler's buckling",
-      "A straight thread of 0.1 m is pressed along its length; the load at which its stiffness ceases to be positive definite, "
+      "A straight thread of 0.1 m is pressed along its length; the load at which its stiffness ceases to be "
+      "positive definite, "
       "against pi^2 E I / l^2 with pinned ends and four times that with clamped ones.",
       {},
       {"Critical load against the number of segments", "segments", "over Euler's [-]", false, 640, 260, true},
@@ -179,13 +180,13 @@ PhysicsCheck CheckRodBuckling() {
 }
 
 PhysicsCheck CheckRodRing() {
-  PhysicsCheck check{
-      "Rod: twisted ring (Michell 1889, Zajac 1962)",
-      "A thread is bent into a ring, both ends clamped at one place, and one of them twisted; the twist at which the plane ring "
-      "ceases to be stable against 2 pi sqrt(3) E I / G J.",
-      {},
-      {"Critical twist against the number of segments", "segments", "over Zajac's [-]"},
-      {{"simulated", {}}}};
+  PhysicsCheck check{"Rod: twisted ring (Michell 1889, Zajac 1962)",
+                     "A thread is bent into a ring, both ends clamped at one place, and one of them twisted; "
+                     "the twist at which the plane ring "
+                     "ceases to be stable against 2 pi sqrt(3) E I / G J.",
+                     {},
+                     {"Critical twist against the number of segments", "segments", "over Zajac's [-]"},
+                     {{"simulated", {}}}};
   for (const int segments : {20, 40, 80, 160}) {
     const double share = FindRingTwist(segments) / std::sqrt(3.0);
     check.lines[0].points.push_back({double(segments), share});
@@ -196,13 +197,13 @@ PhysicsCheck CheckRodRing() {
 }
 
 PhysicsCheck CheckRodCatenary() {
-  PhysicsCheck check{
-      "Rod: catenary",
-      "A chain of 0.2 m in 200 segments, without stiffness against bending, hangs between two hands that come together; how "
-      "deep its middle hangs, and what each hand carries, against the catenary.",
-      {},
-      {"Where it hangs, the hands 0.12 m apart", "across [mm]", "depth [mm]", true},
-      {{"simulated", {}}, {"catenary", {}}}};
+  PhysicsCheck check{"Rod: catenary",
+                     "A chain of 0.2 m in 200 segments, without stiffness against bending, hangs between two "
+                     "hands that come together; how "
+                     "deep its middle hangs, and what each hand carries, against the catenary.",
+                     {},
+                     {"Where it hangs, the hands 0.12 m apart", "across [mm]", "depth [mm]", true},
+                     {{"simulated", {}}, {"catenary", {}}}};
   constexpr int kSegments = 200;
   constexpr double kLength = 0.2;
   rod::RodMaterial chain = MakeThread();
@@ -223,7 +224,8 @@ PhysicsCheck CheckRodCatenary() {
     }
     const double a = low, depth = a * (std::cosh(0.5 * apart / a) - 1.0);
     const double across = chain.mass_per_length * kGravity * a;  // the tension's level part
-    worst = std::max(worst, report.converged ? PercentOff(-held.state.position[kSegments / 2].z, depth) : INFINITY);
+    worst = std::max(worst,
+                     report.converged ? PercentOff(-held.state.position[kSegments / 2].z, depth) : INFINITY);
     worst_pull = std::max(worst_pull, PercentOff(-held.solver.Reaction(0).x, across));
     stretched = std::max(stretched, report.length_error);
     if (std::fabs(apart - 0.12) > 1e-9) continue;
@@ -231,7 +233,8 @@ PhysicsCheck CheckRodCatenary() {
       const Vec3& p = held.state.position[static_cast<std::size_t>(i)];
       check.lines[0].points.push_back({1e3 * p.x, 1e3 * p.z});
       const double x = p.x - 0.5 * apart;
-      check.lines[1].points.push_back({1e3 * p.x, 1e3 * (a * (std::cosh(x / a) - std::cosh(0.5 * apart / a)))});
+      check.lines[1].points.push_back(
+          {1e3 * p.x, 1e3 * (a * (std::cosh(x / a) - std::cosh(0.5 * apart / a)))});
     }
   }
   check.figures.push_back({"largest error of the depth", worst, 0.0, 0.5, "%"});

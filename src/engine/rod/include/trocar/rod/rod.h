@@ -7,8 +7,10 @@
 /// and says how it is judged.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -38,7 +40,8 @@ RodMaterial MakeRoundMaterial(double diameter, double young_modulus, double pois
 
 /// A rod as it is given: checked by MakeRodModel.
 struct RodDefinition {
-  std::vector<math::Vec3> nodes;  ///< (n), n >= 3: where the nodes are at first [m]; their distances are the lengths that are kept
+  std::vector<math::Vec3>
+      nodes;  ///< (n), n >= 3: where the nodes are at first [m]; their distances are the lengths that are kept
   RodMaterial material;
 };
 
@@ -58,13 +61,19 @@ base::Result<RodModel> MakeRodModel(const RodDefinition& definition);
 
 /// The state of a rod: saved and restored with everything else.
 struct RodState {
-  std::vector<math::Vec3> position;        ///< (n) [m]
-  std::vector<double> angle;               ///< (n - 1) twist of each segment's material frame against its reference frame [rad]
-  std::vector<math::Vec3> direction;       ///< (n - 1) of each segment when the rod was last solved, unit vectors [-]
-  std::vector<math::Vec3> reference;       ///< (n - 1) unit vector of the reference frame, square to `direction` [-]
-  std::vector<double> reference_twist;     ///< (n) of the reference frame from segment i - 1 to i; 0 at the ends [rad]
-  std::vector<std::uint8_t> is_held;       ///< (n) 1 where the position is prescribed
-  std::vector<std::uint8_t> is_angle_held; ///< (n - 1) 1 where the angle is prescribed
+  std::vector<math::Vec3> position;  ///< (n) [m]
+  std::vector<double>
+      angle;  ///< (n - 1) twist of each segment's material frame against its reference frame [rad]
+  std::vector<math::Vec3>
+      direction;  ///< (n - 1) of each segment when the rod was last solved, unit vectors [-]
+  std::vector<math::Vec3>
+      reference;  ///< (n - 1) unit vector of the reference frame, square to `direction` [-]
+  std::vector<double>
+      reference_twist;  ///< (n) of the reference frame from segment i - 1 to i; 0 at the ends [rad]
+  std::vector<double>
+      tension;  ///< (n - 1) when the rod was last solved; below 0 where a segment is pressed [N]
+  std::vector<std::uint8_t> is_held;        ///< (n) 1 where the position is prescribed
+  std::vector<std::uint8_t> is_angle_held;  ///< (n - 1) 1 where the angle is prescribed
 };
 
 /// Free, without twist or tension, at the definition's nodes. The reference frame is carried along the rod without twist.
@@ -73,38 +82,48 @@ void VisitState(base::StateArchive& archive, RodState& state);
 
 /// What acts in one solve.
 struct RodLoad {
-  math::Vec3 gravity;                   ///< [m/s^2]
-  std::span<const math::Vec3> force;    ///< (n) on the nodes besides weight [N]; may be empty
+  math::Vec3 gravity{};                 ///< [m/s^2]
+  std::span<const math::Vec3> force{};  ///< (n) on the nodes besides weight [N]; may be empty
   /// Force that holds each node back, by how far it has gone from where the solve began [N/m], >= 0: what a viscous surrounding
   /// does in a tick. With 0 the solve looks for the equilibrium itself.
   double drag = 0;
   /// What the rod may press on. Solve leaves in each what presses and where it sticks.
-  std::span<RodContact> contacts;
-  RodContactSettings contact;
+  std::span<RodContact> contacts{};
+  std::span<RodCrossing> crossings{};
+  RodContactSettings contact{};
 };
 
 struct RodSettings {
-  int max_steps = 8;             ///< of Newton's method, > 0
-  double tolerance = 1e-6;       ///< a solve ends where no force is farther from balance, over the largest one [-]
-  double max_move = 0.5;         ///< of a node in one step, over the mean segment length [-], > 0
+  int max_steps = 8;        ///< of Newton's method, > 0
+  double tolerance = 1e-6;  ///< a solve ends where no force is farther from balance, over the largest one [-]
+  double max_move = 0.5;    ///< of a node in one step, over the mean segment length [-], > 0
+  /// Of a free node in one solve [m], > 0: no farther than contacts and crossings look. What is left is for the next solve.
+  double max_way = INFINITY;
 };
 
 struct RodReport {
   int steps = 0;
-  double residual = 0;      ///< largest force, or moment over a segment's length, that is not balanced, over `force_scale` [-]
+  double residual =
+      0;  ///< largest force, or moment over a segment's length, that is not balanced, over `force_scale` [-]
   double force_scale = 0;   ///< largest force of one segment, bend or load alone [N]
   double length_error = 0;  ///< largest, over the segment's length [-]
   double energy = 0;        ///< of bending and twist [J]
-  bool is_stable = true;    ///< the stiffness at the end is positive definite: a minimum of the energy, not a saddle
+  bool is_stable =
+      true;  ///< the stiffness at the end is positive definite: a minimum of the energy, not a saddle
   bool converged = false;
-  bool is_finite = true;    ///< false: nothing was changed
+  bool is_finite = true;  ///< false: nothing was changed
 };
+
+class RodStiffness;
 
 /// Finds the equilibrium of one rod. Holds the memory that solves need.
 class RodSolver {
  public:
   /// \param model  must outlive this
   explicit RodSolver(const RodModel& model);
+  ~RodSolver();
+  RodSolver(RodSolver&&) noexcept;
+  RodSolver& operator=(RodSolver&&) noexcept;
 
   /// Newton's method, its steps shortened until the energy falls; the linear systems are banded and solved directly. Each step is
   /// bent back to the elongations that the linear system foresaw, because a stiff length allows none of second order. Bounded by
@@ -116,8 +135,6 @@ class RodSolver {
 
   /// Force that whatever holds a node must apply there [N], as the last Solve left the rod; 0 for a free node.
   math::Vec3 Reaction(std::size_t node) const noexcept;
-  /// Of a segment, as the last Solve left the rod [N]; below 0 where it is pressed.
-  double Tension(std::size_t segment) const noexcept { return tension_[segment]; }
   /// Moment along a segment that whatever holds its angle must apply [N m]; 0 where it is free.
   double TwistReaction(std::size_t segment) const noexcept;
 
@@ -129,9 +146,9 @@ class RodSolver {
   };
   /// What is summed over the rod besides forces.
   struct Sums {
-    double elastic = 0;      // energy of bending and twist [J]
-    double potential = 0;    // of all that Newton's method lowers [J]
-    double force_scale = 0;  // [N]
+    double elastic = 0;       // energy of bending and twist [J]
+    double potential = 0;     // of all that Newton's method lowers [J]
+    double force_scale = 0;   // [N]
     double length_error = 0;  // [-]
   };
 
@@ -144,28 +161,30 @@ class RodSolver {
                   bool has_stiffness, Sums& sums) noexcept;
   void AddLoad(const RodLoad& load, const Shape& at, std::size_t node, bool has_stiffness,
                Sums& sums) noexcept;
-  void AddPointForce(const RodContact& contact, const math::Vec3& force) noexcept;
+  void AddPointForce(std::size_t segment, double at, const math::Vec3& force) noexcept;
   void AddPointStiffness(const RodContact& contact, double along, double across,
                          const math::Vec3& slips) noexcept;
-  double CalcDepth(const RodContact& contact) const noexcept;
-  void UpdatePressures(const RodLoad& load) const noexcept;
+  void UpdateContacts(const RodLoad& load) const noexcept;
   void LetSlip(const RodLoad& load) const noexcept;
-  void HoldFixed() noexcept;
-  bool Factor() noexcept;
-  bool CalcStep(double max_move) noexcept;
+  void AddCrossing(const RodContactSettings& settings, const RodCrossing& crossing, const Shape& at,
+                   bool has_stiffness, Sums& sums) noexcept;
+  bool CalcStep(const RodSettings& settings, const RodLoad& load) noexcept;
   bool SearchLine(const RodLoad& load, const Sums& before) noexcept;
-  void RestoreLengths(double share) noexcept;
+  void RestoreLengths() noexcept;
+  double LimitByContacts(const RodLoad& load) const noexcept;
   bool Judge(const RodSettings& settings, const Sums& sums, RodReport& report) const noexcept;
 
   const RodModel* model_;
+  std::unique_ptr<RodStiffness> stiffness_;
   double mean_length_ = 0, shortest_ = 0;  // of a segment [m]
   Shape here_, trial_;
-  std::vector<math::Vec3> start_;                 // (n) where the solve began
-  std::vector<double> gradient_, step_;           // (4 n): position of a node, angle of the segment behind it
-  std::vector<double> band_, factor_;             // lower halves
-  std::vector<std::uint8_t> is_fixed_;            // (4 n)
-  std::vector<double> tension_;                   // (n - 1) [N]
-  std::vector<double> elongation_, foreseen_;     // (n - 1) where the step begins, and of the whole step in linear terms [m]
+  std::vector<math::Vec3> start_;        // (n) where the solve began
+  std::vector<double> gradient_, step_;  // (4 n): position of a node, angle of the segment behind it
+  std::vector<std::uint8_t> is_fixed_;   // (4 n)
+  std::vector<double> tension_;          // (n - 1) [N]
+  std::vector<double> elongation_,
+      foreseen_;                // (n - 1) where the step begins, and of the whole step in linear terms [m]
+  std::vector<double> wanted_;  // (n - 1) elongations that RestoreLengths brings about [m]
   std::vector<double> diagonal_, beside_, pull_;  // (n - 1) of RestoreLengths
 };
 
