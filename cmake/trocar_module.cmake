@@ -8,7 +8,7 @@
 #   all else                                     -O3          -O1
 #   tests; of fast modules as their modules                   -O0
 set(TROCAR_FAST_MODULES
-  anatomy base cholecystectomy collision files geometry haptics host images instrument math meshing patient procedures record render rigid scene simulation surgery tissue
+  anatomy base cholecystectomy collision files geometry haptics host images instrument math meshing patient procedures record render rigid rod scene simulation surgery tissue
   tissue_cuda training view)
 set(TROCAR_SHOWING_MODULES assessment centre cli doctor editor gui presenter rehearsal report sound store study)
 

@@ -45,6 +45,12 @@ PhysicsCheck CheckEnergy();
 PhysicsCheck CheckMeshRefinement();
 PhysicsCheck CheckFreedOrgan();
 
+/// Rods against the elastica, Euler's load, Zajac's twist and the catenary: a second.
+PhysicsCheck CheckRodCantilever();
+PhysicsCheck CheckRodBuckling();
+PhysicsCheck CheckRodRing();
+PhysicsCheck CheckRodCatenary();
+
 /// Volume, pressure and time per tick of every organ of a scene while its script plays.
 /// \return the scene's error
 base::Result<PhysicsCheck> CheckVolume(const std::filesystem::path& scene);
