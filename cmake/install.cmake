@@ -51,6 +51,19 @@ endif()
 
 # Data. A program in bin/ finds it in ../share/trocar.
 install(DIRECTORY assets scenes schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/trocar COMPONENT data)
+# States from which parts of the operation begin; only where they were made (ninja operation_parts), which takes minutes. States that
+# are there already are kept.
+add_custom_target(operation_parts)
+foreach(level easy normal hard)
+  add_custom_target(operation_parts_${level}
+    COMMAND ${CMAKE_COMMAND} -E env TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR} $<TARGET_FILE:trocar> course prepare
+      cholecystectomy --level ${level} -o ${PROJECT_BINARY_DIR}/parts
+    COMMENT "parts of the operation: ${level}" VERBATIM)
+  add_dependencies(operation_parts_${level} trocar trocar-training)
+  add_dependencies(operation_parts operation_parts_${level})
+endforeach()
+install(DIRECTORY ${PROJECT_BINARY_DIR}/parts/ DESTINATION ${CMAKE_INSTALL_DATADIR}/trocar/parts COMPONENT data OPTIONAL
+  FILES_MATCHING PATTERN "*.state")
 # `trocar dataset verify` starts it
 install(PROGRAMS tools/verify-dataset DESTINATION ${CMAKE_INSTALL_DATADIR}/trocar/tools COMPONENT data)
 

@@ -566,6 +566,7 @@ std::map<std::string, std::vector<std::function<void(Stage&)>>> Recipes() {
         OfFile("assets/courses/basic-skills.json", {"{}", "peg_transfer"})}},
       {"course check", {OfFile("assets/courses/basic-skills.json", {"{}"})}},
       {"course start", {OfFile("assets/courses/basic-skills.json", {"{}", "peg_transfer"})}},
+      {"course prepare", {OfFile("assets/courses/basic-skills.json", {"{}"})}},
       {"course judge", {OfRecording({"basic-skills", "peg_transfer", "{}"})}},
       {"course progress",
        {OfFile("assets/courses/basic-skills.json", {"{}", "--attempts", "/nowhere"}),

@@ -2,10 +2,12 @@
 #include "trocar/assessment/play_state.h"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "trocar/base/state_archive.h"
 #include "trocar/files/state_file.h"
+#include "trocar/simulation/engine_bits.h"
 
 namespace trocar::assessment {
 
@@ -16,6 +18,14 @@ base::Status RestorePlay(const std::filesystem::path& path, const std::string& w
   base::StateArchive archive = base::StateArchive::ForRestore(*player);
   std::string saved_by;
   archive.Field("who", saved_by);
+  int bits = 0;
+  archive.Field("engine_bits", bits);
+  if (archive.ok() && saved_by == who && bits != simulation::kEngineBits) {
+    return base::Error{base::ErrorCode::kStateInvalid,
+                       path.string() + " was saved by engine " + std::to_string(bits) +
+                           ", and this program is engine " + std::to_string(simulation::kEngineBits) +
+                           "; save it again with this version"};
+  }
   if (saved_by == who) surgeon.VisitState(archive);
   if (archive.ok() && archive.IsAtEnd()) return {};
   return base::Error{
@@ -29,6 +39,8 @@ base::Status SavePlay(const std::filesystem::path& path, const std::string& who,
   base::StateArchive archive = base::StateArchive::ForSave(player);
   std::string saved_by = who;
   archive.Field("who", saved_by);
+  int bits = simulation::kEngineBits;
+  archive.Field("engine_bits", bits);
   surgeon.VisitState(archive);
   return files::WriteStateFile(path, simulation, player);
 }

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "trocar/assessment/preparation.h"
 #include "trocar/files/task_file.h"
 #include "trocar/host/safe_file.h"
 #include "trocar_test/temporary_folder.h"
@@ -290,45 +289,6 @@ TEST(AttemptsFile, IsRefusedAtItsPlaceAndNothingIsLost) {
   EXPECT_NE(read.error().message.find("attempts[0].metrics[0]"), std::string::npos) << read.error().message;
   EXPECT_FALSE(AppendAttempt(path, MakeAttempts("A")[0]).ok());
   EXPECT_EQ(*host::ReadFile(path), text);
-}
-
-// --- preparation
-
-TEST(PrepareStep, OfATaskNeedsNothing) {
-  const auto prepared = PrepareStep(MakeStepOf("a", 1, 1));
-  ASSERT_TRUE(prepared.ok());
-  EXPECT_TRUE(prepared->patient.empty());
-  EXPECT_TRUE(prepared->state.empty());
-}
-
-TEST(PreparePatient, MakesAPatientOnceAndAnotherForOtherSettings) {
-  test::TemporaryFolder folder;
-  PatientChoice choice;
-  EXPECT_TRUE(PreparePatient(choice, folder.Path())->empty()) << "the scene's own";
-  choice.seed = 7;
-  const auto first = PreparePatient(choice, folder.Path());
-  ASSERT_TRUE(first.ok()) << first.error().Text();
-  EXPECT_TRUE(std::filesystem::is_regular_file(*first / "patient.json"));
-  const auto made_at = std::filesystem::last_write_time(*first / "patient.json");
-  EXPECT_EQ(*PreparePatient(choice, folder.Path()), *first);
-  EXPECT_EQ(std::filesystem::last_write_time(*first / "patient.json"), made_at);
-  choice.settings = {{"moynihan_hump", "yes"}};
-  EXPECT_NE(*PreparePatient(choice, folder.Path()), *first);
-}
-
-TEST(PrepareStep, GivesUpWhenAskedTo) {
-  test::TemporaryFolder folder;
-  Step step;
-  step.key = "bed";
-  step.operation = "cholecystectomy";
-  step.from = Milestone::kDivided;
-  PreparationSettings settings;
-  settings.cache = folder.Path();
-  settings.progress = [](double, const std::string&) { return false; };
-  const auto prepared = PrepareStep(step, settings);
-  ASSERT_FALSE(prepared.ok());
-  EXPECT_EQ(prepared.error().code, ErrorCode::kCancelled);
-  EXPECT_FALSE(std::filesystem::exists(folder.Path() / "starts"));
 }
 
 }  // namespace

@@ -22,8 +22,7 @@ OpeningCard::OpeningCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   doing_.set_wrap(true);
   doing_.set_max_width_chars(60);
   gui::SetAccessibleName(progress_, host::Translate("The operation is prepared"));
-  auto* note =
-      Gtk::make_managed<Gtk::Label>(host::Translate("This takes minutes the first time, and is kept."));
+  auto* note = Gtk::make_managed<Gtk::Label>(host::Translate("This is done once and kept."));
   note->add_css_class("name");
   note->set_xalign(0);
   auto* cancel = Gtk::make_managed<Gtk::Button>(host::Translate("Cancel"));
@@ -35,9 +34,9 @@ OpeningCard::OpeningCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   append(*cancel);
 }
 
-void OpeningCard::Show(const std::string& doing) {
+void OpeningCard::Show(const std::string& doing, double share) {
   gui::SetText(doing_, doing);
-  if (!doing.empty()) progress_.pulse();
+  if (!doing.empty()) progress_.set_fraction(share);
   if (get_visible() == doing.empty()) set_visible(!doing.empty());
 }
 

@@ -13,7 +13,8 @@ class OpeningCard : public Gtk::Box {
   OpeningCard();
 
   /// \param doing  what is prepared; empty: nothing, and the card is not shown
-  void Show(const std::string& doing);
+  /// \param share  of that, 0 to 1
+  void Show(const std::string& doing, double share);
   sigc::signal<void()>& SignalCancelled() { return signal_cancelled_; }
 
  private:

@@ -270,7 +270,7 @@ void SimulatorWindow::Show(const presenter::SimulatorPage& page) {
   keys_.set_visible(page.is_key_list_open);
   patients_.set_visible(page.is_patient_list_open);
   ShowRehearsal(page.is_rehearsal_open);
-  opening_.Show(page.opening);
+  opening_.Show(page.opening, page.opening_share);
   if (page.is_home_open) home_.Show(page.home);
   home_.set_visible(page.is_home_open);
   panel_.set_visible(page.is_panel_open && !page.is_rehearsal_open);

@@ -54,8 +54,8 @@ CentrePresenter::~CentrePresenter() {
 
 // what is done beside the window
 
-void CentrePresenter::Ask(std::string busy, std::function<Apply()> work) {
-  Request request{std::move(busy), std::move(work)};
+void CentrePresenter::Ask(std::string busy, std::function<Apply()> work, Flag is_cancelled) {
+  Request request{std::move(busy), std::move(work), std::move(is_cancelled)};
   if (!job_.IsRunning()) return Begin(std::move(request));
   // who asks twice for the same wants the newer
   std::erase_if(waiting_, [&](const Request& one) { return one.busy == request.busy; });
@@ -64,7 +64,10 @@ void CentrePresenter::Ask(std::string busy, std::function<Apply()> work) {
 
 void CentrePresenter::Begin(Request request) {
   page_.busy = request.busy;
-  share_.store(-1);
+  page_.detail.clear();
+  page_.can_cancel = request.is_cancelled != nullptr;
+  is_cancelled_ = std::move(request.is_cancelled);
+  progress_.Set("", -1);
   job_.Start(std::move(request.work));
   Refresh(false);
 }
@@ -73,6 +76,8 @@ void CentrePresenter::Finish() {
   if (!is_done_.exchange(false)) return FollowFiling();
   const Apply apply = job_.Take();
   page_.busy.clear();
+  page_.detail.clear();
+  page_.can_cancel = false;
   page_.progress = -1;
   if (!waiting_.empty()) {
     Request next = std::move(waiting_.front());
@@ -105,7 +110,12 @@ void CentrePresenter::FollowFiling() {
     }
     if (!expected_.empty() && !job_.IsRunning()) page_.progress = status.progress;
   }
-  if (job_.IsRunning()) page_.progress = share_.load();
+  if (job_.IsRunning()) {
+    const gui::JobProgress::Value now = progress_.Get();
+    page_.progress = now.fraction;
+    // what is given up tells no more
+    page_.detail = is_cancelled_ != nullptr && is_cancelled_->load() ? "" : now.what;
+  }
   Refresh(false);
 }
 
@@ -454,7 +464,7 @@ void CentrePresenter::OpenResultOf(const HistoryPage::Row& row) {
   settings.person = row.attempt.trainee;
   settings.step = FindStepName(row.attempt);
   settings.progress = [this](double share) {
-    share_.store(share);
+    progress_.Set("", share);
     on_done_();
     return !is_given_up_.load();
   };
@@ -491,16 +501,34 @@ void CentrePresenter::ChooseCourse(const std::string& course) {
 }
 
 void CentrePresenter::StartStep(const StepName& name) {
-  Ask(host::Translate("Making the step ready; where it begins in the middle of an operation the expert "
+  auto is_cancelled = std::make_shared<std::atomic<bool>>(false);
+  Ask(
+      host::Translate("Making the step ready; where it begins in the middle of an operation the expert "
                       "operates up to there, once"),
-      [this, name]() -> Apply {
+      [this, name, is_cancelled]() -> Apply {
         auto start = std::make_shared<base::Result<Start>>(
-            PrepareStart(name, [this](double, const std::string&) { return !is_given_up_.load(); }));
-        return [this, start] {
+            PrepareStart(name, [this, &is_cancelled](const assessment::PreparationProgress& now) {
+              progress_.Set(DescribePreparation(now), now.share);
+              on_done_();
+              return !is_given_up_.load() && !is_cancelled->load();
+            }));
+        return [this, start, is_cancelled] {
+          // nobody made a mistake
+          if (is_cancelled->load()) return;
           if (!start->ok()) return Fail(start->error());
           screen_->StartAttempt(**start);
         };
-      });
+      },
+      is_cancelled);
+}
+
+void CentrePresenter::CancelStep() {
+  if (!page_.can_cancel) return;
+  is_cancelled_->store(true);
+  page_.can_cancel = false;
+  page_.busy = host::Translate("Giving it up");
+  progress_.Set("", -1);
+  Refresh(false);
 }
 
 void CentrePresenter::ChooseGroup(const std::string& group) {
@@ -645,7 +673,7 @@ void CentrePresenter::IssueCertificate(const assessment::SigningKey& key, const 
       [this, access = access_, page = page_.exam, key, file]() -> Apply {
         auto issued = std::make_shared<base::Result<ExamPage>>(
             IssueExamCertificate(access, page, key, file, [this](double share) {
-              share_.store(share);
+              progress_.Set("", share);
               on_done_();
               return !is_given_up_.load();
             }));

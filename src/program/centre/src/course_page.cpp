@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <map>
 #include <random>
 #include <utility>
 
-#include "trocar/assessment/preparation.h"
 #include "trocar/host/translate.h"
 #include "trocar/scene/scene.h"
 #include "trocar/store/attempts.h"
@@ -189,8 +189,8 @@ base::Result<LoadedCourse> LoadCourse(const Access& access, const std::string& c
   return loaded;
 }
 
-base::Result<Start> PrepareStart(const StepName& name,
-                                 const std::function<bool(double, const std::string&)>& progress) {
+base::Result<Start> PrepareStart(
+    const StepName& name, const std::function<bool(const assessment::PreparationProgress&)>& progress) {
   const auto course = assessment::FindCourse(name.course);
   if (!course.ok()) return course.error();
   const auto step = assessment::FindStep(*course, name.step);
@@ -214,6 +214,17 @@ base::Result<Start> PrepareStart(const StepName& name,
   start.from = step->from, start.until = step->until;
   start.step = name;
   return start;
+}
+
+std::string DescribePreparation(const assessment::PreparationProgress& now) {
+  constexpr double kMinute = 60;  // [s]
+  const std::string percent = std::to_string(static_cast<int>(100 * now.share));
+  if (now.is_late) return host::TranslateWith("{1} %, and it takes longer than usual", {percent});
+  if (!now.seconds_left) return host::TranslateWith("{1} %", {percent});
+  if (*now.seconds_left < kMinute) return host::TranslateWith("{1} %, less than a minute left", {percent});
+  return host::TranslateWith(
+      "{1} %, about {2} min left",
+      {percent, std::to_string(static_cast<int>(std::ceil(*now.seconds_left / kMinute)))});
 }
 
 }  // namespace trocar::centre

@@ -182,6 +182,30 @@ TEST_F(Centre, StartsAStepOfACourse) {
   EXPECT_FALSE(screen_.started->exam.has_value());
 }
 
+// The expert operates for minutes up to the bed; the window says how far, and whoever does not want to wait goes on with something else.
+TEST_F(Centre, AStepThatIsMadeReadyCanBeGivenUp) {
+  ::setenv("TROCAR_CACHE_HOME", (folder_.Path() / "cache").c_str(), 1);
+  Begin();
+  EXPECT_FALSE(screen_.page.can_cancel);
+  presenter_->StartStep({"cholecystectomy", "bed"});
+  const bool is_told = Until([&] { return screen_.page.detail.find(" %") != std::string::npos; });
+  EXPECT_TRUE(is_told);
+  EXPECT_GE(screen_.page.progress, 0);
+  EXPECT_TRUE(screen_.page.can_cancel);
+  presenter_->CancelStep();
+  EXPECT_EQ(screen_.page.busy, "Giving it up");
+  EXPECT_FALSE(screen_.page.can_cancel);
+  ASSERT_TRUE(Settle());
+  ::unsetenv("TROCAR_CACHE_HOME");
+  EXPECT_FALSE(screen_.started.has_value());
+  EXPECT_TRUE(screen_.errors.empty()) << "nobody made a mistake";
+  EXPECT_TRUE(screen_.page.busy.empty());
+  // what cannot be given up offers no button
+  presenter_->Open(PageKind::kCourses);
+  EXPECT_FALSE(screen_.page.can_cancel);
+  ASSERT_TRUE(Settle());
+}
+
 // The certificate is of who sat the exam, not of who stands at the computer when it is issued.
 TEST_F(Centre, AnExamStaysWhoseItIs) {
   assessment::ExamSettings settings;

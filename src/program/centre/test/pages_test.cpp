@@ -474,6 +474,19 @@ TEST_F(Result, IsSavedByTheFilesEnding) {
 
 // exams
 
+TEST(Preparation, IsDescribedForWhoWaits) {
+  assessment::PreparationProgress now;
+  now.share = 0.439;
+  EXPECT_EQ(DescribePreparation(now), "43 %") << "no pace is known yet";
+  now.seconds_left = 61;
+  EXPECT_EQ(DescribePreparation(now), "43 %, about 2 min left");
+  now.seconds_left = 59;
+  EXPECT_EQ(DescribePreparation(now), "43 %, less than a minute left");
+  now.seconds_left.reset();
+  now.is_late = true;
+  EXPECT_EQ(DescribePreparation(now), "43 %, and it takes longer than usual");
+}
+
 TEST(Exam, IsSealedAndKeysAreMadeWithoutAShell) {
   const test::TemporaryFolder folder;
   const auto choices = ListExamChoices();

@@ -79,6 +79,11 @@ void CentreWindow::MakeContent() {
   status->append(spinner_);
   status->append(busy_);
   status->append(progress_);
+  cancel_.set_label(host::Translate("Cancel"));
+  cancel_.set_valign(Gtk::Align::CENTER);
+  cancel_.set_visible(false);
+  cancel_.signal_clicked().connect([this] { presenter_->CancelStep(); });
+  status->append(cancel_);
 
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->append(bars_);
@@ -148,11 +153,12 @@ void CentreWindow::Show(const CentrePage& page) {
   const bool is_busy = !page.busy.empty() || (page.kind == PageKind::kResult && !page.result);
   spinner_.set_spinning(is_busy);
   spinner_.set_visible(is_busy);
-  gui::SetText(busy_, !page.busy.empty() ? page.busy + " …"
+  gui::SetText(busy_, !page.busy.empty() ? page.busy + (page.detail.empty() ? " …" : ": " + page.detail)
                       : is_busy          ? host::Translate("Measuring the attempt …")
                                          : page.who);
   progress_.set_visible(is_busy && page.progress >= 0);
   if (page.progress >= 0) progress_.set_fraction(page.progress);
+  cancel_.set_visible(page.can_cancel);
   if (page.version == shown_version_) return;
   shown_version_ = page.version;
   switch (page.kind) {

@@ -2,6 +2,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,7 @@
 #include "trocar/assessment/judge_recording.h"
 #include "trocar/assessment/learning.h"
 #include "trocar/assessment/preparation.h"
+#include "trocar/files/operation_level_file.h"
 
 namespace trocar::cli {
 
@@ -105,6 +107,12 @@ base::Status ShowCourse(const std::string& name, const std::string& step_key) {
   return {};
 }
 
+/// ", 80 s left"; empty where that is not known
+std::string TimeLeft(const assessment::PreparationProgress& now) {
+  if (!now.seconds_left) return "";
+  return TranslateWith(", about {1} s left", {ShownNumber(*now.seconds_left, 2)});
+}
+
 base::Status Start(const std::string& name, const std::string& step_key, const std::string& cache,
                    int threads) {
   const auto course = assessment::FindCourse(name);
@@ -114,10 +122,10 @@ base::Status Start(const std::string& name, const std::string& step_key, const s
   assessment::PreparationSettings settings;
   settings.cache = cache;
   settings.threads = threads;
-  host::ProgressBar bar("the expert operates up to this step", 600.0);
-  settings.progress = [&](double seconds, const std::string& doing) {
-    bar.SetLabel(ShownNumber(seconds, 3) + " s, " + Translate(doing));
-    bar.Show(seconds);
+  host::ProgressBar bar("the expert operates up to this step", 1.0);
+  settings.progress = [&](const assessment::PreparationProgress& now) {
+    bar.SetLabel(ShownNumber(now.seconds, 3) + " s, " + Translate(now.doing) + TimeLeft(now));
+    bar.Show(now.share);
     return true;
   };
   const auto prepared = assessment::PrepareStep(*step, settings);
@@ -132,11 +140,66 @@ base::Status Start(const std::string& name, const std::string& step_key, const s
   if (!prepared->state.empty()) {
     Say("\nThe operation stands at \"{1}\", {2} s on{3}:\n  {4}\n", NameOf(step->from),
         ShownNumber(prepared->seconds, 4),
-        prepared->was_cached ? Translate(" (kept from before)") : std::string(), prepared->state);
+        prepared->was_delivered ? Translate(" (came with the program)")
+        : prepared->was_cached  ? Translate(" (kept from before)")
+                                : std::string(),
+        prepared->state);
     command += " --restore " + prepared->state.string();
   }
   Say("\nLet the scripted expert do it:\n  trocar play expert{1} --record attempt.trocar\n", command);
   Say("Judge a recording of it:\n  trocar course judge {1} {2} attempt.trocar\n", name, step_key);
+  return {};
+}
+
+struct PrepareArguments {
+  std::string course, output, cache;
+  std::vector<std::string> levels;  ///< empty: all
+  int threads = 1;
+};
+
+/// Computes the states from which the course's parts of operations go on, at every level.
+base::Status Prepare(const PrepareArguments& arguments) {
+  const auto course = assessment::FindCourse(arguments.course);
+  if (!course.ok()) return course.error();
+  auto steps = assessment::ListPreparedSteps(*course);
+  if (!steps.ok()) return steps.error();
+  for (const std::string& level : arguments.levels) {
+    if (const auto known = files::FindOperationLevel(level); !known.ok()) return known.error();
+  }
+  const auto& levels = arguments.levels;
+  std::erase_if(*steps, [&levels](const Step& step) {
+    return !levels.empty() && std::find(levels.begin(), levels.end(), step.level) == levels.end();
+  });
+  if (steps->empty()) {
+    Say("No step of {1} begins in the middle of an operation; there is nothing to prepare.\n", course->key);
+    return {};
+  }
+  assessment::PreparationSettings settings;
+  settings.cache = arguments.cache;
+  settings.threads = arguments.threads;
+  if (!arguments.output.empty()) {
+    // the folder holds them all, whatever lies elsewhere
+    settings.states = arguments.output;
+    settings.delivered = std::filesystem::path();
+  }
+  host::ProgressBar bar("the expert operates up to the parts", static_cast<double>(steps->size()));
+  std::vector<std::vector<std::string>> rows = {{"step", "level", "begins at", ""}};
+  for (const Step& step : *steps) {
+    const double before = static_cast<double>(rows.size() - 1);
+    settings.progress = [&](const assessment::PreparationProgress& now) {
+      bar.SetLabel(Translate(step.level) + ", " + ShownName(NameOf(step.from)) + TimeLeft(now));
+      bar.Show(before + now.share);
+      return true;
+    };
+    const auto prepared = assessment::PrepareStep(step, settings);
+    if (!prepared.ok()) return prepared.error();
+    rows.push_back({step.key, Translate(step.level), ShownNumber(prepared->seconds, 4) + " s",
+                    prepared->was_delivered ? Translate("came with the program")
+                    : prepared->was_cached  ? Translate("kept from before")
+                                            : Translate("computed")});
+  }
+  bar.Finish();
+  host::PrintTable(rows);
   return {};
 }
 
@@ -343,10 +406,32 @@ void AddStart(CLI::App& course, Outcome& outcome) {
   AddCacheOption(*command, *cache, "Folder for what is made; the user's cache folder if not given");
   AddThreadsOption(*command, *threads);
   command->footer(
-      "The first time the scripted expert operates up to the step, which takes minutes; then its state is "
-      "kept.\n"
+      "The first time the scripted expert operates up to the step, which takes minutes, unless its state "
+      "came "
+      "with the program; then the state is kept.\n"
       "Example: trocar course start cholecystectomy bed");
   command->callback([=, &outcome] { outcome.status = Start(*name, *step, *cache, *threads); });
+}
+
+void AddPrepare(CLI::App& course, Outcome& outcome) {
+  CLI::App* command = course.add_subcommand(
+      "prepare",
+      "Let the scripted expert operate up to every part of a course, at every level, so that nobody waits");
+  auto a = std::make_shared<PrepareArguments>();
+  command->add_option("course", a->course, "Course (trocar course list), or its file")
+      ->required()
+      ->type_name("COURSE");
+  command->add_option("-o,--output", a->output, "Folder for all the states; the user's cache if not given")
+      ->type_name("DIR");
+  command->add_option("--level", a->levels, "Only of this level; may be given again; all if not given")
+      ->type_name("LEVEL")
+      ->allow_extra_args(false);
+  AddCacheOption(*command, a->cache, "Folder for what is made; the user's cache folder if not given");
+  AddThreadsOption(*command, a->threads);
+  command->footer(
+      "It takes minutes for each level. States that are there already are kept. Packages are made with it.\n"
+      "Example: trocar course prepare cholecystectomy");
+  command->callback([a, &outcome] { outcome.status = Prepare(*a); });
 }
 
 void AddJudge(CLI::App& course, Outcome& outcome) {
@@ -410,6 +495,7 @@ void AddCourseCommand(CLI::App& app, Outcome& outcome) {
     }
   });
   AddStart(*command, outcome);
+  AddPrepare(*command, outcome);
   AddJudge(*command, outcome);
   AddProgress(*command, outcome);
   command->footer("Example: trocar course show basic-skills");

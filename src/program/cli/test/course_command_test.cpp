@@ -108,6 +108,21 @@ TEST_F(CourseCommand, ShowsCoursesAndSteps) {
   EXPECT_NE(none.err.find("peg-transfer"), std::string::npos) << none.err;
 }
 
+TEST_F(CourseCommand, PreparesNothingWhereNoStepBeginsLater) {
+  const Printed none = RunTrocar({"course", "prepare", Path("ours.json"), "-o", Path("parts")});
+  EXPECT_EQ(none.status, 0) << none.err;
+  EXPECT_NE(none.out.find("No step of ours begins in the middle of an operation"), std::string::npos)
+      << none.out;
+  EXPECT_FALSE(std::filesystem::exists(Path("parts")));
+  const Printed level =
+      RunTrocar({"course", "prepare", "cholecystectomy", "--level", "brutal", "-o", Path("parts")});
+  EXPECT_EQ(level.status, 1);
+  EXPECT_NE(level.err.find("hard"), std::string::npos) << level.err;
+  const Printed unknown = RunTrocar({"course", "prepare", "juggling"});
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_NE(unknown.err.find("cholecystectomy"), std::string::npos) << unknown.err;
+}
+
 TEST_F(CourseCommand, LevelsComeFromTenExpertsAndNoFewer) {
   std::vector<std::string> words = {"levels", "from"};
   for (int seed = 1; seed <= 9; ++seed) {

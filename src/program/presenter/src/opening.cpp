@@ -26,8 +26,8 @@ void SimulatorPresenter::Start() {
     });
   } else {
     loading_.Start([options = options_, preparing = preparing_] {
-      return MakeChosenScene(options, [&preparing](const std::string& doing) {
-        preparing->progress.Set(doing, -1);
+      return MakeChosenScene(options, [&preparing](const std::string& doing, double share) {
+        preparing->progress.Set(doing, share);
         return !preparing->is_cancelled;
       });
     });

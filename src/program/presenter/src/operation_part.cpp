@@ -8,7 +8,6 @@
 #include "trocar/assessment/course.h"
 #include "trocar/assessment/preparation.h"
 #include "trocar/host/translate.h"
-#include "trocar/presenter/read_outs.h"
 
 namespace trocar::presenter {
 namespace {
@@ -43,10 +42,11 @@ base::Result<centre::Start> PreparePart(const Options& options, const PartProgre
   assessment::PreparationSettings settings;
   settings.threads =
       options.threads > 0 ? options.threads : ChooseThreads(std::thread::hardware_concurrency());
-  settings.progress = [&progress](double seconds, const std::string& doing) {
-    return !progress ||
-           progress(host::TranslateWith("The expert brings the operation to where this part begins: {1}, {2}",
-                                        {FormatTime(seconds), host::TranslateComposed(doing)}));
+  settings.progress = [&progress](const assessment::PreparationProgress& now) {
+    return !progress || progress(host::TranslateWith(
+                                     "The expert brings the operation to where this part begins: {1}. {2}",
+                                     {centre::DescribePreparation(now), host::TranslateComposed(now.doing)}),
+                                 now.share);
   };
   const auto prepared = assessment::PrepareStep(*step, settings);
   if (!prepared.ok()) return prepared.error();

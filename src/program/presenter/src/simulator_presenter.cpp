@@ -503,9 +503,12 @@ void SimulatorPresenter::Refresh() {
   page_.badge = page_.failure ? "" : BadgeText(situation);
   page_.mode = page_.failure ? "" : ModeText(situation);
   page_.state = page_.failure ? host::Translate("Stopped") : StateText(situation);
+  const gui::JobProgress::Value opening =
+      preparing_ == nullptr ? gui::JobProgress::Value{} : preparing_->progress.Get();
   page_.opening = preparing_ == nullptr      ? ""
                   : preparing_->is_cancelled ? host::Translate("Giving it up …")
-                                             : preparing_->progress.Get().what;
+                                             : opening.what;
+  page_.opening_share = opening.fraction;
   if (control_ != nullptr)
     page_.state +=
         host::TranslateWith("   ·   {1} pictures/s", {std::to_string(static_cast<int>(PictureRate() + 0.5))});

@@ -78,8 +78,13 @@ TEST(OperationParts, ThePreparationCanBeGivenUp) {
   options.threads = 1;
   ::setenv("TROCAR_CACHE_HOME", "/nowhere", 1);
   int told = 0;
-  const auto start = PreparePart(options, [&told](const std::string& doing) {
+  double before = 0;
+  const auto start = PreparePart(options, [&](const std::string& doing, double share) {
     EXPECT_NE(doing.find("expert"), std::string::npos);
+    EXPECT_NE(doing.find(" %"), std::string::npos) << doing;
+    EXPECT_GT(share, before);
+    EXPECT_LT(share, 1);
+    before = share;
     return ++told < 3;
   });
   ::unsetenv("TROCAR_CACHE_HOME");

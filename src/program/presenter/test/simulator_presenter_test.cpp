@@ -455,6 +455,8 @@ TEST_F(Presenter, APreparationThatIsGivenUpLeadsHome) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   EXPECT_NE(screen_.page.opening.find("The expert brings the operation"), std::string::npos);
+  EXPECT_NE(screen_.page.opening.find(" %"), std::string::npos) << screen_.page.opening;
+  EXPECT_GT(screen_.page.opening_share, 0);
   presenter_->CancelOpening();
   Load();
   ::unsetenv("TROCAR_CACHE_HOME");

@@ -17,7 +17,8 @@ struct PlayFiles {
   std::string who;  ///< name and seed of the surgeon
 };
 
-/// Both as they were when the file was written, by the surgeon of the same name and seed on the same scene.
+/// Both as they were when the file was written, by the surgeon of the same name and seed on the same scene and by the same engine
+/// (simulation::kEngineBits). On an error either may be half restored.
 /// \param who  name and seed of the surgeon
 /// \return the file's error, or kStateInvalid
 base::Status RestorePlay(const std::filesystem::path& path, const std::string& who,

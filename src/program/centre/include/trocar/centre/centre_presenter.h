@@ -35,9 +35,11 @@ struct CentrePage {
   CoursePage courses;
   GroupPage group;
   ExamPage exam;
-  std::string busy;      ///< what is being done; empty: nothing
-  double progress = -1;  ///< of that, 0 to 1; < 0: not known
-  std::string notice;    ///< of what is being measured or waits for the store; empty: nothing
+  std::string busy;         ///< what is being done; empty: nothing
+  std::string detail;       ///< of that, how far it is; may be empty
+  bool can_cancel = false;  ///< it can be given up
+  double progress = -1;     ///< of that, 0 to 1; < 0: not known
+  std::string notice;       ///< of what is being measured or waits for the store; empty: nothing
   bool is_help_open = false, is_who_open = false;
   std::uint64_t version = 0;  ///< another number: the shown page is another
 };
@@ -107,6 +109,8 @@ class CentrePresenter {
   // courses, groups, exams
   void ChooseCourse(const std::string& course);
   void StartStep(const StepName& step);
+  /// Gives up the step that is made ready; what was reached on the way is kept.
+  void CancelStep();
   void ChooseGroup(const std::string& group);
   // what an instructor changes of groups
   void MakeGroup(const std::string& name);
@@ -128,11 +132,14 @@ class CentrePresenter {
  private:
   /// Done by the window's thread with what the job's thread has found.
   using Apply = std::function<void()>;
+  /// Shared with the job's thread; null: the work cannot be given up.
+  using Flag = std::shared_ptr<std::atomic<bool>>;
   struct Request {
     std::string busy;
     std::function<Apply()> work;
+    Flag is_cancelled;
   };
-  void Ask(std::string busy, std::function<Apply()> work);
+  void Ask(std::string busy, std::function<Apply()> work, Flag is_cancelled = nullptr);
   void Begin(Request request);
   void Read();
   void ReadHistory(const HistoryQuery& query);
@@ -160,8 +167,9 @@ class CentrePresenter {
   std::deque<FiledAttempt> recent_;                                // the newest last
   std::map<std::filesystem::path, HistoryPage::Pending> pending_;  // that have been read
   bool is_trainee_ = false;                                        // who works here is one
-  std::atomic<double> share_{-1};
+  gui::JobProgress progress_;
   std::atomic<bool> is_given_up_{false}, is_done_{false};
+  Flag is_cancelled_;  // of what runs
   std::deque<Request> waiting_;
   std::function<void(const std::string&)> on_person_;
   std::function<void()> on_done_;

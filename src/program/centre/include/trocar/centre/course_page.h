@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trocar/assessment/course.h"
+#include "trocar/assessment/preparation.h"
 #include "trocar/centre/access.h"
 #include "trocar/centre/judged_attempt.h"
 #include "trocar/record/recording.h"
@@ -67,8 +68,10 @@ struct LoadedCourse {
 base::Result<LoadedCourse> LoadCourse(const Access& access, const std::string& course);
 
 /// Makes what a step needs before it can begin; the scripted expert operates up to its first moment.
-/// \param progress  told the simulated time [s] and what the expert does; false gives up
+/// \param progress  false gives up
 base::Result<Start> PrepareStart(const StepName& name,
-                                 const std::function<bool(double, const std::string&)>& progress);
+                                 const std::function<bool(const assessment::PreparationProgress&)>& progress);
+/// For a person who waits: "43 %, about 2 min left".
+std::string DescribePreparation(const assessment::PreparationProgress& now);
 
 }  // namespace trocar::centre

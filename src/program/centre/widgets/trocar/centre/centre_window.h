@@ -76,6 +76,7 @@ class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {
   Gtk::Entry who_;
   Gtk::Spinner spinner_;
   Gtk::Label busy_, notice_;
+  Gtk::Button cancel_;
   Gtk::ProgressBar progress_;
   std::uint64_t shown_version_ = 0;
   std::optional<base::Error> failure_;

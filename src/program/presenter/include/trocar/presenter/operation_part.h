@@ -28,10 +28,10 @@ struct OperationPart {
 /// In the order of the operation. \return the course's error
 base::Result<std::vector<OperationPart>> ListOperationParts();
 
-/// Told what the expert does; false gives up.
-using PartProgress = std::function<bool(const std::string& doing)>;
-/// Makes what a part needs before it can begin: the scripted expert operates on the chosen patient up to there, unless that lies in
-/// the cache.
+/// Told what is done, and how much of it [-]; false gives up.
+using PartProgress = std::function<bool(const std::string& doing, double share)>;
+/// Makes what a part needs before it can begin: the scripted expert operates on the chosen patient up to there, unless that was
+/// delivered or lies in the cache.
 /// \param options  with operation.part
 /// \return kUnknownName of a part, kPreparationFailed where the expert does not come so far, kCancelled
 base::Result<centre::Start> PreparePart(const Options& options, const PartProgress& progress);

@@ -48,7 +48,8 @@ struct SimulatorPage {
   std::string question;           ///< before something is thrown away; empty: none
   HomePage home;
   TaskPage tasks;
-  std::string opening;  ///< what is prepared beside the window; empty: nothing that takes long
+  std::string opening;       ///< what is prepared beside the window; empty: nothing that takes long
+  double opening_share = 0;  ///< of that [-]; never less than before while one thing is prepared
   bool is_home_open = false, is_panel_open = false, is_left_handed = false;
   bool is_event_warning = false;
   bool is_help_open = false, is_task_list_open = false, is_result_open = false;
