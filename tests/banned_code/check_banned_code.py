@@ -5,6 +5,8 @@ hold, and which parts of the standard library its sources name.
 
   check_banned_code.py imports SOURCE_FOLDER BUILD_FOLDER     functions of the C library, instructions
   check_banned_code.py sources SOURCE_FOLDER
+  check_banned_code.py conversions SOURCE_FOLDER BUILD_FOLDER what the compiler finds in a build of its own: conversions of
+                                                              floating-point numbers to integers outside to_integer.h
   check_banned_code.py control SOURCE_FOLDER SCRATCH_FOLDER   seeded mistakes must be found (COMPILER in the environment's CXX)
 
 The engine is every module of tools/layers.txt that assessment, agent, record or environment can see. What is used with a reason
@@ -17,6 +19,7 @@ import os
 import pathlib
 import platform
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -51,6 +54,14 @@ INSTRUCTIONS = {
     "aarch64": re.compile(r"^(fn?m(add|sub)|fml[as]l?2?|fcmla|fr(sqrt|ecp)[esx])$"),
 }
 
+# an integer's type
+INTEGER = (r"(?:std::)?(?:u?int(?:_fast|_least)?(?:8|16|32|64)_t|u?intmax_t|u?intptr_t|size_t|ptrdiff_t|time_t"
+           r"|(?:(?:un)?signed|long|int|short|char)(?:\s+(?:long|int|short|char))*)")
+
+# what a compiler calls where a conversion may be out of range, with -fsanitize=float-cast-overflow
+CONVERSION = "__ubsan_handle_float_cast_overflow"
+SANITIZE = "-fsanitize=float-cast-overflow"
+
 # what a source names; the pattern matches the name alone
 SOURCES = {
     # order or choice that is left open
@@ -70,6 +81,10 @@ SOURCES = {
     "atomic_float": r"\bstd::atomic<(?:double|float)>", "lerp": r"\bstd::lerp\b", "midpoint": r"\bstd::midpoint\b",
     "complex": r"\bstd::complex\b", "valarray": r"\bstd::valarray\b", "long_double": r"\blong\s+double\b",
     "float_control": r"\b_MM_SET_(?:FLUSH_ZERO|DENORMALS_ZERO)_MODE\b|\bfesetround\b|\bffast-math\b|\bFP_CONTRACT\b",
+    # what of it can be seen without the types, which a compiler knows: see check_conversions
+    "to_integer": r"\b(?:std::|::)?l?lr(?:ound|int)f?\s*\("
+                  rf"|\bstatic_cast<\s*{INTEGER}\s*>\s*\(\s*(?:(?:std::|::)(?:floor|ceil|trunc|round|rint|nearbyint|sqrt|fabs|fmod)f?\s*\("
+                  r"|[^();]*(?<![\w.])\d+\.\d)",
     # as an import it shows only where a compiler leaves the call
     "elementary": r"\b(?:std::|::)(?:sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|exp|exp2|expm1|log|log1p|log2"
                   r"|log10|pow|cbrt|hypot|lgamma|tgamma|erf|erfc|fma|fmin|fmax|sincos)f?\s*\(",
@@ -250,7 +265,48 @@ def check_sources(source):
     return complaints
 
 
+def find_conversions(folder):
+    """Where in a folder of objects a conversion may be out of range: "file:line", or a function where no line is known."""
+    found = set()
+    objects = sorted(folder.rglob("*.o"))
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        imports = list(pool.map(lambda path: CONVERSION in run(["nm", "-u", path]), objects))
+    for path in (path for path, converts in zip(objects, imports) if converts):
+        function = line = "?"
+        for text in run(["objdump", "-drl", "--no-show-raw-insn", path]).splitlines():
+            if match := re.match(r"^[0-9a-f]+ <(.*)>:$", text):
+                function = line = match.group(1)
+            elif match := re.match(r"^(\S.*:\d+)(?: \(discriminator \d+\))?$", text):
+                line = match.group(1).removeprefix("./")
+            elif CONVERSION in text:
+                found.add(line if line != function else demangle([function])[function])
+    return found, len(objects)
+
+
+def check_conversions(source, build):
+    """Compiles the engine with a sanitizer's calls wherever a conversion might be out of range, and looks for calls. The
+    functions of to_integer.h look at the range themselves and have none."""
+    compiler = shutil.which("clang++") or shutil.which("g++")
+    modules = find_modules((source / "tools/layers.txt").read_text())
+    configure = ["cmake", "-S", source, "-B", build, "-G", "Ninja", f"-DCMAKE_CXX_COMPILER={compiler}", "-DCMAKE_BUILD_TYPE=Release",
+                 f"-DCMAKE_CXX_FLAGS={SANITIZE}", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -g1", f"-DTROCAR_MODULES={';'.join(modules)}",
+                 "-DTROCAR_BUILD_TESTS=OFF", "-DTROCAR_BUILD_IMPORT=OFF", "-DTROCAR_PYTHON=OFF", "-DTROCAR_CUDA=OFF"]
+    targets = [f"trocar_{module}" for module in modules
+               if "SOURCES" in (source / folder_of(source, module) / "CMakeLists.txt").read_text()]
+    for command in (configure, ["ninja", "-C", build, *targets]):
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        if done.returncode != 0:
+            return [*done.stdout.splitlines()[-30:], "the engine could not be compiled"]
+    places, objects = find_conversions(build)
+    complaints = [f"{place}: a floating-point number becomes an integer: take a function of trocar/base/to_integer.h" for place in sorted(places)]
+    if objects < len(targets):
+        complaints.append(f"only {objects} objects were found in {build}")
+    print(f"{objects} objects of {len(modules)} modules, {len(complaints)} complaints")
+    return complaints
+
+
 WHY = {"sort": "where keys are equal its order is not fixed; say in allowed.txt why none are, or why it does not matter",
+       "to_integer": "what does not fit is not defined; take a function of trocar/base/to_integer.h",
        "elementary": "take it from trocar/math/elementary.h, or min and max from trocar/math"}
 
 CONTROL = """
@@ -266,10 +322,29 @@ double Exact(double x) { return std::fmod(std::floor(std::sqrt(x)), 3.0); }
 // std::nth_element in a comment, and in a text:
 const char* text = "std::shuffle";
 void Sorts(std::vector<int>& v) { std::sort(v.begin(), v.end()); }
+long Rounds(double x) { return std::lround(x); }
+int Floors(double x) { return static_cast<int>(std::floor(x)); }
+std::size_t Halves(double x) { return static_cast<std::size_t>(x * 0.5); }
+double Widens(int i) { return static_cast<double>(i * 2) + static_cast<int>(i + 2); }
+"""
+
+# what only a compiler sees; the conversions of to_integer.h and of constants are none
+CONVERSIONS = """
+#include "trocar/base/to_integer.h"
+int Truncates(float x) { return static_cast<int>(x); }
+unsigned char Narrows(double x) { return x; }
+template <typename To> To Converts(double x) { return To(x); }
+template long Converts<long>(double);
+int Checks(double x) {
+  return trocar::base::TruncateTo<int>(x) + trocar::base::FloorTo<short>(x) + trocar::base::RoundTo<unsigned char>(x) +
+         trocar::base::CeilTo<int>(x);
+}
+int Constant() { return static_cast<int>(2.5); }
+float Widens(long i) { return static_cast<float>(i); }
 """
 
 
-def control(scratch):
+def control(source, scratch):
     complaints = []
 
     def expect(what, seen, wanted):
@@ -291,7 +366,18 @@ def control(scratch):
         expect("fused multiply-add where there is none", any(name.startswith("vfm") for name in plain), False)
         expect("x87", {"fldt", "fmulp"} <= plain or "fldt" in plain, True)
     expect("names in sources", [name for _, name in find_sources(CONTROL)],
-           ["elementary", "long_double", "long_double", "long_double", "random_device", "sort"])
+           ["elementary", "long_double", "long_double", "long_double", "random_device", "sort", "to_integer", "to_integer", "to_integer"])
+    # by each compiler that is there
+    for name in filter(shutil.which, ("clang++", "g++")):
+        folder = scratch / f"conversions_{name}"
+        folder.mkdir(exist_ok=True)
+        (folder / "conversions.cpp").write_text(CONVERSIONS)
+        for optimisation in ("-O1", "-O2"):
+            subprocess.run([name, "-std=c++20", optimisation, "-g1", SANITIZE, "-I", source / "src/engine/base/include", "-c",
+                            folder / "conversions.cpp", "-o", folder / "conversions.o"], check=True)
+            places, _ = find_conversions(folder)
+            expect(f"conversions by {name} {optimisation}", sorted(place.rsplit("/", 1)[-1] for place in places),
+                   [f"conversions.cpp:{line}" for line in (3, 4, 5)])
     keys = {("source", "a.cpp", "sort"): "found"}
     expect("a use without a reason", len(compare(keys, {}, ("source",))), 1)
     expect("a use with a reason", compare(keys, {("source", "a.cpp", "sort"): "whole numbers"}, ("source",)), [])
@@ -308,8 +394,10 @@ def main():
         complaints = check_imports(source, pathlib.Path(sys.argv[3]))
     elif action == "sources":
         complaints = check_sources(source)
+    elif action == "conversions":
+        complaints = check_conversions(source, pathlib.Path(sys.argv[3]))
     elif action == "control":
-        complaints = control(pathlib.Path(sys.argv[3]))
+        complaints = control(source, pathlib.Path(sys.argv[3]))
     else:
         sys.exit(__doc__)
     print("\n".join(complaints))

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/math/elementary.h"
@@ -233,7 +234,7 @@ std::vector<std::array<std::uint32_t, 2>> FindSelfIntersections(const TriangleMe
   const auto key_of = [&](const Vec3& p) {
     std::array<std::int64_t, 3> index{};
     for (int axis = 0; axis < 3; ++axis)
-      index[axis] = static_cast<std::int64_t>(std::floor((p[axis] - all.min[axis]) / cell));
+      index[axis] = base::FloorTo<std::int64_t>((p[axis] - all.min[axis]) / cell);
     return index;
   };
   const auto number = [](const std::array<std::int64_t, 3>& at) {

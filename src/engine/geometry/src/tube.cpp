@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/cubic_spline.h"
 #include "trocar/math/elementary.h"
 #include "trocar/math/pose.h"
@@ -23,7 +24,7 @@ double CalcLength(const CentreLine& line) {
 CentreLine Resample(const CentreLine& line, double spacing) {
   TROCAR_ASSERT(line.points.size() >= 2 && line.radii.size() == line.points.size() && spacing > 0.0);
   const math::CubicSpline spline(line.points, math::SplineEnds::kNatural);
-  const int count = std::max(2, 1 + static_cast<int>(std::lround(spline.Length() / spacing)));
+  const int count = std::max(2, 1 + base::RoundTo<int>(spline.Length() / spacing));
   CentreLine resampled;
   std::size_t segment = 0;
   const auto knots = spline.Knots();

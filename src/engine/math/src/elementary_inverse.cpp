@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "double_double.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::math {
@@ -105,7 +106,7 @@ double Atan2(double y, double x) noexcept {
   }
 
   // small / large = tan(a) with a = atan(c) + atan(r), c = i / 64, r = (small - c large) / (large + c small)
-  const int i = static_cast<int>(small / large * 64.0 + 0.5);
+  const int i = base::TruncateTo<int>(small / large * 64.0 + 0.5);
   const double c = i * 0x1p-6;
   const double large_high = KeepHigh(large), small_high = KeepHigh(small);
   const Pair above = FastTwoSum(small - c * large_high, -c * (large - large_high));

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
+
 namespace trocar::math {
 namespace {
 
@@ -64,9 +66,9 @@ double Mix(double a, double b, double t) noexcept {
 
 double CalcGradientNoise(const Vec3& p, int period) noexcept {
   const double fx = std::floor(p.x), fy = std::floor(p.y), fz = std::floor(p.z);
-  const int x0 = Wrap(static_cast<int>(fx), period), x1 = Wrap(static_cast<int>(fx) + 1, period);
-  const int y0 = Wrap(static_cast<int>(fy), period), y1 = Wrap(static_cast<int>(fy) + 1, period);
-  const int z0 = Wrap(static_cast<int>(fz), period), z1 = Wrap(static_cast<int>(fz) + 1, period);
+  const int x0 = Wrap(base::TruncateTo<int>(fx), period), x1 = Wrap(base::TruncateTo<int>(fx + 1), period);
+  const int y0 = Wrap(base::TruncateTo<int>(fy), period), y1 = Wrap(base::TruncateTo<int>(fy + 1), period);
+  const int z0 = Wrap(base::TruncateTo<int>(fz), period), z1 = Wrap(base::TruncateTo<int>(fz + 1), period);
   const double x = p.x - fx, y = p.y - fy, z = p.z - fz;
   const double u = Fade(x), v = Fade(y), w = Fade(z);
   const double a = Mix(Mix(CalcCornerSlope(HashCell(x0, y0, z0), x, y, z),
@@ -83,16 +85,17 @@ double CalcGradientNoise(const Vec3& p, int period) noexcept {
 }
 
 CellNoise CalcCellNoise(const Vec3& p, int period) noexcept {
-  const int cx = static_cast<int>(std::floor(p.x)), cy = static_cast<int>(std::floor(p.y)),
-            cz = static_cast<int>(std::floor(p.z));
+  const double fx = std::floor(p.x), fy = std::floor(p.y), fz = std::floor(p.z);
   CellNoise distance{1e9, 1e9};  // squared until the end
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
+        const double cx = fx + dx, cy = fy + dy, cz = fz + dz;
         const std::uint32_t hash =
-            HashCell(Wrap(cx + dx, period), Wrap(cy + dy, period), Wrap(cz + dz, period));
-        const Vec3 feature{cx + dx + (hash & 1023u) / 1023.0, cy + dy + ((hash >> 10) & 1023u) / 1023.0,
-                           cz + dz + ((hash >> 20) & 1023u) / 1023.0};
+            HashCell(Wrap(base::TruncateTo<int>(cx), period), Wrap(base::TruncateTo<int>(cy), period),
+                     Wrap(base::TruncateTo<int>(cz), period));
+        const Vec3 feature{cx + (hash & 1023u) / 1023.0, cy + ((hash >> 10) & 1023u) / 1023.0,
+                           cz + ((hash >> 20) & 1023u) / 1023.0};
         const double d = SquaredDistance(feature, p);
         if (d < distance.nearest) {
           distance.second = std::exchange(distance.nearest, d);

@@ -17,6 +17,7 @@
 #include "rigid_state.h"
 #include "trocar/base/assert.h"
 #include "trocar/base/state_archive.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/state_fields.h"
 
 namespace trocar::rigid {
@@ -227,7 +228,7 @@ struct RigidWorld::Content {
       const double way = math::Norm(FromBullet(body.body->getLinearVelocity())) * tick_seconds;
       most = std::max(most, std::ceil(way / (0.5 * body.thinnest)));
     }
-    return static_cast<int>(std::min(most, static_cast<double>(kMostSubsteps)));
+    return base::TruncateTo<int>(std::min(most, static_cast<double>(kMostSubsteps)));
   }
 
   static bool IsTouching(const btPersistentManifold& manifold) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/collision/queries.h"
 #include "trocar/collision/triangle_tree.h"
 #include "trocar/math/random.h"
@@ -131,13 +132,13 @@ ConnectiveTissue MakeConnectiveTissue(const patient::Patient& patient, double sp
   const Surroundings surroundings(patient);
   math::Random random(seed ^ 0x6661740aULL);
   std::vector<int> layers;
-  const int rows = std::max(2, static_cast<int>(std::lround(Length(duct) / spacing)));
+  const int rows = std::max(2, base::RoundTo<int>(Length(duct) / spacing));
   for (int row = 0; row <= rows; ++row) {
     const double u = static_cast<double>(row) / rows;
     const Vec3 from = PointAt(duct, u), to = PointAt(plate, u);
     const double width = math::Distance(from, to);
-    const int columns = std::max(1, static_cast<int>(std::lround(width / spacing)));
-    const int beyond = std::max(2, static_cast<int>(std::lround(kBeyond * width / spacing)));
+    const int columns = std::max(1, base::RoundTo<int>(width / spacing));
+    const int beyond = std::max(2, base::RoundTo<int>(kBeyond * width / spacing));
     const Vec3 step =
         math::Normalized(to - from, math::Normalized(up)) * (width > spacing ? width / columns : spacing);
     for (int column = -beyond; column <= columns + beyond; ++column) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/math/random.h"
 
 namespace trocar::scene {
@@ -48,7 +49,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> FindAdhesions(const patient
     // a patch has grown together or it has not: the same patches come first for every share
     std::uint64_t word = 0x61646865ULL;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto cell = static_cast<std::int64_t>(std::floor(wall[v][axis] / kPatch));
+      const auto cell = base::FloorTo<std::int64_t>(wall[v][axis] / kPatch);
       word = math::Random(word ^ static_cast<std::uint64_t>(cell)).NextWord();
     }
     if (math::Random(word).Uniform() >= share) continue;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "connective_tissue.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/patient/patient.h"
@@ -306,7 +307,7 @@ void AddBands(const ModelSetup& model, PatientTissue& made) {
     const ModelBand& band = model.bands[b];
     const auto first = static_cast<std::uint32_t>(definition.rest.size());
     const double length = math::Distance(band.from, band.to);
-    const auto pieces = static_cast<std::uint32_t>(std::max(3L, std::lround(length / kBandPiece)));
+    const auto pieces = std::max(3U, base::RoundTo<std::uint32_t>(length / kBandPiece));
     for (std::uint32_t i = 0; i <= pieces; ++i) {
       definition.rest.push_back(math::Lerp(band.from, band.to, static_cast<double>(i) / pieces));
       definition.mass.push_back(kFatDensity * M_PI * band.radius * band.radius * length / pieces);

@@ -13,6 +13,7 @@
 #include "trocar/base/assert.h"
 #include "trocar/base/checksum.h"
 #include "trocar/base/state_hash.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::simulation {
 namespace {
@@ -68,7 +69,7 @@ bool PutOnGrid(std::span<std::uint64_t> words) noexcept {
   for (std::uint64_t& word : words) {
     const double cell = std::floor(std::bit_cast<double>(word) / kPictureGrid + 0.5);
     if (!(std::fabs(cell) <= kFarthestCell)) return false;
-    word = static_cast<std::uint64_t>(static_cast<std::int64_t>(cell));
+    word = static_cast<std::uint64_t>(base::TruncateTo<std::int64_t>(cell));
   }
   return true;
 }

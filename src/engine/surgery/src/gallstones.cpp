@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/collision/queries.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/math/elementary.h"
@@ -194,7 +195,7 @@ void Move(const StoneGround& ground, double seconds, std::span<LooseStone* const
   const double speed = math::Norm(stone.velocity);
   if (speed > kFastest) stone.velocity *= kFastest / speed;
   const double way = std::min(speed, kFastest) * seconds;
-  const int steps = std::clamp(static_cast<int>(std::ceil(way / (kStep * stone.radius))), 1, kMostSubsteps);
+  const int steps = std::clamp(base::CeilTo<int>(way / (kStep * stone.radius)), 1, kMostSubsteps);
   const double dt = seconds / steps;
   std::optional<Sheet> under;
   Touch touched;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::surgery {
@@ -71,7 +72,7 @@ HeatState TissueHeat::MakeState() const {
 double TissueHeat::Step(std::span<const Source> sources, double seconds, HeatState& state) noexcept {
   TROCAR_ASSERT(state.temperature.size() == Size() && seconds > 0);
   const std::size_t n = Size();
-  const int steps = std::max(1, static_cast<int>(std::ceil(seconds / longest_step_)));
+  const int steps = std::max(1, base::CeilTo<int>(seconds / longest_step_));
   const double dt = seconds / steps;
   double lost = 0;
   for (int step = 0; step < steps; ++step) {

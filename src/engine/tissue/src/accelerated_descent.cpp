@@ -7,6 +7,7 @@
 #include <span>
 
 #include "node_force.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::tissue {
@@ -55,7 +56,7 @@ double CalcLowest(int cycle) noexcept {
 
 /// Iterations that damp everything down to `lowest` to a ten-thousandth.
 int CalcCycle(double lowest) noexcept {
-  return static_cast<int>(std::ceil(math::Log(2e4) / (2.0 * std::sqrt(lowest))));
+  return base::CeilTo<int>(math::Log(2e4) / (2.0 * std::sqrt(lowest)));
 }
 
 /// Runs cycles until the residual is at most `force`, or for so many iterations.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "link_hierarchy.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::tissue {
 namespace {
@@ -109,7 +110,7 @@ void LineSmoother::SetGraph(const NodeGraph& graph, const SliceLayout& layout) {
 void LineSmoother::Reserve(double share) {
   // a cut leaves nodes with few neighbours: of so many nodes some join chains, as wide as chains may be
   const std::size_t nodes =
-      nodes_.size() + static_cast<std::size_t>(share * static_cast<double>(marks_.size()));
+      nodes_.size() + base::TruncateTo<std::size_t>(share * static_cast<double>(marks_.size()));
   nodes_.reserve(nodes);
   links_.reserve(kMostNeighbours * nodes);
   first_.reserve(3 * nodes), row_starts_.reserve(3 * nodes + 1), values_.reserve(3 * nodes),

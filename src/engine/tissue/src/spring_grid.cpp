@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "node_vectors.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::tissue {
 
@@ -87,7 +88,7 @@ GridModel MakeGridModel(const TissueModel& model, const GridShape& shape) {
 
 GridPlace FindGridPlace(std::uint32_t at, std::uint32_t count, std::uint32_t other_count) noexcept {
   const double place = static_cast<double>(at) * (other_count - 1) / (count - 1);
-  const auto index = std::min(static_cast<std::uint32_t>(place), other_count - 2);
+  const auto index = std::min(base::TruncateTo<std::uint32_t>(place), other_count - 2);
   return {index, static_cast<float>(place - index)};
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::anatomy {
@@ -23,15 +24,15 @@ struct Mean {
 }  // namespace
 
 void FrontMap::Add(const math::Vec3& p) {
-  const std::pair cell{static_cast<int>(std::floor(p.x / kCell)), static_cast<int>(std::floor(p.y / kCell))};
+  const std::pair cell{base::FloorTo<int>(p.x / kCell), base::FloorTo<int>(p.y / kCell)};
   const auto [at, is_new] = heights_.try_emplace(cell, p.z);
   if (!is_new) at->second = std::max(at->second, p.z);
 }
 
 std::optional<double> FrontMap::FindHeight(double x, double y, double radius) const {
   std::optional<double> height;
-  const int reach = static_cast<int>(std::ceil(radius / kCell));
-  const int column = static_cast<int>(std::floor(x / kCell)), row = static_cast<int>(std::floor(y / kCell));
+  const int reach = base::CeilTo<int>(radius / kCell);
+  const int column = base::FloorTo<int>(x / kCell), row = base::FloorTo<int>(y / kCell);
   for (int i = -reach; i <= reach; ++i) {
     for (int j = -reach; j <= reach; ++j) {
       if (math::Hypot(i, j) * kCell > radius) continue;
@@ -47,7 +48,7 @@ BodyShape MeasureBody(const images::LabelVolume& volume, const NeighbourLabels& 
   BodyShape body;
   std::array<int, 3> step{};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    step[axis] = std::max(1, static_cast<int>(std::lround(kSampleMm / frame.step_mm[axis])));
+    step[axis] = std::max(1, base::RoundTo<int>(kSampleMm / frame.step_mm[axis]));
   Mean spine, aorta, cava, third, fourth;
   for (int k = 0; k < volume.size[2]; k += step[2]) {
     for (int j = 0; j < volume.size[1]; j += step[1]) {

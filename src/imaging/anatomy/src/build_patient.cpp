@@ -8,6 +8,7 @@
 
 #include "surround_patient.h"
 #include "trocar/anatomy/patient_builder.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/control_points.h"
 #include "trocar/contours/overlay.h"
 #include "trocar/files/patient_file.h"
@@ -152,7 +153,7 @@ std::string FormatSurroundings(const BuildReport& report) {
     text += host::PrintableLine(host::TranslateComposed(sentence)) + "\n";
   for (const patient::Port& port : report.patient.ports) {
     const auto mm = [](double metres) {
-      return std::to_string(std::lround(1000 * metres));
+      return std::to_string(base::RoundTo<std::int64_t>(1000 * metres));
     };  // prints no "-0"
     text += host::TranslateWith("Port for {1} at {2}, {3}, {4} mm (left, cranial, anterior).",
                                 {host::Translate(roles::SpokenName(NameOf(port.use))), mm(port.position.x),

@@ -13,6 +13,7 @@
 #include "phantom_tissue.h"
 #include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/anatomy/phantom.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/files/patient_frame.h"
 #include "trocar/meshing/volume.h"
 #include "trocar/patient/patient.h"
@@ -249,7 +250,7 @@ base::Result<CtPhantom> MakeCtPhantom(const images::LabelVolume& labels, const i
   tissues.step_mm = {settings.pixel_mm / kSamples, settings.pixel_mm / kSamples, layer};
   const double extent[3] = {box.max.x - box.min.x, box.max.z - box.min.z, box.max.y - box.min.y};
   for (int axis = 0; axis < 3; ++axis)
-    tissues.size[axis] = static_cast<int>(std::ceil(extent[axis] / tissues.step_mm[axis]));
+    tissues.size[axis] = base::CeilTo<int>(extent[axis] / tissues.step_mm[axis]);
   tissues.origin_mm = {box.min.x, -box.max.z, box.min.y};
   tissues.tissues.resize(tissues.Index(0, 0, tissues.size[2]));
   constexpr int kBatch = 8;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/files/patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/cubic_spline.h"
@@ -100,8 +101,7 @@ class Placer {
   std::vector<Vec3> Route(const std::vector<Vec3>& waypoints, double radius, double length,
                           const Vec3& bow) const {
     const math::CubicSpline spline(waypoints, math::SplineEnds::kNatural);
-    const int count =
-        std::max(4, static_cast<int>(std::lround(std::max(length, spline.Length()) / kSampleMm)));
+    const int count = std::max(4, base::RoundTo<int>(std::max(length, spline.Length()) / kSampleMm));
     const auto line_at = [&](double amplitude) {
       std::vector<Vec3> line;
       for (int i = 0; i <= count; ++i) {
@@ -205,7 +205,7 @@ Vec3 FindVertex(const TriangleMesh& mesh, Cost cost) {
 
 Vec3 PointAt(const std::vector<Vec3>& line, double t) {
   const double at = t * static_cast<double>(line.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(at), line.size() - 2);
+  const auto i = std::min(base::TruncateTo<std::size_t>(at), line.size() - 2);
   return math::Lerp(line[i], line[i + 1], at - static_cast<double>(i));
 }
 

@@ -12,6 +12,7 @@
 #include "duct_template.h"
 #include "generated_body.h"
 #include "trocar/anatomy/patient_builder.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/meshing/volume_mesher.h"
 #include "trocar/patient/patient.h"
@@ -38,8 +39,8 @@ meshing::ScalarVolume Sample(const geometry::Box& box, double spacing, Function 
   meshing::ScalarVolume volume;
   volume.spacing = spacing;
   for (int axis = 0; axis < 3; ++axis) {
-    volume.first[axis] = static_cast<int>(std::floor(box.min[axis] / spacing)) - 1;
-    volume.size[axis] = static_cast<int>(std::ceil(box.max[axis] / spacing)) + 2 - volume.first[axis];
+    volume.first[axis] = base::FloorTo<int>(box.min[axis] / spacing) - 1;
+    volume.size[axis] = base::CeilTo<int>(box.max[axis] / spacing) + 2 - volume.first[axis];
   }
   volume.values.resize(static_cast<std::size_t>(volume.size[0]) * volume.size[1] * volume.size[2]);
   const auto blocks = [&](int axis) { return (volume.size[axis] + kBlock - 1) / kBlock; };

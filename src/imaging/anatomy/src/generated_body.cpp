@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
@@ -41,7 +42,7 @@ double CalcNoise(const Vec3& p, double wavelength, std::uint64_t seed) {
   double part[3];
   for (int axis = 0; axis < 3; ++axis) {
     const double at = 2.0 * p[axis] / wavelength;
-    cell[axis] = static_cast<int>(std::floor(at));
+    cell[axis] = base::FloorTo<int>(at);
     const double t = at - cell[axis];
     part[axis] = t * t * (3 - 2 * t);
   }
@@ -202,7 +203,7 @@ geometry::Box GeneratedBody::FindLiverBox() const {
   }
   int size[3];
   for (int axis = 0; axis < 3; ++axis)
-    size[axis] = static_cast<int>((lobes.max[axis] - lobes.min[axis] + 2 * kReach) / kSpacing) + 2;
+    size[axis] = base::TruncateTo<int>((lobes.max[axis] - lobes.min[axis] + 2 * kReach) / kSpacing) + 2;
   const Vec3 first = lobes.min - Vec3{kReach, kReach, kReach};
   std::vector<double> values(static_cast<std::size_t>(size[0]) * size[1] * size[2]);
   const int step[3] = {1, size[0], size[0] * size[1]};

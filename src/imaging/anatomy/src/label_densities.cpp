@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trocar/anatomy/patient_from_labels.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/images/label_alignment.h"
 
 namespace trocar::anatomy {
@@ -41,7 +42,8 @@ base::Result<LabelDensities> MeasureDensities(const images::LabelVolume& volume,
   const auto aligned = images::AlignLabels(volume, info);
   if (!aligned.ok()) return aligned.error();
   const auto plane = static_cast<std::size_t>(info.width) * info.height;
-  const auto step = static_cast<std::size_t>(std::max(1.0, std::floor(kBetweenSlicesMm / info.slice_mm)));
+  const auto step =
+      base::TruncateTo<std::size_t>(std::max(1.0, std::floor(kBetweenSlicesMm / info.slice_mm)));
   std::map<int, Histogram> histograms;
   for (std::size_t slice = 0; slice < info.slice_numbers.size(); slice += step) {
     const auto* labels = &aligned->labels[slice * plane];

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string_view>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/json.h"
 #include "trocar/host/printable.h"
 #include "trocar/host/safe_file.h"
@@ -143,7 +144,7 @@ class JsonTable {
     const double number = value.get<double>();
     if (!(number >= 0 && number <= images::kLargestLabel) || number != std::floor(number))
       return std::nullopt;
-    return static_cast<int>(number);
+    return base::TruncateTo<int>(number);
   }
 
   base::Result<Table> ReadObject(const json& table, const std::string& at) const {

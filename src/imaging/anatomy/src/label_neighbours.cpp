@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/elementary.h"
 #include "trocar/meshing/label_volume.h"
@@ -40,7 +41,7 @@ Reach FindReach(const images::LabelVolume& volume, const OrganLabels& organs, co
   Reach reach;
   const LabelBox &liver = boxes.at(organs.liver), &gallbladder = boxes.at(organs.gallbladder);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int margin = static_cast<int>(std::lround(kNeighbourReachMm / frame.step_mm[axis]));
+    const int margin = base::RoundTo<int>(kNeighbourReachMm / frame.step_mm[axis]);
     reach.low[axis] = std::max(0, std::min(liver.low[axis], gallbladder.low[axis]) - margin);
     reach.high[axis] =
         std::min(volume.size[axis] - 1, std::max(liver.high[axis], gallbladder.high[axis]) + margin);
@@ -86,7 +87,7 @@ struct PartMesh {
 int BudgetOf(double volume_mm3) {
   const double ball = math::Cbrt(36.0 * M_PI * volume_mm3 * volume_mm3);
   // organs are longer and more folded than a ball
-  return std::clamp(static_cast<int>(1.6 * ball / kTriangleMm2), kFewestTriangles, kMostTriangles);
+  return std::clamp(base::TruncateTo<int>(1.6 * ball / kTriangleMm2), kFewestTriangles, kMostTriangles);
 }
 
 PartMesh MeshPart(const images::LabelVolume& part, double volume_mm3, const std::array<int, 3>& low,

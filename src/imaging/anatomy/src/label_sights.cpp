@@ -12,6 +12,7 @@
 
 #include "label_neighbours.h"
 
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::anatomy {
@@ -61,7 +62,7 @@ Lattice Sample(const images::LabelVolume& volume, const VoxelFrame& frame, const
       kSpacingMm, Cbrt((extent.x + margin) * (extent.y + margin) * (extent.z + margin) / kMostCells));
   // two empty points all round
   for (int axis = 0; axis < 3; ++axis) {
-    lattice.size[axis] = static_cast<int>(std::floor(extent[axis] / lattice.spacing)) + 5;
+    lattice.size[axis] = base::FloorTo<int>(extent[axis] / lattice.spacing) + 5;
     lattice.first[axis] = 0.5 * (low[axis] + high[axis]) - 0.5 * (lattice.size[axis] - 1) * lattice.spacing;
   }
   lattice.labels.assign(lattice.At(0, 0, lattice.size[2]), 0);
@@ -72,10 +73,10 @@ Lattice Sample(const images::LabelVolume& volume, const VoxelFrame& frame, const
         std::size_t at = 0;
         bool is_in = true;
         for (int axis = 2; axis >= 0; --axis) {
-          const long index = std::lround(Dot(p, frame.axes[axis]) / frame.step_mm[axis]);
+          const int index = base::RoundTo<int>(Dot(p, frame.axes[axis]) / frame.step_mm[axis]);
           is_in = is_in && index >= 0 && index < volume.size[axis];
-          at = at * static_cast<std::size_t>(volume.size[axis]) +
-               static_cast<std::size_t>(std::max(0L, index));
+          at =
+              at * static_cast<std::size_t>(volume.size[axis]) + static_cast<std::size_t>(std::max(0, index));
         }
         if (!is_in || volume.labels[at] == 0) continue;
         const auto number =

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
 
@@ -98,7 +99,7 @@ std::vector<Vec3> CalcBroadNormals(const TriangleMesh& mesh, const geometry::Row
   // each round spreads a normal over about one edge; rounds add as the squares of their reach
   constexpr int kMaxRounds = 200;
   const double edges_away = kSmoothing / length;
-  const int rounds = std::clamp(static_cast<int>(std::lround(edges_away * edges_away)), 1, kMaxRounds);
+  const int rounds = std::clamp(base::RoundTo<int>(edges_away * edges_away), 1, kMaxRounds);
   for (int round = 0; round < rounds; ++round) {
     std::vector<Vec3> next = normals;
     for (std::size_t v = 0; v < normals.size(); ++v) {

@@ -7,6 +7,7 @@
 
 #include "phantom_tissue.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/files/patient_frame.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/math/elementary.h"
@@ -57,7 +58,7 @@ base::Status CheckOptions(const PhantomOptions& options) {
 /// Blurs the three channels along rows, then along columns.
 void Blur(std::vector<float>& samples, int width, int height, double deviation) {
   if (deviation <= 0) return;
-  const int reach = static_cast<int>(std::ceil(3 * deviation));
+  const int reach = base::CeilTo<int>(3 * deviation);
   std::vector<float> kernel;
   float total = 0;
   for (int i = -reach; i <= reach; ++i) {
@@ -167,9 +168,9 @@ base::Result<Phantom> Phantom::Make(const patient::Patient& patient, const Phant
   Content& c = *content;
   const geometry::Box& box = c.body.Extent();
   c.first = {box.min.x, box.max.y + options.slice_mm, box.max.z};
-  c.grid = {static_cast<int>(std::ceil((box.max.x - box.min.x) / options.pixel_mm)),
-            static_cast<int>(std::ceil((box.max.z - box.min.z) / options.pixel_mm)), options.pixel_mm};
-  c.slices = static_cast<int>(std::ceil((box.max.y - box.min.y) / options.slice_mm));
+  c.grid = {base::CeilTo<int>((box.max.x - box.min.x) / options.pixel_mm),
+            base::CeilTo<int>((box.max.z - box.min.z) / options.pixel_mm), options.pixel_mm};
+  c.slices = base::CeilTo<int>((box.max.y - box.min.y) / options.slice_mm);
   c.liver = c.ToPicture(patient.organs[patient.OrganOf(roles::OrganRole::kLiver)].mesh);
   c.gallbladder = c.ToPicture(patient.organs[patient.OrganOf(roles::OrganRole::kGallbladder)].mesh);
   for (const patient::Tube& tube : patient.tubes)
@@ -254,7 +255,7 @@ images::ColorImage Phantom::DrawSlice(int slice) const {
       for (int k = 0; k < 3; ++k) {
         const double value =
             light * samples[3 * i + k] + grain + 0.5 * kGrain * c.options.noise * Deviate(random);
-        image.samples[3 * i + k] = static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+        image.samples[3 * i + k] = base::RoundTo<std::uint8_t>(value);
       }
     }
   }
@@ -328,7 +329,7 @@ contours::ControlPoints Phantom::MakeControlPoints() const {
       for (const auto& loop : loops) longest = std::max(longest, std::fabs(meshing::CalcPolygonArea(loop)));
       for (std::size_t i = 0; i < loops.size(); ++i) {
         const double share = std::sqrt(std::fabs(meshing::CalcPolygonArea(loops[i])) / longest);
-        const int count = std::max(6, static_cast<int>(std::lround(share * c.options.points)));
+        const int count = std::max(6, base::RoundTo<int>(share * c.options.points));
         auto placed = Spread(loops[i], count, random.Uniform());
         for (Vec2& p : placed) {
           const double turn = random.Uniform(0, 2 * M_PI);

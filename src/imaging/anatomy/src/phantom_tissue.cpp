@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/elementary.h"
@@ -113,7 +114,7 @@ double NoiseField::At(const Vec3& p, double wavelength) const {
   for (int axis = 0; axis < 3; ++axis) {
     const double at = 2.0 * p[axis] / wavelength;
     const double cell = std::floor(at), t = at - cell;
-    low[axis] = static_cast<int>(cell) & (kLattice - 1);
+    low[axis] = base::TruncateTo<int>(cell) & (kLattice - 1);
     high[axis] = (low[axis] + 1) & (kLattice - 1);
     part[axis] = t * t * (3 - 2 * t);
   }

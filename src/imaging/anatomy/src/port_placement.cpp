@@ -10,6 +10,7 @@
 
 #include "trocar/anatomy/move_port.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 #include "trocar/math/rotation_angle.h"
 #include "trocar/meshing/nearest_surface.h"
@@ -399,8 +400,7 @@ std::vector<std::string> SinkUnderGas(patient::Patient& patient) {
         }
       }
       if (need <= 0) continue;
-      double& cell =
-          needs[{static_cast<int>(std::floor(v.x / kCell)), static_cast<int>(std::floor(v.y / kCell))}];
+      double& cell = needs[{base::FloorTo<int>(v.x / kCell), base::FloorTo<int>(v.y / kCell)}];
       cell = std::max(cell, std::min(need, kMostSinking));
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/files/patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/elementary.h"
@@ -47,7 +48,7 @@ class Slabs {
     const std::vector<double> areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
     const auto slab_of = [&](const math::Vec3& p) {
       const double t = Dot(p - from, axis) / length;
-      return static_cast<std::size_t>(std::clamp(t, 0.0, 1.0 - 1e-9) * kSlabs);
+      return base::TruncateTo<std::size_t>(std::clamp(t, 0.0, 1.0 - 1e-9) * kSlabs);
     };
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       Slab& slab = slabs_[slab_of(mesh.positions[v])];

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "contoured_structure.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/meshing/volume.h"
 #include "trocar/meshing/volume_mesher.h"
 #include "volume_opening.h"
@@ -110,7 +111,7 @@ base::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points,
   }
   for (const TubePoints& tube : points.tubes) {
     for (const TubePoint& point : tube.points) {
-      const auto found = overlays.find(static_cast<int>(std::lround(point.slice)));
+      const auto found = overlays.find(base::RoundTo<int>(point.slice));
       if (found != overlays.end()) found->second.tube_points.push_back(point.pixel);
     }
   }

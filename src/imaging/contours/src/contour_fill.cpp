@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::contours {
 
@@ -23,9 +24,9 @@ constexpr double kNudgeY = 2.9e-7;  // pixels
 template <typename Toggle>
 void VisitCrossings(double ua, double va, double ub, double vb, Toggle toggle) {
   if (va > vb) std::swap(ua, ub), std::swap(va, vb);
-  for (int k = static_cast<int>(std::ceil(va)); k < vb; ++k) {
+  for (int k = base::CeilTo<int>(va); k < vb; ++k) {
     if (k < va) continue;
-    toggle(static_cast<int>(std::floor(ua + (ub - ua) * ((k - va) / (vb - va)))), k);
+    toggle(base::FloorTo<int>(ua + (ub - ua) * ((k - va) / (vb - va))), k);
   }
 }
 
@@ -85,10 +86,10 @@ images::Mask FillArea(const std::vector<std::vector<Vec2>>& contours,
   }
   images::Mask area;
   if (low_x > high_x) return area;
-  area.x0 = static_cast<int>(std::floor(low_x)) - 2;
-  area.y0 = static_cast<int>(std::floor(low_y)) - 2;
-  area.width = static_cast<int>(std::ceil(high_x)) + 3 - area.x0;
-  area.height = static_cast<int>(std::ceil(high_y)) + 3 - area.y0;
+  area.x0 = base::FloorTo<int>(low_x) - 2;
+  area.y0 = base::FloorTo<int>(low_y) - 2;
+  area.width = base::CeilTo<int>(high_x) + 3 - area.x0;
+  area.height = base::CeilTo<int>(high_y) + 3 - area.y0;
   area.inside.assign(static_cast<std::size_t>(area.width) * area.height, 0);
   for (const auto& contour : contours) FillContour(contour, area);
   images::Mask removed = area;

@@ -6,6 +6,7 @@
 
 #include "edge_path.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::contours {
 
@@ -76,7 +77,7 @@ std::vector<std::size_t> FindRows(const ContourCurve& curve, std::size_t count, 
     const auto sample =
         std::lower_bound(curve.segment.begin(), curve.segment.end(), i) - curve.segment.begin();
     const double part = passed[static_cast<std::size_t>(sample)] / passed.back();
-    found.push_back(static_cast<std::size_t>(std::lround(part * static_cast<double>(rows))) % rows);
+    found.push_back(base::RoundTo<std::size_t>(part * static_cast<double>(rows)) % rows);
   }
   return found;
 }

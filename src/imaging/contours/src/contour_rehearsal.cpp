@@ -9,6 +9,7 @@
 
 #include "edge_strip.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/build_organs.h"
 #include "trocar/contours/contour_spline.h"
 #include "trocar/images/png_file.h"
@@ -83,7 +84,8 @@ std::vector<Vec2> SimulateClicks(const Outline& outline, int count, double noise
     const double start = random.Uniform();
     for (int i = 0; i < count; ++i) {
       const double part = start + static_cast<double>(i) / count;
-      const auto at = static_cast<std::size_t>((part - std::floor(part)) * static_cast<double>(curve.size()));
+      const auto at =
+          base::TruncateTo<std::size_t>((part - std::floor(part)) * static_cast<double>(curve.size()));
       const double angle = random.Uniform(0.0, 2.0 * M_PI);
       const Vec2 moved =
           curve[std::min(at, curve.size() - 1)] + noise_px * Vec2{math::Cos(angle), math::Sin(angle)};
@@ -105,18 +107,18 @@ Structure SimulateUser(const images::LabelVolume& labels, const ControlPoints& s
   const auto step = FindLabelStep(labels, series);
   if (!step.ok()) return clicked;
   math::Random random(seed);
-  const int phase = static_cast<int>(random.Uniform(0, settings.every));
+  const int phase = base::TruncateTo<int>(random.Uniform(0, settings.every));
   const double shortest_px = std::max(16 * settings.noise_mm, M_PI * kSmallestMm) / series.pixel_mm;
   for (const int slice : PickSlices(series, structure, settings.every, phase)) {
     SliceContours contours;
     contours.slice = slice;
-    const int most =
-        settings.points[0] + static_cast<int>(random.Uniform(0, settings.points[1] - settings.points[0] + 1));
+    const int most = settings.points[0] +
+                     base::TruncateTo<int>(random.Uniform(0, settings.points[1] - settings.points[0] + 1));
     double longest = 0;
     for (const Outline& outline : TraceLabel(labels, series, *step, structure.reference_label, slice)) {
       if (outline.length_px < shortest_px) continue;
       if (longest == 0) longest = outline.length_px;
-      const int count = std::clamp(static_cast<int>(std::lround(most * outline.length_px / longest)),
+      const int count = std::clamp(base::RoundTo<int>(most * outline.length_px / longest),
                                    std::min(most, kFewestPoints), most);
       auto clicks = SimulateClicks(outline, count, settings.noise_mm / series.pixel_mm, series, random);
       (outline.area_px > 0 ? contours.contours : contours.holes).push_back(std::move(clicks));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/cubic_spline.h"
 
 namespace trocar::contours {
@@ -90,7 +91,7 @@ Sampled SampleSpline(const math::CubicSpline& spline, double step) {
   const auto knots = spline.Knots();
   for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
     const double length = knots[i + 1] - knots[i];
-    const int count = std::max(2, static_cast<int>(std::ceil(length / step)));
+    const int count = std::max(2, base::CeilTo<int>(length / step));
     for (int k = 0; k < count; ++k) {
       const auto p = spline.Evaluate(knots[i] + length * k / count);
       sampled.points.push_back({p.x, p.y});

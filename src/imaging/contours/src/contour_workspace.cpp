@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/contour_propagation.h"
 #include "trocar/contours/reference_judge.h"
 #include "trocar/host/safe_file.h"
@@ -244,7 +245,7 @@ std::vector<ContourWorkspace::ReferenceLines> ContourWorkspace::FindReference(in
     const auto& d = labels.direction[axis];
     step[axis] = math::Norm(math::Vec3{d[0], d[1], d[2]});
   }
-  const int k = static_cast<int>(std::floor((slice - points.first_slice + 0.5) * points.slice_mm / step[2]));
+  const int k = base::FloorTo<int>((slice - points.first_slice + 0.5) * points.slice_mm / step[2]);
   if (k < 0 || k >= labels.size[2]) return {};
   const int width = labels.size[0], height = labels.size[1];
   const auto label_at = [&](int x, int y) -> int {

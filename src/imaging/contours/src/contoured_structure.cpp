@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "skipped_slices.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/contour_fill.h"
 #include "trocar/contours/contour_fit.h"
 #include "trocar/contours/contour_morph.h"
@@ -238,7 +239,7 @@ std::vector<meshing::FilledSlice> AddSlicesByShape(const ContouredStructure& con
       continue;
     }
     const ContourMatch match = MatchContours(contoured.curves[s][0], contoured.curves[s + 1][0]);
-    const int parts = static_cast<int>(std::ceil((b.position_mm - a.position_mm) / kSliceStepMm - 1e-9));
+    const int parts = base::CeilTo<int>((b.position_mm - a.position_mm) / kSliceStepMm - 1e-9);
     for (int part = 1; part < parts; ++part) {
       const double t = static_cast<double>(part) / parts;
       dense.push_back({a.position_mm + t * (b.position_mm - a.position_mm), FillArea({match.At(t)}, {})});

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/json.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/safe_file.h"
@@ -98,8 +99,8 @@ Structure ReadStructure(const ControlPoints& points, const JsonView& view, Compl
   structure.triangle_budget = view.Integer("triangle_budget", {100, 1000000});
   structure.reference_label = view.IntegerOr("reference_label", 0, {0, images::kLargestLabel});
   if (view.Has("reference_left_out")) {
-    const auto slices = view.Numbers("reference_left_out", 2);
-    structure.reference_left_out = {static_cast<int>(slices[0]), static_cast<int>(slices[1])};
+    const auto slices = view.Numbers("reference_left_out", 2, {-1e6, 1e6});
+    structure.reference_left_out = {base::TruncateTo<int>(slices[0]), base::TruncateTo<int>(slices[1])};
   }
   if (view.Has("adaption")) {
     const JsonView adaption = view.Object("adaption");

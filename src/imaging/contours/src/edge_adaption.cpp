@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/contour_spline.h"
 
 namespace trocar::contours {
@@ -78,7 +79,7 @@ std::vector<Vec2> AdaptToEdges(const EdgeField& picture, std::span<const Vec2> c
                                const EdgeAdaptionSettings& settings) {
   TROCAR_ASSERT(contour.size() >= 3);
   std::vector<Vec2> adapted(contour.begin(), contour.end());
-  const int reach = static_cast<int>(std::floor(settings.max_shift_px / kStep));
+  const int reach = base::FloorTo<int>(settings.max_shift_px / kStep);
   if (reach < 1) return adapted;
 
   // colour change along the normal at each shift, averaged along the contour; kPad more on both sides

@@ -6,6 +6,7 @@
 
 #include "tissue_colours.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::contours {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kDoubtful = 0.3;
 
 EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px, double depth_px) {
   EdgeEvidence evidence;
-  evidence.reach = static_cast<int>(std::floor(reach_px / strip.step_px + 1e-9));
+  evidence.reach = base::FloorTo<int>(reach_px / strip.step_px + 1e-9);
   const int columns = evidence.Columns(), all = strip.Columns(), pad = strip.reach - evidence.reach;
   TROCAR_ASSERT(pad >= 1);
   const auto rows = static_cast<int>(strip.rows);
@@ -41,13 +42,13 @@ EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double ro
   }
   // colours of the inside, of each row and then of the rows about it
   std::vector<ColourMoments> inside(strip.rows);
-  const int last = strip.reach - static_cast<int>(kDoubtful * evidence.reach);
-  const int first = std::clamp(strip.reach - static_cast<int>(depth_px / strip.step_px), 0, last);
+  const int last = strip.reach - base::TruncateTo<int>(kDoubtful * evidence.reach);
+  const int first = std::clamp(strip.reach - base::TruncateTo<int>(depth_px / strip.step_px), 0, last);
   for (int row = 0; row < rows; ++row) {
     const Colour* colours = &smooth[static_cast<std::size_t>(row) * all];
     for (int k = first; k <= last; k += 2) inside[row].Add(colours[k]);
   }
-  const int window = std::min(static_cast<int>(kWindowPx / row_px), (rows - 1) / 2);
+  const int window = std::min(base::TruncateTo<int>(kWindowPx / row_px), (rows - 1) / 2);
   ColourMoments about;
   const auto slide = [&](int row, double sign) {
     about.Add(inside[static_cast<std::size_t>((row % rows + rows) % rows)], sign);

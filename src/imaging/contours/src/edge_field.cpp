@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::contours {
@@ -14,7 +15,7 @@ using math::Vec2;
 namespace {
 
 std::vector<float> MakeGaussian(double sigma) {
-  const int radius = static_cast<int>(std::ceil(3.0 * sigma));
+  const int radius = base::CeilTo<int>(3.0 * sigma);
   std::vector<float> kernel(2 * static_cast<std::size_t>(radius) + 1);
   float sum = 0;
   for (int i = -radius; i <= radius; ++i) {
@@ -34,8 +35,8 @@ void AddScaled(Colour& sum, float weight, const Colour& value) {
 template <typename Pixel>
 Colour Interpolate(const Vec2& p, int width, int height, Pixel pixel) {
   const double x = std::clamp(p.x, 0.0, width - 1.0), y = std::clamp(p.y, 0.0, height - 1.0);
-  const int ix = std::min(static_cast<int>(x), std::max(0, width - 2));
-  const int iy = std::min(static_cast<int>(y), std::max(0, height - 2));
+  const int ix = std::min(base::TruncateTo<int>(x), std::max(0, width - 2));
+  const int iy = std::min(base::TruncateTo<int>(y), std::max(0, height - 2));
   const auto fx = static_cast<float>(x - ix), fy = static_cast<float>(y - iy);
   const std::size_t right = width > 1 ? 1 : 0, below = height > 1 ? static_cast<std::size_t>(width) : 0;
   const std::size_t at =

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "edge_cost.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::contours {
 
@@ -68,7 +69,8 @@ EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch&
     // the inside ends where the blurred edge begins; the edge itself is the steepest place next to it
     const double k = Climb(gradient, columns, path[row], kClimb);
     edge.at.push_back(curve.at[row] + ((k - reach) * kColumnStep) * curve.normal[row]);
-    edge.is_edge.push_back(gradient[std::lround(k)] >= least && evidence.rise[row * columns + path[row]] > 0);
+    edge.is_edge.push_back(gradient[base::RoundTo<std::size_t>(k)] >= least &&
+                           evidence.rise[row * columns + path[row]] > 0);
   }
   edge.curve = std::move(curve);
   return edge;
@@ -119,8 +121,8 @@ void LocateSharp(const EdgeField& field, EdgePath& edge) {
       gradient[k] = std::sqrt(squared);
     }
     const double offset = Dot(edge.at[row] - curve.at[row], curve.normal[row]) / kColumnStep;
-    const int start = std::clamp(static_cast<int>(std::lround(offset)) + kReach, kSharpClimb + 1,
-                                 kColumns - kSharpClimb - 2);
+    const int start =
+        std::clamp(base::RoundTo<int>(offset) + kReach, kSharpClimb + 1, kColumns - kSharpClimb - 2);
     const double k = Climb(gradient.data(), kColumns, start, kSharpClimb);
     edge.at[row] = edge.at[row] + ((k - kReach - offset) * kColumnStep) * curve.normal[row];
   }

@@ -8,6 +8,7 @@
 
 #include "even_places.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::contours {
 
@@ -105,7 +106,7 @@ EdgeStrip SampleStrip(const EdgeField& field, const ClosedCurve& curve, double r
   EdgeStrip strip;
   strip.rows = curve.at.size();
   strip.step_px = step_px;
-  strip.reach = static_cast<int>(std::floor(reach_px / step_px + 1e-9));
+  strip.reach = base::FloorTo<int>(reach_px / step_px + 1e-9);
   strip.colours.reserve(strip.rows * strip.Columns());
   for (std::size_t row = 0; row < strip.rows; ++row) {
     for (int k = -strip.reach; k <= strip.reach; ++k) {

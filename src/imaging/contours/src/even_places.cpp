@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::contours {
 
@@ -15,7 +16,7 @@ std::vector<PolylinePlace> FindEvenPlaces(std::span<const math::Vec2> polyline, 
   const auto side_length = [&](std::size_t side) { return Norm(polyline[(side + 1) % n] - polyline[side]); };
   double length = 0;
   for (std::size_t side = 0; side < n; ++side) length += side_length(side);
-  const auto count = static_cast<std::size_t>(
+  const auto count = base::TruncateTo<std::size_t>(
       std::clamp(std::ceil(length / step), static_cast<double>(fewest), static_cast<double>(most)));
   std::vector<PolylinePlace> places;
   places.reserve(count);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/contour_fill.h"
 #include "trocar/contours/contour_spline.h"
 #include "trocar/contours/reference_contours.h"
@@ -57,12 +58,12 @@ Box MakeBox(const GrowthRequest& request, const ShapePrior& prior, const Samplin
   Box box;
   const int step = request.slices.size() > 1 ? request.slices[1] - request.slices[0] : 1;
   const double slice_mm = points.slice_mm * step;
-  box.across = std::max(1, static_cast<int>(sampling.pixel_mm / points.pixel_mm + 0.3));
-  box.along = std::max(1, static_cast<int>(sampling.slice_mm / slice_mm + 0.3));
+  box.across = std::max(1, base::TruncateTo<int>(sampling.pixel_mm / points.pixel_mm + 0.3));
+  box.along = std::max(1, base::TruncateTo<int>(sampling.slice_mm / slice_mm + 0.3));
   box.volume.step_mm = {box.across * points.pixel_mm, box.across * points.pixel_mm, box.along * slice_mm};
   const auto fit = [](double centre, double half, int count, int block, int& begin) {
-    begin = std::clamp(static_cast<int>(centre - half), 0, count - 1) / block * block;
-    const int end = std::clamp(static_cast<int>(centre + half) + 1, begin + 1, count);
+    begin = std::clamp(base::TruncateTo<int>(centre - half), 0, count - 1) / block * block;
+    const int end = std::clamp(std::min(base::TruncateTo<int>(centre + half), count) + 1, begin + 1, count);
     return (end - begin + block - 1) / block;
   };
   // the directions of the picture are not those of the body: the longest extent holds for all
@@ -215,7 +216,7 @@ base::Status CheckPlace(const GrowthRequest& request, const Box& box, OrganRole 
   }
   if (nearest < 1e299 && nearest > kBesideLiver) {
     return Refused(
-        "what grew lies " + std::to_string(std::lround(nearest)) +
+        "what grew lies " + std::to_string(base::RoundTo<std::int64_t>(nearest)) +
         " mm from the liver's contours, and a gallbladder lies beside them; click into the gallbladder");
   }
   return {};
@@ -234,7 +235,7 @@ std::vector<SliceContours> DrawAround(const GrowthRequest& request, const Box& b
     if (static_cast<double>(voxels) * volume.step_mm[0] * volume.step_mm[1] >= kSmallest) layers.push_back(k);
   }
   // whole numbers of layers, the last one always
-  const auto every = static_cast<std::size_t>(std::max(1.0, std::round(contour_mm / volume.step_mm[2])));
+  const auto every = base::TruncateTo<std::size_t>(std::max(1.0, std::round(contour_mm / volume.step_mm[2])));
   std::vector<SliceContours> drawn;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const bool is_last = i + 1 == layers.size();
@@ -334,9 +335,8 @@ base::Result<GrownOrgan> GrowOrgan(const GrowthRequest& request, std::stop_token
       static_cast<int>((std::lower_bound(request.slices.begin(), request.slices.end(), request.slice) -
                         request.slices.begin() - box.first) /
                        box.along);
-  const std::array<int, 3> seed = {(static_cast<int>(std::lround(request.click.x)) - box.column) / box.across,
-                                   (static_cast<int>(std::lround(request.click.y)) - box.row) / box.across,
-                                   layer};
+  const std::array<int, 3> seed = {(base::RoundTo<int>(request.click.x) - box.column) / box.across,
+                                   (base::RoundTo<int>(request.click.y) - box.row) / box.across, layer};
   GrowthSettings settings;
   settings.prior = *prior;
   settings.uses_prior = request.uses_prior;

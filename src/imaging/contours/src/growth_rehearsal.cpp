@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "contoured_structure.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/contour_fill.h"
 #include "trocar/contours/contour_rehearsal.h"
 #include "trocar/contours/contour_spline.h"
@@ -199,7 +200,7 @@ class Rehearsal {
       if (areas[k] >= 0.5 * most) large.push_back(k);
     }
     const std::size_t k =
-        large[static_cast<std::size_t>(random_.Uniform() * static_cast<double>(large.size()))];
+        large[base::TruncateTo<std::size_t>(random_.Uniform() * static_cast<double>(large.size()))];
     const int width = labelled_.Map().size[0], height = labelled_.Map().size[1];
     std::vector<std::uint8_t> area;
     for (int y = 0; y < height; ++y) {
@@ -213,7 +214,7 @@ class Rehearsal {
         places.push_back({static_cast<double>(i % width), static_cast<double>(i / width)});
     }
     return {slices[k],
-            places[static_cast<std::size_t>(random_.Uniform() * static_cast<double>(places.size()))]};
+            places[base::TruncateTo<std::size_t>(random_.Uniform() * static_cast<double>(places.size()))]};
   }
 
   base::Status Correct(GrowthTrial& trial) {

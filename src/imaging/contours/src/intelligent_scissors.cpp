@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/edge_field.h"
 #include "trocar/math/elementary.h"
 
@@ -69,7 +70,7 @@ void IntelligentScissors::CalcCosts(const images::ColorImage& image) {
   }
   std::vector<float> sorted = size;
   const auto strong =
-      sorted.begin() + static_cast<std::ptrdiff_t>(kStrongShare * static_cast<double>(count - 1));
+      sorted.begin() + base::TruncateTo<std::ptrdiff_t>(kStrongShare * static_cast<double>(count - 1));
   std::nth_element(sorted.begin(), strong, sorted.end());
   const float strongest = std::max(*strong, 1e-6f);
 
@@ -78,8 +79,7 @@ void IntelligentScissors::CalcCosts(const images::ColorImage& image) {
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * width_ + x;
-      const int dx = static_cast<int>(std::lround(edge_y_[i])),
-                dy = static_cast<int>(std::lround(-edge_x_[i]));
+      const int dx = base::RoundTo<int>(edge_y_[i]), dy = base::RoundTo<int>(-edge_x_[i]);
       const auto size_at = [&](int u, int v) {
         return size[static_cast<std::size_t>(std::clamp(v, 0, height_ - 1)) * width_ +
                     std::clamp(u, 0, width_ - 1)];
@@ -95,8 +95,8 @@ void IntelligentScissors::CalcCosts(const images::ColorImage& image) {
 }
 
 void IntelligentScissors::SetSeed(const Vec2& seed) {
-  seed_x_ = static_cast<int>(std::lround(std::clamp(seed.x, 0.0, width_ - 1.0)));
-  seed_y_ = static_cast<int>(std::lround(std::clamp(seed.y, 0.0, height_ - 1.0)));
+  seed_x_ = base::RoundTo<int>(std::clamp(seed.x, 0.0, width_ - 1.0));
+  seed_y_ = base::RoundTo<int>(std::clamp(seed.y, 0.0, height_ - 1.0));
   x0_ = std::max(0, seed_x_ - settings_.reach_px), y0_ = std::max(0, seed_y_ - settings_.reach_px);
   window_width_ = std::min(width_ - 1, seed_x_ + settings_.reach_px) - x0_ + 1;
   window_height_ = std::min(height_ - 1, seed_y_ + settings_.reach_px) - y0_ + 1;
@@ -105,7 +105,7 @@ void IntelligentScissors::SetSeed(const Vec2& seed) {
 
   // Dial's algorithm: Dijkstra with one bucket a cost, used round and round
   const double dearest = settings_.crossing_weight + settings_.gradient_weight + settings_.direction_weight;
-  const auto span = static_cast<std::size_t>(std::ceil(kDiagonal * kCostUnits * (dearest + 0.1))) + 2;
+  const auto span = base::CeilTo<std::size_t>(kDiagonal * kCostUnits * (dearest + 0.1)) + 2;
   std::vector<std::vector<std::uint32_t>> buckets(span);
   std::vector<std::uint32_t> reached(count, ~0u);
   std::vector<std::uint8_t> is_done(count, 0);
@@ -135,7 +135,7 @@ void IntelligentScissors::SetSeed(const Vec2& seed) {
         const float across = 1.0f - 0.5f * (std::fabs(ux * edge_x_[p] + uy * edge_y_[p]) +
                                             std::fabs(ux * edge_x_[q] + uy * edge_y_[q]));
         const float step = length * (static_cost_[q] + direction_weight * across + 0.02f);
-        const std::uint32_t total = cost + static_cast<std::uint32_t>(step * kCostUnits + 0.5f);
+        const std::uint32_t total = cost + base::TruncateTo<std::uint32_t>(step * kCostUnits + 0.5f);
         if (total >= reached[to]) continue;
         reached[to] = total;
         came_from_[to] = s;
@@ -150,8 +150,8 @@ void IntelligentScissors::SetSeed(const Vec2& seed) {
 std::vector<Vec2> IntelligentScissors::PathTo(const Vec2& target) const {
   std::vector<Vec2> path;
   if (came_from_.empty()) return path;
-  const int target_x = static_cast<int>(std::lround(std::clamp(target.x, 0.0, width_ - 1.0)));
-  const int target_y = static_cast<int>(std::lround(std::clamp(target.y, 0.0, height_ - 1.0)));
+  const int target_x = base::RoundTo<int>(std::clamp(target.x, 0.0, width_ - 1.0));
+  const int target_y = base::RoundTo<int>(std::clamp(target.y, 0.0, height_ - 1.0));
   int x = std::clamp(target_x, x0_, x0_ + window_width_ - 1);
   int y = std::clamp(target_y, y0_, y0_ + window_height_ - 1);
   // beyond reach: straight on

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/contour_fill.h"
 #include "trocar/contours/contour_morph.h"
 #include "trocar/geometry/mesh_measures.h"
@@ -34,7 +35,7 @@ std::vector<meshing::FilledSlice> InsertMatched(const std::vector<meshing::Fille
     dense.push_back(slices[s]);
     if (s + 1 == slices.size() || curves[s].size() != 1 || curves[s + 1].size() != 1) continue;
     const double gap = slices[s + 1].position_mm - slices[s].position_mm;
-    const int parts = static_cast<int>(std::ceil(gap / step_mm - 1e-9));
+    const int parts = base::CeilTo<int>(gap / step_mm - 1e-9);
     if (parts < 2) continue;
     const ContourMatch match = MatchContours(curves[s][0], curves[s + 1][0]);
     for (int part = 1; part < parts; ++part) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::contours {
@@ -85,7 +86,7 @@ void Blur(std::vector<float>& values, const Lattice& at, double deviation_mm) {
   for (int axis = 0; axis < 3; ++axis) {
     const double deviation = deviation_mm / at.step[axis];
     if (deviation < 0.15) continue;
-    const int reach = static_cast<int>(std::ceil(2.5 * deviation)), n = at.size[axis];
+    const int reach = base::CeilTo<int>(2.5 * deviation), n = at.size[axis];
     std::vector<float> kernel;
     for (int i = 0; i <= reach; ++i)
       kernel.push_back(static_cast<float>(math::Exp(-0.5 * i * i / (deviation * deviation))));
@@ -146,7 +147,7 @@ double Median(std::vector<float>& values) {
 std::vector<std::size_t> FindBall(const Lattice& at, const std::array<int, 3>& seed, double radius) {
   std::vector<std::size_t> ball;
   std::array<int, 3> reach, d;
-  for (int axis = 0; axis < 3; ++axis) reach[axis] = static_cast<int>(radius / at.step[axis]);
+  for (int axis = 0; axis < 3; ++axis) reach[axis] = base::TruncateTo<int>(radius / at.step[axis]);
   for (d[2] = -reach[2]; d[2] <= reach[2]; ++d[2]) {
     for (d[1] = -reach[1]; d[1] <= reach[1]; ++d[1]) {
       for (d[0] = -reach[0]; d[0] <= reach[0]; ++d[0]) {
@@ -467,7 +468,7 @@ class Growth {
 
   base::Status CheckSize(const GrownRegion& grown) const {
     const ShapePrior& prior = settings_.prior;
-    const std::string ml = std::to_string(std::lround(grown.volume_ml)) + " mL";
+    const std::string ml = std::to_string(base::RoundTo<std::int64_t>(grown.volume_ml)) + " mL";
     const std::string remedy = "; click elsewhere in it, or draw it by hand";
     if (grown.volume_ml < prior.least_ml)
       return Refused("what grew from the click measures " + ml + ", too little for the organ" + remedy);
@@ -486,7 +487,7 @@ class Growth {
     for (int axis = 0; axis < 3; ++axis) {
       const double extent = (high[axis] - low[axis] + 1) * at_.step[axis];
       if (extent > prior.most_mm[axis])
-        return Refused("what grew from the click is " + std::to_string(std::lround(extent)) +
+        return Refused("what grew from the click is " + std::to_string(base::RoundTo<std::int64_t>(extent)) +
                        " mm long, too long for the organ: it ran over into a neighbour of the same grey" +
                        remedy);
     }

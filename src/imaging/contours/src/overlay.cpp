@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::contours {
 
@@ -26,17 +27,17 @@ void Put(images::ColorImage& image, int x, int y, const Colour& colour) {
 }
 
 void DrawSquare(images::ColorImage& image, const Vec2& p, int half, const Colour& colour) {
-  const int cx = static_cast<int>(std::lround(p.x)), cy = static_cast<int>(std::lround(p.y));
+  const int cx = base::RoundTo<int>(p.x), cy = base::RoundTo<int>(p.y);
   for (int y = -half; y <= half; ++y) {
     for (int x = -half; x <= half; ++x) Put(image, cx + x, cy + y, colour);
   }
 }
 
 void DrawLine(images::ColorImage& image, const Vec2& a, const Vec2& b, const Colour& colour) {
-  const int steps = std::max(1, static_cast<int>(std::ceil(2 * Norm(b - a))));
+  const int steps = std::max(1, base::CeilTo<int>(2 * Norm(b - a)));
   for (int i = 0; i <= steps; ++i) {
     const Vec2 p = a + (static_cast<double>(i) / steps) * (b - a);
-    Put(image, static_cast<int>(std::lround(p.x)), static_cast<int>(std::lround(p.y)), colour);
+    Put(image, base::RoundTo<int>(p.x), base::RoundTo<int>(p.y), colour);
   }
 }
 
@@ -54,10 +55,10 @@ images::ColorImage DrawOverlay(const images::ColorImage& photograph, const Overl
   for (const ContourStages& contour : overlay.contours) include(contour.placed), include(contour.curve);
   include(overlay.tube_points);
   if (low_x > high_x) low_x = low_y = 0, high_x = photograph.width - 1, high_y = photograph.height - 1;
-  const int x0 = std::max(0, static_cast<int>(low_x) - kMargin),
-            y0 = std::max(0, static_cast<int>(low_y) - kMargin);
-  const int x1 = std::min(photograph.width - 1, static_cast<int>(high_x) + kMargin);
-  const int y1 = std::min(photograph.height - 1, static_cast<int>(high_y) + kMargin);
+  const int x0 = std::max(0, base::TruncateTo<int>(low_x) - kMargin),
+            y0 = std::max(0, base::TruncateTo<int>(low_y) - kMargin);
+  const int x1 = std::min(photograph.width - 1, base::TruncateTo<int>(high_x) + kMargin);
+  const int y1 = std::min(photograph.height - 1, base::TruncateTo<int>(high_y) + kMargin);
 
   images::ColorImage picture{(x1 - x0 + 1) * scale, (y1 - y0 + 1) * scale, {}};
   picture.samples.resize(static_cast<std::size_t>(picture.width) * picture.height * 3);
@@ -72,7 +73,7 @@ images::ColorImage DrawOverlay(const images::ColorImage& photograph, const Overl
       for (int c = 0; c < 3; ++c) {
         const double value = photograph.At(px, py)[c];
         const double drawn = is_tinted ? (1 - kTintShare) * value + kTintShare * kTint[c] : value;
-        picture.At(x, y)[c] = static_cast<std::uint8_t>(drawn);
+        picture.At(x, y)[c] = base::TruncateTo<std::uint8_t>(drawn);
       }
     }
   }

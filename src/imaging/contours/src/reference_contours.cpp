@@ -9,6 +9,7 @@
 #include <string>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::contours {
 
@@ -93,7 +94,7 @@ base::Result<std::array<double, 3>> FindLabelStep(const images::LabelVolume& lab
 
 std::vector<Outline> TraceLabel(const images::LabelVolume& labels, const ControlPoints& points,
                                 const std::array<double, 3>& step, int label, int slice) {
-  const int k = static_cast<int>(std::floor((slice - points.first_slice + 0.5) * points.slice_mm / step[2]));
+  const int k = base::FloorTo<int>((slice - points.first_slice + 0.5) * points.slice_mm / step[2]);
   if (k < 0 || k >= labels.size[2]) return {};
   constexpr int kMargin = 4;
   const int width = labels.size[0] + 2 * kMargin, height = labels.size[1] + 2 * kMargin;

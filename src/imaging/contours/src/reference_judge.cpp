@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/contours/reference_contours.h"
 #include "trocar/meshing/mesh_slice.h"
 
@@ -32,7 +33,7 @@ base::Result<Judgement> Judge(const images::LabelVolume& reference, const Contro
     const auto row_position = [&](int j) { return (j + 0.5) * step[1] - 0.5 * points.pixel_mm + kNudge; };
     for (meshing::SliceSegment s : meshing::CutMesh(mesh, slice * points.slice_mm + kNudge)) {
       if (s.a.y > s.b.y) std::swap(s.a, s.b);
-      int j = std::max(0, static_cast<int>(std::floor((s.a.y + 0.5 * points.pixel_mm) / step[1] - 0.5)));
+      int j = std::max(0, base::FloorTo<int>((s.a.y + 0.5 * points.pixel_mm) / step[1] - 0.5));
       for (; j < reference.size[1] && row_position(j) < s.b.y; ++j) {
         if (row_position(j) >= s.a.y)
           crossings[j].push_back(s.a.x + (s.b.x - s.a.x) * (row_position(j) - s.a.y) / (s.b.y - s.a.y));

@@ -16,6 +16,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "trocar/base/to_integer.h"
+
 namespace trocar::images::import {
 namespace {
 
@@ -202,8 +204,10 @@ class TextSamples {
             number < static_cast<double>(std::numeric_limits<Stored>::max()) + 1.0) ||
           number != std::floor(number))
         throw Failure{ErrorCode::kImageUndecodable, "one of the samples in its text is beyond its type"};
+      return base::TruncateTo<Stored>(number);
+    } else {
+      return static_cast<Stored>(number);
     }
-    return static_cast<Stored>(number);
   }
   [[noreturn]] static void FailAtNoNumber() {
     throw Failure{ErrorCode::kImageUndecodable, "one of the samples in its text is no number"};

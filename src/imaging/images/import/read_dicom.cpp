@@ -27,6 +27,7 @@
 #include "dicom_structure.h"
 #include "header_text.h"
 #include "reader.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::images::import {
 namespace {
@@ -128,9 +129,7 @@ Palette ReadPalette(const gdcm::DataSet& data) {
 
 /// Source: PS3.3 section C.7.6.3.1.2, YBR_FULL.
 std::array<std::uint8_t, 3> ToRgb(double y, double b, double r) {
-  const auto byte = [](double value) {
-    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
-  };
+  const auto byte = [](double value) { return base::RoundTo<std::uint8_t>(std::clamp(value, 0.0, 255.0)); };
   b -= 128, r -= 128;
   return {byte(y + 1.402 * r), byte(y - 0.344136 * b - 0.714136 * r), byte(y + 1.772 * b)};
 }
@@ -276,7 +275,8 @@ std::int64_t ToMilliseconds(std::string_view date, std::string_view time) {
 /// What may tell the volumes of one series apart.
 void ReadKeys(FrameElements& elements, ImageHeader& header) {
   const auto set = [&](DicomKey key, std::optional<double> value, double scale) {
-    header.keys[static_cast<std::size_t>(key)] = value ? std::llround(*value * scale) : kKeyNotSaid;
+    header.keys[static_cast<std::size_t>(key)] =
+        value ? base::RoundTo<std::int64_t>(*value * scale) : kKeyNotSaid;
   };
   const auto set_text = [&](DicomKey key, std::string_view text) {
     // half the hash: its sign says nothing
@@ -440,7 +440,7 @@ void ReadFrame(const gdcm::DataSet& data, std::size_t frame, std::uint32_t frame
   if (frames > 1)
     header.instance_number = static_cast<std::int32_t>(frame) + 1;
   else if (instance && std::fabs(*instance) < 1e6)
-    header.instance_number = static_cast<std::int32_t>(*instance);
+    header.instance_number = base::TruncateTo<std::int32_t>(*instance);
 }
 
 /// All but the pixels.
@@ -460,7 +460,7 @@ void ReadHeader(const Job& job, const DicomFile& file, ImageHeader& header) {
     if (frames[0] > job.request.most_side)
       throw Failure{ErrorCode::kImageTooLarge,
                     "it has more than " + std::to_string(job.request.most_side) + " frames"};
-    header.depth = static_cast<std::uint32_t>(frames[0]);
+    header.depth = base::TruncateTo<std::uint32_t>(frames[0]);
   }
   const std::uint64_t pixel_bytes = ReadPixelKind(data, header) / 8;
   ReadFrame(data, 0, header.depth, header);
@@ -590,8 +590,8 @@ void DarkenPadding(const Padding& padding, const ImageHeader& header, Sample* sa
   const double dark = header.is_ct != 0 ? (kAirHu - header.intercept) / header.slope
                       : (header.is_inverted != 0) != (header.slope < 0) ? most
                                                                         : least;
-  const auto filling = static_cast<Sample>(std::lround(std::clamp(
-      dark, double{std::numeric_limits<Sample>::min()}, double{std::numeric_limits<Sample>::max()})));
+  const auto filling = base::RoundTo<Sample>(std::clamp(dark, double{std::numeric_limits<Sample>::min()},
+                                                        double{std::numeric_limits<Sample>::max()}));
   for (std::size_t i = 0; i < count; ++i) {
     if (is_padded[i] != 0) samples[i] = filling;
   }

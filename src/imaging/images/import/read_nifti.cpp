@@ -15,6 +15,7 @@
 #include "byte_source.h"
 #include "header_text.h"
 #include "reader.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::images::import {
 namespace {
@@ -275,14 +276,14 @@ std::uint64_t FindVoxels(double begin, const Layout& layout, const InputFile& fi
     throw Failure{ErrorCode::kImageUndecodable,
                   "where its voxels begin (vox_offset) is no place behind its header"};
   }
-  return static_cast<std::uint64_t>(begin);
+  return base::TruncateTo<std::uint64_t>(begin);
 }
 
 /// Where they begin in the .img of a pair.
 std::uint64_t FindVoxelsOfPair(double begin) {
   if (!(begin >= 0 && begin < 1e15) || begin != std::floor(begin))
     throw Failure{ErrorCode::kImageUndecodable, "where its voxels begin (vox_offset) is no place in a file"};
-  return static_cast<std::uint64_t>(begin);
+  return base::TruncateTo<std::uint64_t>(begin);
 }
 
 }  // namespace

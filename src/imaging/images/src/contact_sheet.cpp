@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::images {
 namespace {
@@ -86,8 +87,8 @@ base::Result<ColorImage> DrawContactSheet(const ImageSeries& series, const Displ
   if (!pictures) return pictures.error();
 
   const double scale = static_cast<double>(settings.tile) / std::max(info.width, info.height);
-  const int width = std::max(1, static_cast<int>(info.width * scale));
-  const int height = std::max(1, static_cast<int>(info.height * scale));
+  const int width = std::max(1, base::TruncateTo<int>(info.width * scale));
+  const int height = std::max(1, base::TruncateTo<int>(info.height * scale));
   const int columns =
       static_cast<int>(std::min<std::size_t>(shown, static_cast<std::size_t>(settings.columns)));
   const int rows = (static_cast<int>(shown) + columns - 1) / columns;

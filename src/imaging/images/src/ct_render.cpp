@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 #include "trocar/math/vector.h"
@@ -70,12 +71,12 @@ struct Overlaps {
   std::vector<std::vector<Part>> parts;  // of each voxel
 
   Overlaps(int count, double step, double wanted) {
-    const int made = std::max(1, static_cast<int>(count * step / wanted + 1e-9));
+    const int made = std::max(1, base::TruncateTo<int>(count * step / wanted + 1e-9));
     for (int m = 0; m < made; ++m) {
       const double low = m * wanted, high = low + wanted;
       std::vector<Part>& list = parts.emplace_back();
       double total = 0;
-      for (int i = static_cast<int>(low / step); i < count && i * step < high; ++i) {
+      for (int i = base::TruncateTo<int>(low / step); i < count && i * step < high; ++i) {
         const double share = std::min(high, (i + 1) * step) - std::max(low, i * step);
         if (share > 1e-9) list.push_back({i, static_cast<float>(share)}), total += share;
       }
@@ -86,7 +87,7 @@ struct Overlaps {
 };
 
 std::vector<float> MakeKernel(double deviation_px) {
-  const int reach = static_cast<int>(std::ceil(3 * deviation_px));
+  const int reach = base::CeilTo<int>(3 * deviation_px);
   std::vector<float> kernel;
   float total = 0;
   for (int i = -reach; i <= reach; ++i) {
@@ -250,7 +251,7 @@ base::Result<CtVolume> RenderCt(const TissueVolume& tissues, const CtSettings& s
       for (std::size_t i = 0; i < plane; ++i) {
         const double value = picture[i] + settings.noise_hu * grain[i];
         volume.hounsfield[k * plane + i] =
-            static_cast<std::int16_t>(std::clamp(std::lround(value), -1024L, 3071L));
+            static_cast<std::int16_t>(std::clamp(base::RoundTo<int>(value), -1024, 3071));
       }
     });
   }
@@ -262,7 +263,7 @@ int LabelAt(const LabelVolume& labels, const std::array<double, 3>& p) {
   std::size_t at = 0, stride = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 step = StepOf(labels, axis);
-    const long place = std::lround(Dot(from_first, step) / Dot(step, step));
+    const int place = base::RoundTo<int>(Dot(from_first, step) / Dot(step, step));
     if (place < 0 || place >= labels.size[axis]) return 0;
     at += stride * static_cast<std::size_t>(place);
     stride *= labels.size[axis];

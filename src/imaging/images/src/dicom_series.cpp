@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/printable.h"
 #include "trocar/host/translate.h"
 #include "trocar/math/elementary.h"
@@ -112,7 +113,7 @@ class Distances {
       const bool is_multiple = whole >= 2 && std::fabs(ratio - whole) <= kUnevenShare * whole;
       const bool is_long = run.Count() >= kLeastRun;
       const bool are_missing =
-          is_multiple && (is_long ? NumbersJump(run, static_cast<int>(whole)) : !NumbersGoOn(run));
+          is_multiple && (is_long ? NumbersJump(run, base::TruncateTo<int>(whole)) : !NumbersGoOn(run));
       if (!are_missing) {
         if (is_long || IsTransition(r)) continue;
         return Differ(run, usual);
@@ -225,7 +226,7 @@ class Distances {
 std::vector<SlicePlace> SpreadEvenly(std::span<const Placed> placed, double step) {
   std::vector<SlicePlace> places;
   const double begin = placed.front().along, length = placed.back().along - begin;
-  const auto count = static_cast<std::size_t>(std::floor(length / step + kUnevenShare)) + 1;
+  const auto count = base::FloorTo<std::size_t>(length / step + kUnevenShare) + 1;
   std::size_t below = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double at = begin + static_cast<double>(i) * step;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/printable.h"
 #include "trocar/host/translate.h"
 
@@ -308,7 +309,8 @@ int MakeId(const DicomVolume& volume) {
   for (const std::uint32_t number : {header.width, header.height, header.is_localizer}) AddTo(hash, number);
   for (int axis = 0; axis < 2; ++axis) {
     for (int k = 0; k < 3; ++k)
-      AddTo(hash, static_cast<std::uint64_t>(std::llround(100 * header.direction[axis][k]) + 1000));
+      AddTo(hash,
+            static_cast<std::uint64_t>(base::RoundTo<std::int64_t>(100 * header.direction[axis][k]) + 1000));
   }
   for (const char c : volume.part) AddTo(hash, static_cast<unsigned char>(c));
   constexpr std::uint64_t kLeast = 100001, kGreatest = 999999999;

@@ -8,6 +8,7 @@
 #include "series_content.h"
 #include "series_geometry.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/host/printable.h"
 #include "trocar/images/slice_names.h"
 #include "volume_file.h"
@@ -60,8 +61,8 @@ ColorImage RenderBetween(const Content& content, const SlicePlace& place, const 
     const ColorImage other =
         RenderSlice(above, content.SamplesOf(place.below + 1), window, info.width, info.height);
     for (std::size_t i = 0; i < mixed.samples.size(); ++i) {
-      mixed.samples[i] = static_cast<std::uint8_t>(
-          std::lround(mixed.samples[i] + place.part * (other.samples[i] - mixed.samples[i])));
+      mixed.samples[i] =
+          base::RoundTo<std::uint8_t>(mixed.samples[i] + place.part * (other.samples[i] - mixed.samples[i]));
     }
     return mixed;
   }

@@ -7,6 +7,7 @@
 
 #include "import_worker.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/host/printable.h"
 #include "trocar/host/translate.h"
 
@@ -147,7 +148,7 @@ base::Result<ImportReply> ImportPool::Probe(const ImportFile& file, const Import
   request.most_side = limits_.most_side;
   request.most_bytes = limits_.most_bytes;
   request.is_size_believed = limits_.is_size_believed;
-  request.seconds = static_cast<std::uint32_t>(limits_.seconds) + kGraceSeconds;
+  request.seconds = base::TruncateTo<std::uint32_t>(limits_.seconds) + kGraceSeconds;
   const int descriptors[] = {file.Get(), data_file != nullptr ? data_file->Get() : -1};
   auto answer = Ask(request, {descriptors, data_file != nullptr ? 2u : 1u}, limits_.seconds);
   if (answer && answer->code != 0 && refused != nullptr) *refused = answer->header;
@@ -165,7 +166,7 @@ base::Result<std::vector<ImageHeader>> ImportPool::ProbeFrames(const ImportFile&
   request.most_side = limits_.most_side;
   request.most_bytes = limits_.most_bytes;
   request.is_size_believed = limits_.is_size_believed;
-  request.seconds = static_cast<std::uint32_t>(limits_.seconds) + kGraceSeconds;
+  request.seconds = base::TruncateTo<std::uint32_t>(limits_.seconds) + kGraceSeconds;
   request.capacity = bytes;
   const int descriptors[] = {file.Get(), buffer->Get()};
   const auto answer = Ask(request, descriptors, limits_.seconds);
@@ -202,7 +203,7 @@ base::Status ImportPool::Decode(const ImportFile& file, const ImportFile* data_f
   request.most_side = limits_.most_side;
   request.most_bytes = limits_.most_bytes;
   request.is_size_believed = limits_.is_size_believed;
-  request.seconds = static_cast<std::uint32_t>(seconds) + kGraceSeconds;
+  request.seconds = base::TruncateTo<std::uint32_t>(seconds) + kGraceSeconds;
   request.offset = offset;
   request.capacity = bytes;
   std::vector<int> descriptors = {file.Get()};

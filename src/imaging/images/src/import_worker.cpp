@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/printable.h"
 #include "trocar/host/program.h"
@@ -175,12 +176,12 @@ base::Result<ImportReply> ImportWorker::Ask(const ImportRequest& request, std::s
   for (;;) {
     const double left = seconds - stopwatch.Seconds();
     pollfd wait{socket_.Get(), POLLIN, 0};
-    const int ready = left > 0 ? ::poll(&wait, 1, static_cast<int>(std::min(1e3 * left, 1e9)) + 1) : 0;
+    const int ready = left > 0 ? ::poll(&wait, 1, base::TruncateTo<int>(std::min(1e3 * left, 1e9)) + 1) : 0;
     if (ready < 0 && errno == EINTR) continue;
     if (ready > 0) break;
     End();
-    return Error{ErrorCode::kImportTimedOut, "its reader did not finish within " +
-                                                 std::to_string(static_cast<int>(std::ceil(seconds))) + " s"};
+    return Error{ErrorCode::kImportTimedOut,
+                 "its reader did not finish within " + std::to_string(base::CeilTo<int>(seconds)) + " s"};
   }
   ImportReply reply;
   if (!ReceiveMessage(socket_.Get(), &reply, sizeof(reply), {})) return FindCause();

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::images {
@@ -133,8 +134,9 @@ base::Result<LabelVolume> AlignLabels(LabelVolume labels, const ImageSeriesInfo&
       for (int i = 0; i < images.size[0]; ++i, ++at) {
         const Vec3 voxel = begin + i * along;
         if (!map.Holds(voxel)) continue;
-        const auto x = static_cast<std::size_t>(voxel.x + 0.5), y = static_cast<std::size_t>(voxel.y + 0.5),
-                   z = static_cast<std::size_t>(voxel.z + 0.5);
+        const auto x = base::TruncateTo<std::size_t>(voxel.x + 0.5),
+                   y = base::TruncateTo<std::size_t>(voxel.y + 0.5),
+                   z = base::TruncateTo<std::size_t>(voxel.z + 0.5);
         aligned.labels[at] = labels.labels[(z * map.size[1] + y) * map.size[0] + x];
       }
     }

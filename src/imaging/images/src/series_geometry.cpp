@@ -9,6 +9,7 @@
 
 #include "image_frame.h"
 #include "series_content.h"
+#include "trocar/base/to_integer.h"
 #include "volume_file.h"
 
 namespace trocar::images {
@@ -135,7 +136,7 @@ base::Status SetGeometry(const SaidGeometry& said, const ImageHeader& header,
   if (finer > 0) {
     const auto resampled = [&](std::uint32_t stored, double spacing) {
       if (spacing <= finer * (1 + kSquare)) return static_cast<int>(stored);
-      return static_cast<int>(std::lround((stored - 1) * spacing / finer)) + 1;
+      return base::TruncateTo<int>(std::round((stored - 1) * spacing / finer) + 1);
     };
     info.width = resampled(header.width, said.spacing[0]);
     info.height = resampled(header.height, said.spacing[1]);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/host/printable.h"
 
 namespace trocar::images {
@@ -60,7 +61,7 @@ std::uint8_t Shade(double value, const DisplayWindow& window, bool is_inverted) 
   const double share =
       std::isfinite(value) ? (value - (window.centre - 0.5 * window.width)) / window.width : 0.0;
   const double clamped = std::clamp(share, 0.0, 1.0);
-  return static_cast<std::uint8_t>(std::lround(255.0 * (is_inverted ? 1.0 - clamped : clamped)));
+  return base::RoundTo<std::uint8_t>(255.0 * (is_inverted ? 1.0 - clamped : clamped));
 }
 
 /// Where picture index `at` of `made` lies among `stored` samples.
@@ -73,7 +74,7 @@ std::vector<Between> MakeSteps(std::uint32_t stored, int made) {
   const double ratio = made > 1 ? static_cast<double>(stored - 1) / (made - 1) : 0.0;
   for (int at = 0; at < made; ++at) {
     const double place = at * ratio;
-    const auto low = std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(stored - 1));
+    const auto low = std::min(base::TruncateTo<std::size_t>(place), static_cast<std::size_t>(stored - 1));
     const std::size_t high = std::min(low + 1, static_cast<std::size_t>(stored - 1));
     steps.push_back({low, high, place - static_cast<double>(low)});
   }
@@ -173,7 +174,7 @@ std::string CopyLabels(const ImageHeader& header, const std::byte* samples, std:
       if (label != std::floor(label)) return FormatValue(label) + " is no whole number";
       if (label < 0) return FormatValue(label) + " is negative";
       if (label > largest) return FormatValue(label) + " is larger than " + FormatValue(largest);
-      labels[i] = static_cast<std::int32_t>(label);
+      labels[i] = base::TruncateTo<std::int32_t>(label);
     }
     return {};
   });
@@ -197,7 +198,7 @@ GreyStatistics MeasureGrey(const ImageHeader& header, const std::byte* samples, 
     for (std::size_t i = 0; i < count; ++i) {
       const double value = at(i);
       if (!std::isfinite(value)) continue;
-      ++bins[static_cast<std::size_t>((value - least) * scale)];
+      ++bins[base::TruncateTo<std::size_t>((value - least) * scale)];
       ++counted;
     }
     const auto find = [&](double share) {
@@ -250,7 +251,7 @@ ColorImage RenderSlice(const ImageHeader& header, const std::byte* samples, cons
             mixed += row.part * (below - mixed);
           }
           if (channels == 3) {
-            image.samples[out++] = static_cast<std::uint8_t>(std::lround(mixed));
+            image.samples[out++] = base::RoundTo<std::uint8_t>(mixed);
             continue;
           }
           const std::uint8_t shade =

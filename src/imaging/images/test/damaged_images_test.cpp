@@ -231,6 +231,9 @@ std::vector<Case> MakeNrrdAndMetaCases() {
       {"MetaSpacingZero", ErrorCode::kImageGeometryInvalid, "a.mha", Meta({"ElementSpacing = 0.5 0 2"})},
       {"MetaSpacingNotANumber", ErrorCode::kImageGeometryInvalid, "a.mha",
        Meta({"ElementSpacing = 0.5 nan 2"})},
+      // 2^32 pixels once they are square: no side of 32 bits
+      {"MetaSpacingFarFromSquare", ErrorCode::kImageGeometryInvalid, "a.mha",
+       Meta({"ElementSpacing = 0.5 429496729.6 2"})},
       {"MetaTwoAnswers", ErrorCode::kImageUndecodable, "a.mha",
        [] { return "ObjectType = Image\nDimSize = 2 2 2\n" + MakeMetaImage().substr(19); }},
       {"MetaWithoutData", ErrorCode::kImageTruncated, "a.mha",

@@ -10,6 +10,7 @@
 
 #include "connected_parts.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::meshing {
 namespace {
@@ -73,7 +74,7 @@ void Blur(ScalarVolume& volume, int rounds) {
 /// Moves the surface so that `volume_mm3` lies inside: what a blur took comes back.
 void SetInsideVolume(ScalarVolume& volume, double volume_mm3) {
   const auto wanted =
-      static_cast<std::size_t>(volume_mm3 / (volume.spacing * volume.spacing * volume.spacing));
+      base::TruncateTo<std::size_t>(volume_mm3 / (volume.spacing * volume.spacing * volume.spacing));
   // the level lies near zero: only what is near needs an order
   for (double reach = 2.0 * volume.spacing;; reach *= 4.0) {
     std::vector<float> near;
@@ -112,12 +113,12 @@ std::vector<std::size_t> KeepLargestPart(images::LabelVolume& labels, int label)
 std::vector<FilledSlice> FillLabelSlices(const images::LabelVolume& labels, int label,
                                          const std::array<double, 3>& voxel_mm, double pixel_mm) {
   const auto plane = static_cast<std::size_t>(labels.size[0]) * labels.size[1];
-  const int width = static_cast<int>(std::ceil(labels.size[0] * voxel_mm[0] / pixel_mm));
-  const int height = static_cast<int>(std::ceil(labels.size[1] * voxel_mm[1] / pixel_mm));
+  const int width = base::CeilTo<int>(labels.size[0] * voxel_mm[0] / pixel_mm);
+  const int height = base::CeilTo<int>(labels.size[1] * voxel_mm[1] / pixel_mm);
   std::vector<std::size_t> column(static_cast<std::size_t>(width));
   for (int x = 0; x < width; ++x) {
-    column[static_cast<std::size_t>(x)] =
-        static_cast<std::size_t>(std::min<long>(labels.size[0] - 1, std::lround(x * pixel_mm / voxel_mm[0])));
+    column[static_cast<std::size_t>(x)] = static_cast<std::size_t>(
+        std::min(labels.size[0] - 1, base::RoundTo<int>(x * pixel_mm / voxel_mm[0])));
   }
   std::vector<FilledSlice> all(static_cast<std::size_t>(labels.size[2]));
   oneapi::tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {
@@ -127,7 +128,7 @@ std::vector<FilledSlice> FillLabelSlices(const images::LabelVolume& labels, int 
     std::vector<std::uint8_t> inside(static_cast<std::size_t>(width) * height);
     for (int y = 0; y < height; ++y) {
       const auto j = static_cast<std::size_t>(
-          std::min<long>(labels.size[1] - 1, std::lround(y * pixel_mm / voxel_mm[1])));
+          std::min(labels.size[1] - 1, base::RoundTo<int>(y * pixel_mm / voxel_mm[1])));
       const auto* row = slice + j * static_cast<std::size_t>(labels.size[0]);
       auto* to = &inside[static_cast<std::size_t>(y) * width];
       for (std::size_t x = 0; x < column.size(); ++x) to[x] = row[column[x]] == label ? 1 : 0;
@@ -150,7 +151,7 @@ base::Result<ScalarVolume> MakeLabelVolume(std::vector<FilledSlice> slices, doub
   auto volume = MakeVolume(slices, pixel_mm, settings.spacing_mm);
   if (!volume.ok()) return volume.error();
   const double reach = settings.blur_mm / settings.spacing_mm;
-  Blur(*volume, static_cast<int>(std::lround(reach * reach)));
+  Blur(*volume, base::RoundTo<int>(reach * reach));
   SetInsideVolume(*volume, enclosed_mm3);
   return volume;
 }

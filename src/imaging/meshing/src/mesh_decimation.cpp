@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "editable_surface.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/elementary.h"
 #include "trocar/meshing/mesh_smoothing.h"
@@ -239,7 +240,7 @@ base::Result<TriangleMesh> DecimateMesh(const TriangleMesh& mesh, const Decimati
   // without
   std::optional<TriangleMesh> bulk;
   for (double factor = settings.bulk_factor; !bulk; factor *= 2) {
-    const auto wanted = static_cast<std::size_t>(factor * static_cast<double>(budget));
+    const auto wanted = base::TruncateTo<std::size_t>(factor * static_cast<double>(budget));
     if (wanted >= mesh.triangles.size()) break;
     bulk = SimplifyInBulk(mesh, wanted, before.genus);
   }

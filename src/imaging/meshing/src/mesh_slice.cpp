@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "trocar/base/to_integer.h"
+
 namespace trocar::meshing {
 
 using math::Vec2;
@@ -82,7 +84,7 @@ std::vector<float> CalcCoverage(const std::vector<SliceSegment>& segments, const
   for (const SliceSegment& segment : segments) {
     const Vec2& low = segment.a.y < segment.b.y ? segment.a : segment.b;
     const Vec2& high = segment.a.y < segment.b.y ? segment.b : segment.a;
-    int row = std::max(0, static_cast<int>(std::floor((low.y + 0.5 * grid.pixel) / step - 0.5)));
+    int row = std::max(0, base::FloorTo<int>((low.y + 0.5 * grid.pixel) / step - 0.5));
     for (; row < rows && sample_at(row) < high.y; ++row) {
       const double y = sample_at(row);
       if (y >= low.y) crossings[row].push_back(low.x + (high.x - low.x) * (y - low.y) / (high.y - low.y));
@@ -93,7 +95,7 @@ std::vector<float> CalcCoverage(const std::vector<SliceSegment>& segments, const
     auto& xs = crossings[row];
     std::sort(xs.begin(), xs.end());
     for (std::size_t i = 0; i + 1 < xs.size(); i += 2) {
-      int column = std::max(0, static_cast<int>(std::ceil((xs[i] + 0.5 * grid.pixel) / step - 0.5)));
+      int column = std::max(0, base::CeilTo<int>((xs[i] + 0.5 * grid.pixel) / step - 0.5));
       for (; column < columns && sample_at(column) < xs[i + 1]; ++column)
         coverage[static_cast<std::size_t>(row / samples) * grid.width + column / samples] += share;
     }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/elementary.h"
 
@@ -27,7 +28,7 @@ NearestSurface::NearestSurface(const geometry::TriangleMesh& mesh) : mesh_(mesh)
   cell_ =
       std::max(2.0 * std::sqrt(area / static_cast<double>(mesh.triangles.size())), longest / kMaxCellsAnAxis);
   origin_ = box.min;
-  for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(extent[axis] / cell_) + 1;
+  for (int axis = 0; axis < 3; ++axis) size_[axis] = base::TruncateTo<int>(extent[axis] / cell_) + 1;
 
   balls_.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
@@ -72,7 +73,7 @@ NearestSurface::NearestSurface(const geometry::TriangleMesh& mesh) : mesh_(mesh)
 std::array<int, 3> NearestSurface::CellOf(const Vec3& p) const {
   std::array<int, 3> cell;
   for (int axis = 0; axis < 3; ++axis) {
-    cell[axis] = static_cast<int>(std::clamp((p[axis] - origin_[axis]) / cell_, 0.0, size_[axis] - 1.0));
+    cell[axis] = base::TruncateTo<int>(std::clamp((p[axis] - origin_[axis]) / cell_, 0.0, size_[axis] - 1.0));
   }
   return cell;
 }

@@ -11,6 +11,7 @@
 
 #include "banded_distance.h"
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::meshing {
 namespace {
@@ -104,7 +105,7 @@ std::vector<float> SampleSlice(const std::vector<float>& fine, int width, std::a
   std::vector<float> part(column.size());
   for (int i = 0; i < lattice.size[0]; ++i) {
     const double x = (lattice.first[0] + i) * lattice.spacing / pixel_mm - corner[0];
-    column[static_cast<std::size_t>(i)] = static_cast<int>(x);
+    column[static_cast<std::size_t>(i)] = base::TruncateTo<int>(x);
     part[static_cast<std::size_t>(i)] = static_cast<float>(x - column[static_cast<std::size_t>(i)]);
   }
   std::vector<float> coarse;
@@ -112,7 +113,7 @@ std::vector<float> SampleSlice(const std::vector<float>& fine, int width, std::a
   const auto scale = static_cast<float>(pixel_mm);
   for (int j = 0; j < lattice.size[1]; ++j) {
     const double y = (lattice.first[1] + j) * lattice.spacing / pixel_mm - corner[1];
-    const int iy = static_cast<int>(y);
+    const int iy = base::TruncateTo<int>(y);
     const auto part_y = static_cast<float>(y - iy);
     const float* row = &fine[static_cast<std::size_t>(iy) * width];
     for (std::size_t i = 0; i < column.size(); ++i) {
@@ -226,7 +227,7 @@ std::vector<FilledSlice> InsertSlices(std::span<const FilledSlice> slices, doubl
     dense.push_back(slices[s]);
     if (s + 1 == slices.size()) break;
     const FilledSlice &a = slices[s], &b = slices[s + 1];
-    const int parts = static_cast<int>(std::ceil((b.position_mm - a.position_mm) / step_mm - 1e-9));
+    const int parts = base::CeilTo<int>((b.position_mm - a.position_mm) / step_mm - 1e-9);
     if (parts < 2) continue;
     // both in one rectangle
     images::Mask frame;
@@ -305,7 +306,7 @@ std::vector<double> CalcSignedDistances(std::span<const std::uint8_t> set, int w
 }
 
 void OpenMask(images::Mask& mask, double radius_px) {
-  const int band = static_cast<int>(std::ceil(radius_px)) + 2;
+  const int band = base::CeilTo<int>(radius_px) + 2;
   if (band > kWidestBand || mask.inside.empty()) return;
   const auto depth = CalcBandedDistances(mask.inside, mask.width, mask.height, band);
   std::vector<std::uint8_t> core(mask.inside.size());
@@ -331,7 +332,7 @@ base::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
     x0 = std::min(x0, slice.mask.x0), y0 = std::min(y0, slice.mask.y0);
     x1 = std::max(x1, slice.mask.x0 + slice.mask.width), y1 = std::max(y1, slice.mask.y0 + slice.mask.height);
   }
-  const int margin = static_cast<int>(std::ceil((kMarginMm + 2 * spacing_mm) / pixel_mm));
+  const int margin = base::CeilTo<int>((kMarginMm + 2 * spacing_mm) / pixel_mm);
   x0 -= margin, y0 -= margin, x1 += margin, y1 += margin;
   const int width = x1 - x0, height = y1 - y0;
 
@@ -346,8 +347,8 @@ base::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
   const double high[3] = {(x1 - 2) * pixel_mm, (y1 - 2) * pixel_mm,
                           slices.back().position_mm + ends[1] + spacing_mm};
   for (int axis = 0; axis < 3; ++axis) {
-    volume.first[axis] = static_cast<int>(std::ceil(low[axis] / spacing_mm));
-    volume.size[axis] = static_cast<int>(std::floor(high[axis] / spacing_mm)) - volume.first[axis] + 1;
+    volume.first[axis] = base::CeilTo<int>(low[axis] / spacing_mm);
+    volume.size[axis] = base::FloorTo<int>(high[axis] / spacing_mm) - volume.first[axis] + 1;
   }
   const std::size_t plane = static_cast<std::size_t>(volume.size[0]) * volume.size[1];
   volume.values.resize(plane * volume.size[2]);
@@ -361,7 +362,7 @@ base::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
     if (s > 0) widest_gap = std::max(widest_gap, knots[s] - knots[s - 1]);
   }
   const double band_mm = std::max({kBandMm, kBandSpacings * spacing_mm, kBandGaps * widest_gap});
-  const int band = std::clamp(static_cast<int>(std::ceil(band_mm / pixel_mm)), 4, kWidestBand);
+  const int band = std::clamp(base::CeilTo<int>(band_mm / pixel_mm), 4, kWidestBand);
   std::vector<std::vector<float>> distances(n);
   std::vector<float> deepest(n);
   oneapi::tbb::parallel_for(std::size_t{0}, n, [&](std::size_t s) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sliver_removal.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/meshing/marching_cubes.h"
 #include "trocar/meshing/mesh_decimation.h"
 
@@ -61,7 +62,7 @@ double CalcShareLost(const ScalarVolume& volume, const ScalarVolume& half) {
   std::vector<std::size_t> inside(static_cast<std::size_t>(volume.size[2])), lost(inside.size());
   oneapi::tbb::parallel_for(0, volume.size[2], [&](int k) {
     const auto coarse = [&](int axis, int fine) {
-      return std::clamp(static_cast<int>(std::floor((volume.first[axis] + fine) / 2.0)) - half.first[axis], 0,
+      return std::clamp(base::FloorTo<int>((volume.first[axis] + fine) / 2.0) - half.first[axis], 0,
                         half.size[axis] - 1);
     };
     for (int j = 0; j < volume.size[1]; ++j) {
@@ -136,7 +137,7 @@ base::Result<Attempt> MeshSurface(const FirstSurface& surface, double enclosed, 
                                   const MeshingSettings& settings) {
   TriangleMesh smooth = surface.mesh;
   SmoothingSettings smoothing = settings.smoothing;
-  smoothing.iterations = static_cast<int>(std::lround(share * surface.rounds * smoothing.iterations));
+  smoothing.iterations = base::RoundTo<int>(share * surface.rounds * smoothing.iterations);
   SmoothMesh(smooth, smoothing);
   SetVolume(smooth, enclosed);
   auto decimated = DecimateMesh(smooth, {.triangle_budget = settings.triangle_budget});
@@ -144,7 +145,7 @@ base::Result<Attempt> MeshSurface(const FirstSurface& surface, double enclosed, 
   Attempt attempt{{std::move(*decimated), {}, {}}};
   RepairSettings repair;
   repair.min_angle_deg = settings.min_angle_deg;
-  repair.fewest_triangles = static_cast<std::size_t>(std::ceil(kFewest * settings.triangle_budget));
+  repair.fewest_triangles = base::CeilTo<std::size_t>(kFewest * settings.triangle_budget);
   attempt.made.repair = RepairMesh(attempt.made.mesh, repair);
   attempt.slivers = RemoveSlivers(attempt.made.mesh, {.least_angle_deg = settings.sliver_angle_deg,
                                                       .fewest_triangles = repair.fewest_triangles});
@@ -159,8 +160,8 @@ ScalarVolume HalveResolution(const ScalarVolume& volume) {
   half.spacing = 2.0 * volume.spacing;
   for (int axis = 0; axis < 3; ++axis) {
     // every coarse sample that a fine one reaches
-    half.first[axis] = static_cast<int>(std::floor(volume.first[axis] / 2.0));
-    const int last = static_cast<int>(std::floor((volume.first[axis] + volume.size[axis]) / 2.0));
+    half.first[axis] = base::FloorTo<int>(volume.first[axis] / 2.0);
+    const int last = base::FloorTo<int>((volume.first[axis] + volume.size[axis]) / 2.0);
     half.size[axis] = last - half.first[axis] + 1;
   }
   half.values.assign(static_cast<std::size_t>(half.size[0]) * half.size[1] * half.size[2], outside);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/file_lock.h"
 #include "trocar/host/json.h"
 #include "trocar/host/json_text.h"
@@ -54,7 +55,7 @@ Attempt ReadAttempt(const JsonView& view) {
   attempt.task = view.Text("task");
   attempt.level = view.TextOr("level", "");
   attempt.patient = view.TextOr("patient", "");
-  attempt.seed = static_cast<std::uint64_t>(view.NumberOr("seed", 0, kSeed));
+  attempt.seed = base::TruncateTo<std::uint64_t>(view.NumberOr("seed", 0, kSeed));
   attempt.from = ReadMilestone(view, "from", Milestone::kStart);
   attempt.until = ReadMilestone(view, "until", Milestone::kCompleted);
   attempt.started = view.TextOr("started", "");

@@ -8,6 +8,7 @@
 #include "exam_json.h"
 #include "private_key.h"
 #include "signing.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/host/json.h"
 #include "trocar/host/safe_file.h"
 #include "trocar/record/replay.h"
@@ -74,7 +75,7 @@ Certificate ReadFields(const JsonView& root) {
   c.program = root.Text("program");
   c.compiler = root.Text("compiler");
   const JsonView recording = root.Object("recording");
-  c.recording_bytes = static_cast<std::uint64_t>(recording.Number("bytes", kBytes));
+  c.recording_bytes = base::TruncateTo<std::uint64_t>(recording.Number("bytes", kBytes));
   c.recording_hash = recording.Text("blake2b_256");
   c.outcome = root.Text("outcome");
   for (const JsonView& view : root.Array("metrics")) {

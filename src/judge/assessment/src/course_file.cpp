@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "trocar/assessment/course.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/files/task_file.h"
 #include "trocar/host/data_folder.h"
 #include "trocar/host/json.h"
@@ -51,7 +52,7 @@ void ReadTaskOf(const JsonView& view, const Known& known, Step& step) {
     if (view.Has(key))
       Refuse(view, std::string(key) + " belongs to an operation, not to a task; take it out");
   }
-  if (view.Has("seed")) step.seed = static_cast<std::uint64_t>(view.Number("seed", kSeed));
+  if (view.Has("seed")) step.seed = base::TruncateTo<std::uint64_t>(view.Number("seed", kSeed));
   const auto task = std::find_if(known.tasks.begin(), known.tasks.end(),
                                  [&](const auto& one) { return one.key == step.task; });
   if (task == known.tasks.end()) {
@@ -79,7 +80,7 @@ PatientChoice ReadPatient(const JsonView& view, const fs::path& folder) {
       Refuse(view, "set belongs to a generated patient; give its seed in place of the folder");
     return patient;
   }
-  patient.seed = static_cast<std::uint64_t>(view.Number("seed", kSeed));
+  patient.seed = base::TruncateTo<std::uint64_t>(view.Number("seed", kSeed));
   if (view.Has("set")) {
     const JsonView settings = view.Object("set");
     for (const std::string& name : settings.Keys()) patient.settings.emplace_back(name, settings.Text(name));

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::assessment {
@@ -103,7 +104,7 @@ std::optional<std::size_t> LearningCurve::AttemptsUntil(double value) const {
   if (!(plateau < value) || !(gain > 0)) return std::nullopt;
   const double n = std::ceil(Pow(gain / (value - plateau), 1 / rate));
   if (!(n <= kMostAttempts)) return std::nullopt;
-  return static_cast<std::size_t>(n);
+  return base::TruncateTo<std::size_t>(n);
 }
 
 base::Result<LearningCurve> FitLearningCurve(std::span<const double> values) {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/text_table.h"
 
 namespace trocar::assessment {
@@ -20,7 +21,7 @@ constexpr double kExpertPercentile = 0.10, kNovicePercentile = 0.90;  // of comp
 double CalcQuantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
+  const auto below = base::TruncateTo<std::size_t>(place);
   const std::size_t above = std::min(below + 1, values.size() - 1);
   return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }

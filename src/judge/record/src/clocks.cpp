@@ -5,6 +5,8 @@
 #include <cmath>
 #include <ctime>
 
+#include "trocar/base/to_integer.h"
+
 namespace trocar::record {
 namespace {
 
@@ -33,7 +35,7 @@ ClockReading ReadClocks() {
 }
 
 std::string FormatWallClock(double wall) {
-  const auto time = static_cast<std::time_t>(std::floor(wall));
+  const auto time = base::FloorTo<std::time_t>(wall);
   std::tm local{};
   ::localtime_r(&time, &local);
   char text[40];

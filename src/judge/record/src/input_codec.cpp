@@ -7,6 +7,7 @@
 
 #include "input_fields.h"
 #include "trocar/base/state_archive.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::record {
 
@@ -37,7 +38,7 @@ bool HaveSameBits(double a, double b) {
 bool FindMultiple(double value, std::int64_t& multiple) {
   const double scaled = std::ldexp(value, kGridBits);
   if (!(std::abs(scaled) < kMostMultiple)) return false;
-  multiple = static_cast<std::int64_t>(scaled);
+  multiple = base::TruncateTo<std::int64_t>(scaled);
   return HaveSameBits(std::ldexp(static_cast<double>(multiple), -kGridBits), value);
 }
 

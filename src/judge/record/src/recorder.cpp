@@ -21,6 +21,7 @@
 #include "recording_json.h"
 #include "state_coder.h"
 #include "state_index.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/log.h"
 #include "trocar/host/real_time.h"
@@ -79,9 +80,7 @@ std::string JumpText(double jump, double wall) {
 }
 
 std::uint64_t TicksIn(double seconds, double tick_seconds) {
-  return seconds > 0
-             ? std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(seconds / tick_seconds)))
-             : 0;
+  return seconds > 0 ? std::max<std::uint64_t>(1, base::RoundTo<std::uint64_t>(seconds / tick_seconds)) : 0;
 }
 
 /// How many ticks lie between two of each kind; 0: none are written.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "state_index.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/threads.h"
 #include "trocar/record/outcome.h"
@@ -39,7 +40,7 @@ Replay::Replay(std::shared_ptr<const Recording> recording, Model model, Simulati
 
 std::uint64_t Replay::TicksIn(double seconds) const {
   return std::max<std::uint64_t>(
-      1, static_cast<std::uint64_t>(std::llround(seconds / recording_->description.tick_seconds)));
+      1, base::RoundTo<std::uint64_t>(seconds / recording_->description.tick_seconds));
 }
 
 base::Result<Replay> Replay::Open(Recording recording, int threads) {

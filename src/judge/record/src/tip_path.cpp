@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "trocar/base/to_integer.h"
+
 namespace trocar::record {
 
 std::span<const math::Vec3> TipPath::Between(std::size_t hand, double from, double until) const {
@@ -12,7 +14,7 @@ std::span<const math::Vec3> TipPath::Between(std::size_t hand, double from, doub
   if (all.empty() || step <= 0) return {};
   const auto last = static_cast<double>(all.size() - 1);
   const auto place = [&](double time) {
-    return static_cast<std::size_t>(std::clamp(std::floor((time - first_time) / step + 0.5), 0.0, last));
+    return base::TruncateTo<std::size_t>(std::clamp(std::floor((time - first_time) / step + 0.5), 0.0, last));
   };
   const std::size_t begin = place(from), end = std::max(begin, place(until));
   return std::span(all).subspan(begin, end - begin + 1);
@@ -20,7 +22,7 @@ std::span<const math::Vec3> TipPath::Between(std::size_t hand, double from, doub
 
 TipPath CalcTipPath(const scene::Scene& scene, const Recording& recording, double step) {
   const double tick_seconds = recording.description.tick_seconds;
-  const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(step / tick_seconds)));
+  const auto stride = std::max<std::size_t>(1, base::RoundTo<std::size_t>(step / tick_seconds));
   TipPath path;
   path.step = static_cast<double>(stride) * tick_seconds;
   path.first_time = static_cast<double>(recording.FirstTick() + 1) * tick_seconds;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/math/elementary.h"
 #include "trocar/record/replay.h"
@@ -357,7 +358,7 @@ void TraceBuilder::Content::AddJudgement(const Snapshot& now) {
 }
 
 void TraceBuilder::Reserve(double seconds) {
-  const auto ticks = static_cast<std::size_t>(seconds / content_->trace.dt) + 1;
+  const auto ticks = base::TruncateTo<std::size_t>(seconds / content_->trace.dt) + 1;
   for (auto& hand : content_->trace.hands) hand.reserve(ticks);
   content_->trace.camera.reserve(ticks);
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "trocar/base/to_integer.h"
+
 namespace trocar::training {
 namespace {
 
@@ -19,10 +21,10 @@ void CompletePart(AttemptPart& part, const AttemptTrace& trace, const MetricSett
   if (ticks == 0) return;
   const double step = 1.0 / settings.sample_rate_hz;
   const auto count =
-      static_cast<std::size_t>(std::floor(static_cast<double>(ticks - 1) * trace.dt / step + kTimeSlack)) + 1;
+      base::FloorTo<std::size_t>(static_cast<double>(ticks - 1) * trace.dt / step + kTimeSlack) + 1;
   part.has_sample.resize(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const auto tick = static_cast<std::size_t>(std::floor(static_cast<double>(k) * step / trace.dt + 0.5));
+    const auto tick = base::FloorTo<std::size_t>(static_cast<double>(k) * step / trace.dt + 0.5);
     part.has_sample[k] = part.has_tick[std::min(tick, ticks - 1)];
   }
 }
@@ -73,7 +75,7 @@ bool AttemptPart::HasEvent(const AttemptTrace& trace, double time) const {
   if (has_tick.empty()) return false;
   const double tick =
       std::clamp(std::floor(time / trace.dt + 0.5), 0.0, static_cast<double>(has_tick.size() - 1));
-  return has_tick[static_cast<std::size_t>(tick)] != 0;
+  return has_tick[base::TruncateTo<std::size_t>(tick)] != 0;
 }
 
 std::vector<AttemptPart> FindParts(const AttemptTrace& trace, const MetricSettings& settings) {

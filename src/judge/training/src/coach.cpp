@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/json.h"
 #include "trocar/training/coach_measures.h"
 
@@ -245,7 +246,7 @@ std::vector<Advice> CoachAttempt(const AttemptTrace& trace, const AttemptMetrics
 }
 
 std::string FormatMoment(double seconds) {
-  const auto whole = static_cast<long long>(std::floor(std::max(0.0, seconds)));
+  const auto whole = base::FloorTo<long long>(std::max(0.0, seconds));
   char text[32];
   std::snprintf(text, sizeof text, "%lld:%02lld", whole / 60, whole % 60);
   return text;

@@ -10,6 +10,7 @@
 
 #include "trocar/base/assert.h"
 #include "trocar/base/statistics.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/training/signal.h"
 
 namespace trocar::training {
@@ -112,7 +113,7 @@ using Motions = std::array<Motion, instrument::kHandCount>;
 CoachMeasure CalcTremor(const AttemptTrace& trace) {
   CoachMeasure measure{"tremor", 0, std::nullopt};
   double most_in_window = -1;
-  const auto window = std::max<std::size_t>(1, static_cast<std::size_t>(kTremorWindow / trace.dt));
+  const auto window = std::max<std::size_t>(1, base::TruncateTo<std::size_t>(kTremorWindow / trace.dt));
   for (std::size_t h = 0; h < trace.hands.size(); ++h) {
     const std::vector<Vec3> high = SmoothTips(trace.hands[h], trace.dt, kTremorHigh),
                             low = SmoothTips(trace.hands[h], trace.dt, kTremorLow);

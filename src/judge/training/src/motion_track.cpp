@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 #include "trocar/training/signal.h"
 
@@ -99,7 +100,7 @@ std::vector<double> CalcSpeed(const std::vector<Vec3>& x, double step) {
 
 /// Speed from half a window before to half a window after, as far as there are samples.
 std::vector<double> CalcSlowSpeed(const std::vector<Vec3>& x, const MetricSettings& settings) {
-  const auto half = static_cast<std::size_t>(
+  const auto half = base::TruncateTo<std::size_t>(
       std::max(1.0, std::floor(0.5 * settings.idle_window * settings.sample_rate_hz + 0.5)));
   std::vector<double> speed(x.size(), 0.0);
   for (std::size_t k = 0; k < x.size(); ++k) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 
 namespace trocar::training {
@@ -47,12 +48,11 @@ std::vector<double> ResampleEvenly(std::span<const double> values, double step, 
   if (values.empty()) return result;
   const std::size_t last = values.size() - 1;
   // a whole number of steps may come out a rounding error short
-  const auto count =
-      static_cast<std::size_t>(std::floor(static_cast<double>(last) * step / new_step + 1e-9)) + 1;
+  const auto count = base::FloorTo<std::size_t>(static_cast<double>(last) * step / new_step + 1e-9) + 1;
   result.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double at = std::min(static_cast<double>(i) * new_step / step, static_cast<double>(last));
-    const std::size_t k = std::min(static_cast<std::size_t>(at), last == 0 ? 0 : last - 1);
+    const std::size_t k = std::min(base::TruncateTo<std::size_t>(at), last == 0 ? 0 : last - 1);
     const double t = at - static_cast<double>(k);
     const double p1 = values[k], p2 = values[std::min(k + 1, last)];
     // beyond the ends the signal goes on straight
@@ -72,7 +72,7 @@ std::vector<double> FilterLowPass(std::span<const double> values, double step, d
   if (values.size() < 2 || corner * step >= 0.5) return result;
 
   // continue both ends by point reflection for about one and a half periods of the cutoff
-  const auto wanted = static_cast<std::size_t>(std::ceil(1.5 / (corner * step)));
+  const auto wanted = base::CeilTo<std::size_t>(1.5 / (corner * step));
   const std::size_t pad = std::min(wanted, values.size() - 1);
   std::vector<double> padded;
   padded.reserve(values.size() + 2 * pad);

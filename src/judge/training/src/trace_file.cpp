@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/json.h"
 
 namespace trocar::training {
@@ -167,7 +168,7 @@ std::vector<ToolSample> ReadHand(const JsonView& view, std::size_t ticks, std::s
     const bool is_tool = column.member == &ToolSample::tool;
     const host::NumberRange range{is_tool ? 0.0 : -1.0, static_cast<double>(is_tool ? tools : organs) - 1.0};
     ReadColumn(view, column.name, ticks, [&](std::size_t i, const JsonView& v) {
-      hand[i].*column.member = static_cast<std::int16_t>(v.AsNumber(range));
+      hand[i].*column.member = base::TruncateTo<std::int16_t>(v.AsNumber(range));
     });
   }
   for (const auto& column : kFlags) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::environment {
 
@@ -41,7 +42,7 @@ std::string InFull(double value) {
 /// Place in a row of `count` equal parts of -1 to 1.
 std::size_t PartOf(double value, std::size_t count) {
   const double part = 0.5 * (value + 1) * static_cast<double>(count);
-  return std::min(count - 1, static_cast<std::size_t>(std::max(part, 0.0)));
+  return std::min(count - 1, base::TruncateTo<std::size_t>(std::max(part, 0.0)));
 }
 
 /// Of the parts of PartOf.
@@ -169,7 +170,7 @@ Motion ActionLayout::ReadDiscrete(std::span<const double> action, scene::Input& 
   std::size_t next = 0;
   const auto take = [&] {
     const double most = static_cast<double>(fields_[next].choices) - 1;
-    return static_cast<std::size_t>(std::clamp(std::floor(action[next++]), 0.0, most));
+    return base::TruncateTo<std::size_t>(std::clamp(std::floor(action[next++]), 0.0, most));
   };
   for (int hand = 0; hand < kHandCount; ++hand) {
     auto choice = take();

@@ -17,6 +17,7 @@
 #include "reward.h"
 #include "state_layout.h"
 #include "trocar/base/state_archive.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/environment/environment.h"
 #include "trocar/files/task_file.h"
 #include "trocar/math/random.h"
@@ -96,8 +97,7 @@ struct Environment::Content {
   }
   scene::LiveSettings CalcSettings(const EpisodeDraw& of_episode) const;
   std::size_t LateTicks(const EpisodeDraw& of_episode) const {
-    return static_cast<std::size_t>(
-        std::lround(of_episode.Get(Varied::kLatency) / simulation.GetScene().tick_seconds));
+    return base::RoundTo<std::size_t>(of_episode.Get(Varied::kLatency) / simulation.GetScene().tick_seconds);
   }
   /// Another simulation where the episode needs one.
   struct Place {

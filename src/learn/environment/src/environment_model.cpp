@@ -4,6 +4,7 @@
 
 #include "environment_content.h"
 #include "episode.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/files/find_scene.h"
 #include "trocar/host/json.h"
 #include "trocar/host/safe_file.h"
@@ -122,8 +123,7 @@ base::Result<std::shared_ptr<EnvironmentModel>> EnvironmentModel::Make(const Env
   const scene::Scene& scene = simulation->GetScene();
   if (made.settings.most_seconds == 0) made.settings.most_seconds = UsualSeconds(scene);
   made.settings.moves_camera = made.settings.moves_camera || IsAboutCamera(scene);
-  made.ticks =
-      std::max(1, static_cast<int>(std::lround(1 / (settings.actions_per_second * scene.tick_seconds))));
+  made.ticks = std::max(1, base::RoundTo<int>(1 / (settings.actions_per_second * scene.tick_seconds)));
   made.action = std::make_unique<const ActionLayout>(scene, made.settings);
   made.state = std::make_unique<const StateLayout>(*simulation, samples);
   return model;

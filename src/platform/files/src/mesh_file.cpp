@@ -9,6 +9,7 @@
 #include <sstream>
 #include <vector>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/host/safe_file.h"
 
@@ -233,7 +234,7 @@ base::Result<geometry::TriangleMesh> ParsePly(std::string_view content, std::str
         for (int i = 0; i < 3; ++i) {
           if (!(face[i] >= 0 && face[i] < 4294967295.0))
             return fail("face " + std::to_string(entry) + " has a bad index");
-          triangle[i] = static_cast<std::uint32_t>(face[i]);
+          triangle[i] = base::TruncateTo<std::uint32_t>(face[i]);
         }
         mesh.triangles.push_back(triangle);
       }

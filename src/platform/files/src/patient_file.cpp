@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "patient_surroundings.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/files/mesh_file.h"
 #include "trocar/files/patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
@@ -52,7 +53,7 @@ math::Vec3 PointFrom(const JsonView& view, std::string_view key) {
 std::uint32_t IndexFrom(const JsonView& view) {
   const double value = view.AsNumber(kIndex);
   if (value != std::floor(value)) view.Complain("must be a whole number");
-  return static_cast<std::uint32_t>(value);
+  return base::TruncateTo<std::uint32_t>(value);
 }
 
 /// The role that is stated, or that of the name.

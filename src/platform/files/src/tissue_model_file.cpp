@@ -7,6 +7,7 @@
 
 #include "field_ranges.h"
 #include "scene_objects.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/patient/patient.h"
 #include "trocar/procedures/find_procedure.h"
 
@@ -42,7 +43,7 @@ patient::Tube ReadTube(const JsonView& view, const math::Vec3& origin) {
   const double length = math::Distance(from, to);
   if (!(length >= kShortest))
     view.Complain("from_mm and to_mm must be at least 5 mm apart", ErrorCode::kSceneInvalid);
-  const int pieces = std::max(4, static_cast<int>(std::lround(length / spacing)));
+  const int pieces = std::max(4, base::RoundTo<int>(length / spacing));
   for (int i = 0; i <= pieces; ++i) {
     const double s = static_cast<double>(i) / pieces;
     tube.line.points.push_back(math::Lerp(from, to, s) - math::Vec3{0, 0, 4 * sag * s * (1 - s)});
@@ -87,9 +88,7 @@ scene::ModelSheet ReadSheet(const JsonView& view, const math::Vec3& origin) {
 /// A grid of triangles that faces up, its border in a region of its own.
 patient::Organ MakeSheet(const scene::ModelSheet& sheet) {
   patient::Organ organ{sheet.name, {}, {{kHeldRegion, {}}}};
-  const auto count = [&](double half) {
-    return static_cast<std::uint32_t>(std::lround(2 * half / sheet.spacing));
-  };
+  const auto count = [&](double half) { return base::RoundTo<std::uint32_t>(2 * half / sheet.spacing); };
   const std::uint32_t columns = count(sheet.half.x), rows = count(sheet.half.y);
   for (std::uint32_t j = 0; j <= rows; ++j) {
     for (std::uint32_t i = 0; i <= columns; ++i) {

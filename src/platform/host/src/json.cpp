@@ -13,6 +13,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/json_text.h"
 #include "trocar/host/printable.h"
 #include "trocar/host/safe_file.h"
@@ -407,7 +408,7 @@ int JsonView::Integer(std::string_view key, NumberRange range) const {
   const JsonView child = Child(key);
   const double value = child.AsNumber(range);
   if (value != std::floor(value)) child.Complain("must be a whole number");
-  return static_cast<int>(value);
+  return base::TruncateTo<int>(value);
 }
 
 int JsonView::IntegerOr(std::string_view key, int fallback, NumberRange range) const {

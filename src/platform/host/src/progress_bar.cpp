@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/host/clock.h"
 #include "trocar/host/printable_output.h"
 #include "trocar/host/translate.h"
@@ -33,7 +34,7 @@ void ProgressBar::Show(double done) {
   last_ = now;
   is_drawn_ = true;
   const double fraction = total_ > 0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
-  const int full = static_cast<int>(fraction * kBarCells);
+  const int full = base::TruncateTo<int>(fraction * kBarCells);
   const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                           std::string(static_cast<std::size_t>(kBarCells - full), '.');
   WriteControl(stderr, "\r");

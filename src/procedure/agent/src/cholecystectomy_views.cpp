@@ -8,6 +8,7 @@
 
 #include "cholecystectomy_steps.h"
 #include "seen_fibres.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/cholecystectomy/cholecystectomy.h"
 #include "view_planner.h"
 
@@ -93,7 +94,7 @@ std::string ExplainMissingView(const SurgeonView& view, const WaysLeft& ways) {
   const scene::ProcedureSnapshot& seen = view.seen.operation.procedure;
   const scene::ViewScore& score = seen.view;
   const auto percent = [&](cholecystectomy::Measure share) {
-    return std::to_string(std::lround(100 * seen.Measure(share))) + " %";
+    return std::to_string(base::RoundTo<std::int64_t>(100 * seen.Measure(share))) + " %";
   };
   std::string why;
   const auto add = [&](const std::string& text) { why += (why.empty() ? "" : "; ") + text; };
@@ -106,7 +107,7 @@ std::string ExplainMissingView(const SurgeonView& view, const WaysLeft& ways) {
         percent(cholecystectomy::kDetachedShare) + " of the bed is free");
   }
   if (!score.IsWhole(cholecystectomy::kTwoStructures))
-    add(std::to_string(std::lround(seen.Measure(cholecystectomy::kStructuresEntering))) +
+    add(std::to_string(base::RoundTo<std::int64_t>(seen.Measure(cholecystectomy::kStructuresEntering))) +
         " structures enter the gallbladder, and not each of them could be bared");
   if (score.AreCriteriaWhole())
     add("front and back of the triangle could not both be brought into the picture");

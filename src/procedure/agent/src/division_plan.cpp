@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "trocar/agent/hand_motion.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/collision/segment_distance.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/math/elementary.h"
@@ -95,7 +96,7 @@ Vec3 TubeLine::At(double arc) const {
 
 double TubeLine::RadiusAt(double arc) const {
   const double share = std::clamp(arc / std::max(1e-9, Length()), 0.0, 1.0);
-  return radii[static_cast<std::size_t>(std::lround(share * static_cast<double>(radii.size() - 1)))];
+  return radii[base::RoundTo<std::size_t>(share * static_cast<double>(radii.size() - 1))];
 }
 
 Vec3 TubeLine::DirectionAt(double arc) const {

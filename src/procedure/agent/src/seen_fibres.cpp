@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "trocar/base/to_integer.h"
+
 namespace trocar::agent {
 
 namespace {
@@ -93,7 +95,7 @@ std::vector<std::uint32_t> FindPeelStrands(const SurgeonView& view, const std::v
   }
   std::sort(along.begin(), along.end());
   if (is_from_fundus) std::reverse(along.begin(), along.end());
-  along.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kPeelShare * along.size())));
+  along.resize(std::max<std::size_t>(1, base::TruncateTo<std::size_t>(kPeelShare * along.size())));
   std::vector<std::uint32_t> peel;
   for (const auto& [place, strand] : along) peel.push_back(strand);
   return peel;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "state_fields.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 #include "trocar/math/random.h"
 
@@ -27,7 +28,7 @@ SkilledSurgeon::SkilledSurgeon(std::unique_ptr<Surgeon> hands, const SurgeonSkil
       phase_[axis][i] = random.Uniform(0.0, 2 * M_PI);
     }
   }
-  waiting_.resize(static_cast<std::size_t>(std::lround(skill.delay / tick_seconds)));
+  waiting_.resize(base::RoundTo<std::size_t>(skill.delay / tick_seconds));
 }
 
 scene::Input SkilledSurgeon::Act(const simulation::Snapshot& seen) {

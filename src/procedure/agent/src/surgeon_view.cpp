@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/instrument/camera.h"
 #include "trocar/math/elementary.h"
 #include "trocar/tissue/rest_frame.h"
@@ -28,7 +29,7 @@ const instrument::Tool& SurgeonView::ToolOf(int hand) const {
 Vec3 SurgeonView::TubePoint(std::size_t tube, double share) const {
   const auto& nodes = known.tube_nodes[tube];
   const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(nodes.size() - 1);
-  const auto i = std::min(nodes.size() - 2, static_cast<std::size_t>(at));
+  const auto i = std::min(nodes.size() - 2, base::TruncateTo<std::size_t>(at));
   return math::Lerp(seen.positions[nodes[i]], seen.positions[nodes[i + 1]], at - static_cast<double>(i));
 }
 

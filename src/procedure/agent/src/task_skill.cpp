@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "task_surgeon.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::agent {
 
@@ -87,7 +88,8 @@ void TaskSurgeon::Anticipate(const TaskAct& act, const Snapshot& seen) {
 bool TaskSurgeon::BeginAtTheWrongPlace(const Snapshot& seen, std::size_t goal) {
   if (!(random_.Uniform() < skill_.wrong_plan)) return false;
   const Task& task = *scene_->task;
-  const auto first = static_cast<std::size_t>(random_.Uniform(0.0, static_cast<double>(task.goals.size())));
+  const auto first =
+      base::TruncateTo<std::size_t>(random_.Uniform(0.0, static_cast<double>(task.goals.size())));
   for (std::size_t n = 0; n < task.goals.size(); ++n) {
     const std::size_t g = (first + n) % task.goals.size();
     if (g == goal || task.goals[g].steps.empty()) continue;

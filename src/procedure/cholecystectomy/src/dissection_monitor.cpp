@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 #include "trocar/math/elementary.h"
 #include "trocar/math/state_fields.h"
 
@@ -25,7 +26,7 @@ DissectionMonitor::DissectionMonitor(DissectedAnatomy anatomy, std::span<const V
     : anatomy_(std::move(anatomy)) {
   TROCAR_ASSERT(anatomy_.exposable.size() == anatomy_.entering.size());
   for (const DissectedAnatomy::BedFibre& fibre : anatomy_.bed)
-    bed_bins_.push_back(static_cast<std::uint8_t>(
+    bed_bins_.push_back(base::TruncateTo<std::uint8_t>(
         std::clamp(fibre.along * static_cast<double>(kBins), 0.0, static_cast<double>(kBins - 1))));
   for (const std::uint32_t node : anatomy_.neck) neck_rest_.push_back(rest[node]);
   if (!anatomy_.cystic_duct.empty())

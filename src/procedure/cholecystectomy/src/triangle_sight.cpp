@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/base/assert.h"
+#include "trocar/base/to_integer.h"
 
 namespace trocar::cholecystectomy {
 
@@ -36,13 +37,13 @@ TriangleSight::TriangleSight(std::vector<std::uint32_t> cystic_duct, std::vector
 std::span<const Vec3> TriangleSight::FindPoints(std::span<const Vec3> positions) noexcept {
   TROCAR_ASSERT(HasTriangle());
   const auto at = [&](const std::vector<std::uint32_t>& nodes, double share) {
-    return positions[nodes[static_cast<std::size_t>(share * static_cast<double>(nodes.size() - 1))]];
+    return positions[nodes[base::TruncateTo<std::size_t>(share * static_cast<double>(nodes.size() - 1))]];
   };
   const auto on_duct = [&](double share) {
     if (share >= kept_share_) return at(cystic_duct_, share);
     // the first node that is exposable
     const auto last = static_cast<double>(cystic_duct_.size() - 1);
-    return positions[cystic_duct_[static_cast<std::size_t>(std::ceil(kept_share_ * last))]];
+    return positions[cystic_duct_[base::CeilTo<std::size_t>(kept_share_ * last)]];
   };
   const Vec3 beside = on_duct(0.5), across = at(hepatic_duct_, 0.5);
   const double apart = math::Distance(beside, across);

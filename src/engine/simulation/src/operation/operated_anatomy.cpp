@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "trocar/base/to_integer.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/scene/entering_tubes.h"
 #include "trocar/scene/procedure.h"
@@ -77,9 +78,8 @@ surgery::OrganAttachment MakeAttachment(const Scene& scene, std::span<const Surf
 surgery::GallstoneSettings FindGallstones(const Scene& scene) {
   surgery::GallstoneSettings stones =
       scene.operation ? scene.operation->gallstones : surgery::GallstoneSettings{};
-  stones.count =
-      std::clamp(static_cast<int>(std::lround(NumberOf(scene.patient, "gallstone_count", stones.count))), 0,
-                 surgery::kMostGallstones);
+  stones.count = std::clamp(base::RoundTo<int>(NumberOf(scene.patient, "gallstone_count", stones.count)), 0,
+                            surgery::kMostGallstones);
   stones.median_diameter =
       1e-3 *
       std::clamp(NumberOf(scene.patient, "gallstone_diameter", 1e3 * stones.median_diameter), 1.0, 30.0);

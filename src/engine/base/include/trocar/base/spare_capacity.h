@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "trocar/base/to_integer.h"
+
 namespace trocar::base {
 
 /// Spare elements beyond the share: short lists grow by more than their share.
@@ -12,7 +14,7 @@ inline constexpr std::size_t kLeastCapacity = 1024;
 /// Capacity for `share` times more elements than `count`, and kLeastCapacity more; without a share for `count`.
 inline std::size_t AddSpare(std::size_t count, double share) {
   if (!(share > 0.0)) return count;
-  return count + static_cast<std::size_t>(share * static_cast<double>(count)) + kLeastCapacity;
+  return count + TruncateTo<std::size_t>(share * static_cast<double>(count)) + kLeastCapacity;
 }
 
 /// Capacity in each of the vectors for `count` elements and the share.
