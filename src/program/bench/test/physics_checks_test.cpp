@@ -18,8 +18,8 @@ void ExpectAllPass(const PhysicsCheck& check) {
 }
 
 TEST(PhysicsChecks, AnalyticCasesPass) {
-  for (const auto run : {CheckPatch, CheckHangingChain, CheckSelfWeight, CheckMeshRefinement, CheckRodCantilever,
-                         CheckRodBuckling, CheckRodRing, CheckRodCatenary})
+  for (const auto run : {CheckPatch, CheckHangingChain, CheckSelfWeight, CheckMeshRefinement,
+                         CheckRodCantilever, CheckRodBuckling, CheckRodRing, CheckRodCatenary})
     ExpectAllPass(run());
 }
 

@@ -28,9 +28,9 @@ struct ReportCardOptions {
 
 base::Result<std::vector<bench::PhysicsCheck>> RunChecks(const ReportCardOptions& options) {
   const std::vector<std::function<bench::PhysicsCheck()>> analytic{
-      bench::CheckPatch,  bench::CheckHangingChain,   bench::CheckIndentation, bench::CheckSelfWeight,
-      bench::CheckEnergy, bench::CheckMeshRefinement, bench::CheckFreedOrgan,
-      bench::CheckRodCantilever, bench::CheckRodBuckling, bench::CheckRodRing, bench::CheckRodCatenary};
+      bench::CheckPatch,       bench::CheckHangingChain,   bench::CheckIndentation, bench::CheckSelfWeight,
+      bench::CheckEnergy,      bench::CheckMeshRefinement, bench::CheckFreedOrgan,  bench::CheckRodCantilever,
+      bench::CheckRodBuckling, bench::CheckRodRing,        bench::CheckRodCatenary};
   std::vector<bench::PhysicsCheck> checks;
   host::ProgressBar progress("analytic cases", static_cast<double>(analytic.size()));
   for (const auto& run : analytic) {
