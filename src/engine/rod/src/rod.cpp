@@ -25,26 +25,24 @@ RodMaterial MakeRoundMaterial(double diameter, double young_modulus, double pois
 }
 
 base::Result<RodModel> MakeRodModel(const RodDefinition& definition) {
-  const auto refuse = [](const std::string& why) {
-    return base::Error{base::ErrorCode::kSceneInvalid, "a rod " + why};
-  };
+  const auto refuse = [](const std::string& why) { return base::Error{base::ErrorCode::kSceneInvalid, why}; };
   const std::size_t n = definition.nodes.size();
-  if (n < 3) return refuse("has " + std::to_string(n) + " nodes; give it three at least");
+  if (n < 3) return refuse("a rod has " + std::to_string(n) + " nodes; give it three at least");
   const RodMaterial& m = definition.material;
-  if (!(m.radius > 0.0 && std::isfinite(m.radius))) return refuse("has no radius; give one above 0");
+  if (!(m.radius > 0.0 && std::isfinite(m.radius))) return refuse("a rod has no radius; give one above 0");
   if (!(m.bending >= 0.0 && std::isfinite(m.bending) && m.twisting >= 0.0 && std::isfinite(m.twisting)))
-    return refuse("has a stiffness against bending or twist below 0 or none at all; give 0 or more");
+    return refuse("a rod has a stiffness against bending or twist below 0 or none at all; give 0 or more");
   if (!(m.stretching > 0.0 && std::isfinite(m.stretching)))
-    return refuse("has no stiffness along its length; give one above 0");
+    return refuse("a rod has no stiffness along its length; give one above 0");
   if (!(m.mass_per_length >= 0.0 && std::isfinite(m.mass_per_length)))
-    return refuse("has a mass below 0 or none at all; give 0 or more");
+    return refuse("a rod has a mass below 0 or none at all; give 0 or more");
   RodModel model;
   model.material = m;
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double length = math::Distance(definition.nodes[i], definition.nodes[i + 1]);
     if (!(length > 0.0 && std::isfinite(length)))
-      return refuse("has no length between its nodes " + std::to_string(i) + " and " + std::to_string(i + 1) +
-                    "; give each node a place of its own");
+      return refuse("a rod has no length between its nodes " + std::to_string(i) + " and " +
+                    std::to_string(i + 1) + "; give each node a place of its own");
     model.length.push_back(length);
   }
   for (std::size_t i = 0; i < n; ++i) {
