@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "crossing_points.h"
 #include "trocar/math/state_fields.h"
 #include "trocar/rod/rod.h"
 
@@ -43,12 +44,6 @@ Nearest FindNearest(const Vec3& p, const Vec3& along_rod, const Vec3& a, const V
     on_rod = std::clamp((ra * on_axis - rd) / rr, 0.0, 1.0);
   }
   return {on_rod, on_axis};
-}
-
-/// From b's point to a's.
-Vec3 CalcApart(std::span<const Vec3> position, const RodCrossing& c) noexcept {
-  return math::Lerp(position[c.a], position[c.a + 1], c.at_a) -
-         math::Lerp(position[c.b], position[c.b + 1], c.at_b);
 }
 
 /// Direction from b's point to a's; square to both segments where the points are one.

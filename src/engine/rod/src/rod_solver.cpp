@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 
+#include "crossing_points.h"
 #include "rod_elements.h"
 #include "rod_stiffness.h"
 #include "trocar/base/assert.h"
@@ -203,12 +204,6 @@ void RodSolver::AddContact(const RodContactSettings& settings, const RodContact&
   sums.potential += friction.potential;
   AddPointForce(contact.segment, contact.at, friction.across * drawn - pressure * contact.normal);
   if (has_stiffness) AddPointStiffness(contact, settings.normal, friction.across, friction.slips);
-}
-
-/// The point of `a` as it is seen from that of `b`.
-static Vec3 CalcApart(std::span<const Vec3> position, const RodCrossing& c) noexcept {
-  return math::Lerp(position[c.a], position[c.a + 1], c.at_a) -
-         math::Lerp(position[c.b], position[c.b + 1], c.at_b);
 }
 
 void RodSolver::AddCrossing(const RodContactSettings& settings, const RodCrossing& crossing, const Shape& at,

@@ -62,16 +62,16 @@ base::Result<RodModel> MakeRodModel(const RodDefinition& definition);
 /// The state of a rod: saved and restored with everything else.
 struct RodState {
   std::vector<math::Vec3> position;  ///< (n) [m]
-  std::vector<double>
-      angle;  ///< (n - 1) twist of each segment's material frame against its reference frame [rad]
-  std::vector<math::Vec3>
-      direction;  ///< (n - 1) of each segment when the rod was last solved, unit vectors [-]
-  std::vector<math::Vec3>
-      reference;  ///< (n - 1) unit vector of the reference frame, square to `direction` [-]
-  std::vector<double>
-      reference_twist;  ///< (n) of the reference frame from segment i - 1 to i; 0 at the ends [rad]
-  std::vector<double>
-      tension;  ///< (n - 1) when the rod was last solved; below 0 where a segment is pressed [N]
+  /// (n - 1) Twist of each segment's material frame against its reference frame [rad].
+  std::vector<double> angle;
+  /// (n - 1) Of each segment when the rod was last solved: unit vectors.
+  std::vector<math::Vec3> direction;
+  /// (n - 1) Unit vector of the reference frame, square to `direction`.
+  std::vector<math::Vec3> reference;
+  /// (n) Of the reference frame from segment i - 1 to i; 0 at the ends [rad].
+  std::vector<double> reference_twist;
+  /// (n - 1) When the rod was last solved; below 0 where a segment is pressed [N].
+  std::vector<double> tension;
   std::vector<std::uint8_t> is_held;        ///< (n) 1 where the position is prescribed
   std::vector<std::uint8_t> is_angle_held;  ///< (n - 1) 1 where the angle is prescribed
 };
@@ -103,15 +103,15 @@ struct RodSettings {
 
 struct RodReport {
   int steps = 0;
-  double residual =
-      0;  ///< largest force, or moment over a segment's length, that is not balanced, over `force_scale` [-]
-  double force_scale = 0;   ///< largest force of one segment, bend or load alone [N]
+  /// Largest force, or moment over a segment's length, that is not balanced, over `force_scale` [-].
+  double residual = 0;
+  double force_scale = 0;   ///< largest force of one segment, bend, load or contact alone [N]
   double length_error = 0;  ///< largest, over the segment's length [-]
   double energy = 0;        ///< of bending and twist [J]
-  bool is_stable =
-      true;  ///< the stiffness at the end is positive definite: a minimum of the energy, not a saddle
+  /// The stiffness at the end is positive definite: a minimum of the energy, not a saddle.
+  bool is_stable = true;
   bool converged = false;
-  bool is_finite = true;  ///< false: nothing was changed
+  bool is_finite = true;  ///< false: the state is as it was
 };
 
 class RodStiffness;
@@ -182,9 +182,8 @@ class RodSolver {
   std::vector<double> gradient_, step_;  // (4 n): position of a node, angle of the segment behind it
   std::vector<std::uint8_t> is_fixed_;   // (4 n)
   std::vector<double> tension_;          // (n - 1) [N]
-  std::vector<double> elongation_,
-      foreseen_;                // (n - 1) where the step begins, and of the whole step in linear terms [m]
-  std::vector<double> wanted_;  // (n - 1) elongations that RestoreLengths brings about [m]
+  // (n - 1) where the step begins, of the whole step in linear terms, and what RestoreLengths brings about [m]
+  std::vector<double> elongation_, foreseen_, wanted_;
   std::vector<double> diagonal_, beside_, pull_;  // (n - 1) of RestoreLengths
 };
 
