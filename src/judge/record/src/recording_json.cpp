@@ -47,7 +47,7 @@ bool ReadText(const ordered_json& json, const char* key, std::string& value) {
 bool ReadCount(const ordered_json& json, const char* key, std::uint64_t& value) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_number_unsigned()) return false;
-  value = found->get<std::uint64_t>();
+  value = found->get_ref<const ordered_json::number_unsigned_t&>();
   return true;
 }
 
@@ -153,7 +153,7 @@ bool ReadEvents(std::string_view text, std::vector<EventMark>& events) {
       return false;
     ReadText(entry, "about", event.about);
     if (const auto hand = entry.find("hand"); hand != entry.end() && hand->is_number_integer())
-      event.hand = hand->get<int>();
+      event.hand = static_cast<int>(hand->get_ref<const ordered_json::number_integer_t&>());
     event.is_error = entry.contains("error") && entry.at("error") == true;
     events.push_back(std::move(event));
   }
