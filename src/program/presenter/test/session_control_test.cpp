@@ -303,8 +303,8 @@ TEST_F(SessionControlTest, TheMouseGoesOnWhereADeviceLostAHand) {
   control->ChooseHand(device::kLeftHand);
   shared.pan = 0.2;
   ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
-    return std::fabs(now.instruments[instrument::kLeft].joints.pan - 0.2) < 0.01;
-  }));
+    return std::fabs(now.instruments[instrument::kLeft].joints.pan - 0.2) < 0.01 && IsLeftAt(0.2);
+  })) << "there, not nearly there";
   shared.is_seen = false;
   ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot&) {
     return !control->GetSession().Input().IsHeldByDevice(instrument::kLeft);
